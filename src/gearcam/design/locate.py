@@ -1,0 +1,177 @@
+"""Lines of keys: where in a design file's text each key and each array item stands.
+
+The text has been read as TOML before, so this walk trusts it: it only finds where things begin. It
+runs when there is something to report, never for a good file. A *path* is a tuple of keys and item
+numbers, ``("pair", "teeth", 1)``; the empty path is the file.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from bisect import bisect_right
+from collections.abc import Mapping
+
+Path = tuple[str | int, ...]
+
+_SPACE = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_STRING = re.compile(
+    r'"""(?:\\[\s\S]|[^\\])*?"{3,5}'
+    r"|'''[\s\S]*?'{3,5}"
+    r'|"(?:\\.|[^"\\])*"'
+    r"|'[^']*'"
+)
+_SCALAR = re.compile(r"[^,\]}#\n]*")
+_ESCAPE = re.compile(r'\\(u[0-9A-Fa-f]{4}|U[0-9A-Fa-f]{8}|[btnfr"\\])')
+_ESCAPED = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "\\": "\\"}
+
+
+def lines_of(text: str) -> dict[Path, int]:
+    """Return the line of every table, key and array item of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+        Valid TOML.
+
+    Returns
+    -------
+    dict of path to int
+        Lines counted from 1. What cannot be followed is left out.
+    """
+    walk = _Walk(text)
+    # a partial map still serves: lookups fall back to the nearest known parent
+    with contextlib.suppress(RecursionError, LookupError):
+        walk.document()
+    return walk.lines
+
+
+def line_at(lines: Mapping[Path, int], path: Path) -> int:
+    """Return the line of a path, or of its nearest parent that the text has."""
+    while path and path not in lines:
+        path = path[:-1]
+    return lines.get(path, 1)
+
+
+class _Walk:
+    """A cursor over the text."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.at = 0
+        self.lines: dict[Path, int] = {(): 1}
+        self.last_item: dict[Path, int] = {}
+        self.starts = [0, *(match.end() for match in re.finditer("\n", text))]
+
+    def document(self) -> None:
+        table: Path = ()
+        self.space()
+        while self.at < len(self.text):
+            if self.text[self.at] == "[":
+                table = self.header()
+            else:
+                self.pair(table)
+            self.space()
+
+    def space(self) -> None:
+        match = _SPACE.match(self.text, self.at)
+        self.at = match.end() if match else self.at
+
+    def take(self, sign: str) -> bool:
+        """Step over a sign and the blanks around it, if it is next."""
+        self.space()
+        found = self.text.startswith(sign, self.at)
+        if found:
+            self.at += len(sign)
+            self.space()
+        return found
+
+    def mark(self, path: Path, at: int, *, explicit: bool = True) -> None:
+        line = bisect_right(self.starts, at)
+        if explicit:
+            self.lines[path] = line
+        else:
+            self.lines.setdefault(path, line)
+
+    def header(self) -> Path:
+        """Read ``[a.b]`` or ``[[a.b]]`` and return the path of the table that it opens."""
+        start = self.at
+        many = self.take("[[")
+        if not many:
+            self.take("[")
+        *parents, last = self.key()
+        path: Path = ()
+        for name in parents:
+            path = self.enter((*path, name))
+            self.mark(path, start, explicit=False)
+        path = (*path, last)
+        self.mark(path, start, explicit=path not in self.last_item)
+        if many:
+            self.last_item[path] = self.last_item.get(path, -1) + 1
+            path = self.enter(path)
+            self.mark(path, start)
+        self.take("]]" if many else "]")
+        return path
+
+    def enter(self, path: Path) -> Path:
+        """Go on to the last item where the path is an array of tables."""
+        return (*path, self.last_item[path]) if path in self.last_item else path
+
+    def pair(self, table: Path) -> None:
+        """Read ``key = value``, dotted keys included."""
+        start = self.at
+        path = table
+        for name in self.key():
+            path = (*path, name)
+            self.mark(path, start, explicit=False)
+        self.take("=")
+        self.value(path)
+
+    def key(self) -> list[str]:
+        names: list[str] = []
+        while not names or self.take("."):
+            match = _STRING.match(self.text, self.at)
+            if match:
+                names.append(_unquoted(match.group()))
+            else:
+                match = _BARE_KEY.match(self.text, self.at)
+                if match is None:
+                    raise LookupError(self.at)
+                names.append(match.group())
+            self.at = match.end()
+        return names
+
+    def value(self, path: Path) -> None:
+        if self.take("["):
+            index = 0
+            while not self.take("]"):
+                item = (*path, index)
+                self.mark(item, self.at)
+                self.value(item)
+                self.take(",")
+                index += 1
+                self.more()
+        elif self.take("{"):
+            while not self.take("}"):
+                self.pair(path)
+                self.take(",")
+                self.more()
+        else:
+            match = _STRING.match(self.text, self.at) or _SCALAR.match(self.text, self.at)
+            self.at = match.end() if match else self.at
+
+    def more(self) -> None:
+        if self.at >= len(self.text):
+            raise LookupError(self.at)
+
+
+def _unquoted(word: str) -> str:
+    if word.startswith("'"):
+        return word[1:-1]
+
+    def plain(match: re.Match[str]) -> str:
+        code = match.group(1)
+        return chr(int(code[1:], 16)) if code[0] in "uU" else _ESCAPED[code]
+
+    return _ESCAPE.sub(plain, word[1:-1])

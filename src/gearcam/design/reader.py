@@ -1,0 +1,134 @@
+"""Reading design files: TOML becomes a design, or one error that lists everything wrong in it."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any, Final
+
+from gearcam.design.examine import examine
+from gearcam.design.locate import line_at, lines_of
+from gearcam.design.spec import GearPairDesign
+from gearcam.design.wording import MISSING, Fault, dotted
+from gearcam.errors import DesignError, Problem
+
+_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+_PLAIN: Final = {
+    "Invalid value": "this value cannot be read (texts stand in quotes, numbers use a point)",
+    "Invalid statement": "this line is neither a table [name] nor key = value",
+    "Expected '=' after a key in a key/value pair": "an = is missing after the key",
+    "Expected newline or end of document after a statement": (
+        "something follows the value that does not belong to it (one key = value on each line)"
+    ),
+    "Cannot overwrite a value": "this key is given twice",
+    "Unclosed array": "the list is not closed with ]",
+    "Unclosed inline table": "the table is not closed with }",
+    "Unterminated string": "the text is not closed by its quote",
+    "Expected ']' at the end of a table declaration": "the name of the table is not closed with ]",
+    "Illegal character '\\n'": "the text is not closed by its quote on the same line",
+}
+
+
+def load(path: str | os.PathLike[str]) -> GearPairDesign:
+    """Read a design file.
+
+    Parameters
+    ----------
+    path : path
+        A TOML file in UTF-8.
+
+    Returns
+    -------
+    GearPairDesign
+        In mm and rad.
+
+    Raises
+    ------
+    DesignError
+        If the file cannot be read, or for everything that is wrong in it, each with its line.
+    """
+    file = os.fspath(path)
+    try:
+        content = Path(file).read_bytes()
+    except FileNotFoundError as error:
+        raise DesignError([Problem("there is no such file", file=file)]) from error
+    except IsADirectoryError as error:
+        raise DesignError([Problem("this is a folder, not a file", file=file)]) from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise DesignError([Problem(f"cannot be read: {reason}", file=file)]) from error
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        message = f"the byte 0x{content[error.start]:02x} is not UTF-8"
+        problem = Problem(message, file=file, line=line, allowed="a text file saved as UTF-8")
+        raise DesignError([problem]) from error
+    return loads(text, file=file)
+
+
+def loads(text: str, *, file: str = "") -> GearPairDesign:
+    """Read the text of a design file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        The file's name for messages; its stem names a design that has no name.
+
+    Returns
+    -------
+    GearPairDesign
+        In mm and rad.
+
+    Raises
+    ------
+    DesignError
+        For everything that is wrong in it, each with its line.
+    """
+    document = _document(text, file)
+    found = examine(document, stem=Path(file).stem)
+    if found.faults:
+        raise DesignError(_problems(found.faults, text, file))
+    return GearPairDesign(source=file, **found.parts)
+
+
+def _problems(faults: list[Fault], text: str, file: str) -> list[Problem]:
+    lines = lines_of(text.replace("\r\n", "\n"))
+    placed = [
+        Problem(
+            message=fault.message,
+            file=file,
+            line=line_at(lines, fault.path),
+            key=dotted(fault.path),
+            value=None if fault.value is MISSING else fault.value,
+            allowed=fault.allowed,
+            hint=fault.hint,
+        )
+        for fault in faults
+    ]
+    return sorted(placed, key=lambda problem: problem.line or 0)
+
+
+def _document(text: str, file: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except RecursionError as error:
+        raise DesignError([Problem("lists or tables are nested too deep", file=file)]) from error
+    except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
+        raise DesignError([_syntax_problem(str(error), text, file)]) from error
+
+
+def _syntax_problem(message: str, text: str, file: str) -> Problem:
+    place = _PLACE.search(message)
+    what = message[: place.start()] if place else message
+    what = _PLAIN.get(what, what)
+    if place and place.group(1):
+        return Problem(f"column {place.group(2)}: {what}", file=file, line=int(place.group(1)))
+    if place:
+        last = text.rstrip().count("\n") + 1
+        return Problem(f"{what} (the file ends)", file=file, line=last)
+    return Problem(f"a number in this file cannot be read: {what}", file=file)

@@ -1,0 +1,108 @@
+"""What goes wrong, in words a machinist understands.
+
+Three kinds of refusal, each from a common base and from the builtin that fits:
+
+* `DesignError`: the design file (or the call) is wrong by reading it. It carries every problem of the
+  file at once, each with its place.
+* `InfeasibleError`: the design reads well, but computing shows that it cannot be made. It carries the
+  number that fails, the limit, and the nearest feasible value where one is known.
+* `WriteError`: the disk refuses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+class GearcamError(Exception):
+    """Base of every error that gearcam raises on purpose."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong in a design file.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, without the place.
+    file : str
+        The design file, empty for a design made in Python.
+    line : int or None
+        Line number in the file, counted from 1.
+    key : str
+        Dotted key path, such as ``pair.module_mm``.
+    value : object
+        The offending value, as written.
+    allowed : str
+        What is allowed there.
+    hint : str
+        The nearest key, or the nearest feasible value.
+    """
+
+    message: str
+    file: str = ""
+    line: int | None = None
+    key: str = ""
+    value: object = None
+    allowed: str = ""
+    hint: str = ""
+
+    def __str__(self) -> str:
+        place = self.file if self.line is None else f"{self.file}:{self.line}"
+        head = ": ".join(part for part in (place, self.key, self.message) if part)
+        tail = [f"allowed: {self.allowed}"] if self.allowed else []
+        tail += [self.hint] if self.hint else []
+        return "\n    ".join([head, *tail])
+
+
+class DesignError(GearcamError, ValueError):
+    """The design is wrong by reading it.
+
+    Parameters
+    ----------
+    problems : iterable of Problem
+        All problems found, in the order of the file.
+    """
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class InfeasibleError(GearcamError, ValueError):
+    """The design reads well but cannot be made.
+
+    Parameters
+    ----------
+    what : str
+        What cannot be, as a sentence without its full stop.
+    where : str
+        The place: an angle, a tooth, a wheel.
+    value, limit : float or None
+        The number that fails and the limit it fails against, in `unit`.
+    unit : str
+        Unit of both.
+    nearest : str
+        The nearest feasible value of what the user would change.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        where: str = "",
+        value: float | None = None,
+        limit: float | None = None,
+        unit: str = "",
+        nearest: str = "",
+    ) -> None:
+        self.what, self.where, self.nearest, self.unit = what, where, nearest, unit
+        self.value, self.limit = value, limit
+        text = f"{what} ({where})" if where else what
+        super().__init__(f"{text}; {nearest}" if nearest else text)
+
+
+class WriteError(GearcamError, OSError):
+    """A file or folder could not be written."""

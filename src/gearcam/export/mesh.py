@@ -1,0 +1,125 @@
+"""Mesh files: STL (binary), 3MF and GLB, written by trimesh.
+
+All three hold millimetres. STL has no unit; 3MF states it; glTF means metres, but every program
+that takes wheels reads the numbers, so the GLB keeps millimetres and says so in its scene's extras
+(``"units": "mm"``). STL and GLB hold single precision: vertices are rounded first and those that
+fall together are joined, so that the file is closed as written. The same mesh gives the same bytes.
+
+Refused: meshes that are not closed, before or after rounding.
+
+Depends on solids; trimesh (with networkx and lxml for 3MF) only inside the functions.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import uuid
+import zipfile
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.solids import Mesh, SolidError
+
+if TYPE_CHECKING:
+    from trimesh import Scene
+
+HEADER_LENGTH: Final = 80
+"""Bytes of an STL header."""
+
+EPOCH: Final = (1980, 1, 1, 0, 0, 0)
+"""The date in a 3MF's archive: the earliest that the format knows."""
+
+_UUID: Final = re.compile(rb"[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}")
+
+
+def stl_bytes(mesh: Mesh, name: str) -> bytes:
+    """Write a binary STL; the name stands in the header.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Closed, mm.
+    name : str
+        The part's name.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    SolidError
+        If the mesh is not closed, or rounding to single precision opens it.
+    """
+    from trimesh.exchange.stl import export_stl
+
+    single = _single(mesh, name)
+    data = export_stl(next(iter(_scene(single, name).geometry.values())))
+    # "solid" at the start would announce the text form.
+    label = f"gearcam {name} (mm)".encode("ascii", "replace")[:HEADER_LENGTH]
+    return label.ljust(HEADER_LENGTH, b"\0") + data[HEADER_LENGTH:]
+
+
+def threemf_bytes(mesh: Mesh, name: str) -> bytes:
+    """Write a 3MF in millimetres; the name is that of the object (see `stl_bytes`)."""
+    from trimesh.exchange.threemf import export_3MF
+
+    _require(mesh, name)
+    return _repeatable(export_3MF(_scene(mesh, name)), name)
+
+
+def glb_bytes(mesh: Mesh, name: str) -> bytes:
+    """Write a GLB in millimetres; the name is that of node and mesh (see `stl_bytes`)."""
+    from trimesh.exchange.gltf import export_glb
+
+    scene = _scene(_single(mesh, name), name)
+    scene.metadata["units"] = "mm"
+    return bytes(export_glb(scene, include_normals=False))
+
+
+def _scene(mesh: Mesh, name: str) -> Scene:
+    from trimesh import Scene, Trimesh
+
+    body = Trimesh(
+        vertices=mesh.vertices, faces=mesh.triangles, process=False, metadata={"name": name}
+    )
+    scene = Scene()
+    scene.add_geometry(body, node_name=name, geom_name=name)
+    return scene
+
+
+def _require(mesh: Mesh, name: str, when: str = "") -> None:
+    if not (mesh.watertight and mesh.volume > 0):
+        raise SolidError(f"{name}: the mesh is not closed{when}")
+
+
+def _single(mesh: Mesh, name: str) -> Mesh:
+    """Round a mesh to single precision, join what falls together, drop what folds."""
+    _require(mesh, name)
+    rounded = mesh.vertices.astype(np.float32).astype(np.float64)
+    places, index = np.unique(rounded, axis=0, return_inverse=True)
+    triangles = index.reshape(-1)[mesh.triangles]
+    a, b, c = triangles.T
+    single = Mesh(vertices=places, triangles=triangles[(a != b) & (b != c) & (c != a)])
+    _require(single, name, " in single precision")
+    return single
+
+
+def _repeatable(data: bytes, name: str) -> bytes:
+    """Replace the random identifiers and the dates of a 3MF archive by fixed ones."""
+    result = io.BytesIO()
+    with (
+        zipfile.ZipFile(io.BytesIO(data)) as source,
+        zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as target,
+    ):
+        for entry in source.infolist():
+            count = iter(range(1 << 30))
+
+            def fixed(_: re.Match[bytes], count=count) -> bytes:
+                return str(uuid.uuid5(uuid.NAMESPACE_OID, f"gearcam/{name}/{next(count)}")).encode()
+
+            content = _UUID.sub(fixed, source.read(entry))
+            target.writestr(zipfile.ZipInfo(entry.filename, EPOCH), content, zipfile.ZIP_DEFLATED)
+    return result.getvalue()

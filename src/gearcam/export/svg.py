@@ -1,0 +1,160 @@
+"""SVG: the assembled pair as a picture for a page.
+
+Millimetres in the view box, y upwards turned into y downwards, strokes scaled to the picture, white
+ground, and a caption below the wheels. The picture is thinned to 0.005 mm: it is for looking at,
+parts are cut from the DXF.
+
+Depends on drawings; shapely only inside the functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+from xml.sax.saxutils import escape, quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.drawings import CENTRODE, MARK, Circle, Cross, Drawing, Feature, Path
+from gearcam.numeric.contour import Contour
+
+Array = NDArray[np.float64]
+
+THINNING: Final = 0.005
+"""Largest distance, mm, by which thinning may move a line of the picture."""
+
+PIXELS: Final = 960
+"""Width of the picture where the page does not say otherwise."""
+
+MARGIN: Final = 0.04
+"""Margin, part of the drawing's width."""
+
+FILLS: Final = ("#cfe0f2", "#f8e0c6")
+INKS: Final = ("#27598c", "#a35f22")
+"""Soft fill and dark stroke of wheel 1 and wheel 2."""
+
+CENTRODE_INK: Final = "#5a5a5a"
+TEXT_INK: Final = "#222222"
+
+GLYPH: Final = 0.6
+"""Width of a letter, part of the font's size, on the safe side."""
+
+
+def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> bytes:
+    """Draw a drawing as SVG.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        Usually the assembled pair.
+    title : str
+        First line of the caption.
+    notes : sequence of str
+        Second line of the caption, joined by commas (see `pair_notes`).
+
+    Returns
+    -------
+    bytes
+        The file, UTF-8.
+
+    Raises
+    ------
+    ValueError
+        If the drawing has no outline.
+    """
+    if not drawing.contours:
+        raise ValueError(f"{drawing.name}: nothing to draw")
+    corners = np.vstack([shape.vertices for shape in drawing.contours])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    width = float(high[0] - low[0])
+    margin, pixel = MARGIN * width, width / PIXELS
+    lines = [title, ", ".join(notes)]
+    size = min(20 * pixel, width / (GLYPH * max(1, *(len(line) for line in lines))))
+    caption = size * 1.4 * sum(1 for line in lines if line)
+    left, top = float(low[0]) - margin, -float(high[1]) - margin
+    whole = width + 2 * margin
+    tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
+    box = " ".join(_number(value) for value in (left, top, whole, tall))
+    base = -float(low[1]) + margin + size
+    ground = f'x="{_number(left)}" y="{_number(top)}"'
+    ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="#ffffff"'
+    sheet = f'viewBox="{box}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
+    elements = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" {sheet} role="img">',
+        f"<title>{escape(title)}</title>",
+        f"<rect {ground}/>",
+        f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
+        *(line for feature in drawing.features for line in _element(feature, pixel)),
+        "</g>",
+        *_caption(lines, float(low[0]), base, size),
+        "</svg>",
+    ]
+    return ("\n".join(elements) + "\n").encode()
+
+
+def pair_notes(center_distance: float, module: float, teeth: tuple[int, int]) -> tuple[str, ...]:
+    """Return the caption's facts of a pair: centre distance and module in mm, teeth."""
+    return (
+        f"center distance {center_distance:.6g} mm",
+        f"module {module:.6g} mm",
+        f"teeth {teeth[0]} : {teeth[1]}",
+    )
+
+
+def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
+    made = []
+    for number, line in enumerate(line for line in lines if line):
+        place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * number)}"'
+        font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
+        weight = ' font-weight="bold"' if number == 0 else ""
+        made.append(f"<text {place} {font}{weight}>{escape(line)}</text>")
+    return made
+
+
+def _element(feature: Feature, pixel: float) -> list[str]:
+    """Return the SVG elements of one feature; the class is its layer."""
+    shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
+    wheel = 1 if feature.layer.startswith("GEAR2") else 0
+    ink, fill = INKS[wheel], FILLS[wheel]
+    match shape:
+        case Contour(vertices=points):
+            style = f'fill="{fill}" stroke="{ink}"'
+            return [f'<path class={name} {style} d="{_data(points, True)}"/>']
+        case Path(points=points, closed=closed):
+            dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
+            colour = CENTRODE_INK if feature.kind == CENTRODE else ink
+            style = f'fill="none" stroke="{colour}" stroke-dasharray="{dash}"'
+            return [f'<path class={name} {style} d="{_data(points, closed)}"/>']
+        case Circle(center=center, diameter=diameter):
+            inside = ink if feature.kind == MARK else "#ffffff"
+            place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'
+            return [
+                (
+                    f'<circle class={name} {place} r="{_number(0.5 * diameter)}" fill="{inside}"'
+                    f' stroke="{ink}"/>'
+                )
+            ]
+        case Cross(center=center, size=size):
+            x, y, arm = float(center[0]), -float(center[1]), _number(size)
+            start = f"M{_number(x - 0.5 * size)} {_number(y)}h{arm}"
+            upright = f"M{_number(x)} {_number(y - 0.5 * size)}v{arm}"
+            return [f'<path class={name} fill="none" stroke="{TEXT_INK}" d="{start}{upright}"/>']
+
+
+def _data(points: Array, closed: bool) -> str:
+    """Return thinned path data; y turned downwards."""
+    from shapely import LineString, get_coordinates, simplify
+
+    line = LineString(np.vstack([points, points[:1]]) if closed else points)
+    kept = get_coordinates(simplify(line, THINNING, preserve_topology=False))
+    kept = kept[:-1] if closed else kept
+    steps = " ".join(f"{_number(x)} {_number(-y)}" for x, y in kept.tolist())
+    return f"M{steps}" + ("Z" if closed else "")
+
+
+def _number(value: float) -> str:
+    """Four decimals, no idle zeros."""
+    text = f"{value:.4f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text

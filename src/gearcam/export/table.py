@@ -1,0 +1,60 @@
+r"""Tables: columns of numbers as CSV, exact to the last bit.
+
+Numbers are written with the fewest digits that read back as the same double; an infinite number
+(the radius of a straight part) is ``inf``; lines end in ``\n``. Refused: not-a-number, columns of
+different lengths, names that would need quotes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
+    """Write columns under a header line.
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array
+        In order; the name carries the unit's suffix, such as ``x_mm``.
+
+    Returns
+    -------
+    bytes
+        The file, ASCII.
+
+    Raises
+    ------
+    ValueError
+        If a number is not a number, the columns differ in length, or a name holds a comma, a quote
+        or a line break.
+    """
+    bad = [name for name in columns if not name or set(name) & set(',"\r\n')]
+    if bad:
+        raise ValueError(f"names that cannot stand in a header: {bad}")
+    arrays = {
+        name: np.asarray(values, dtype=np.float64).ravel() for name, values in columns.items()
+    }
+    lengths = {name: len(values) for name, values in arrays.items()}
+    if len(set(lengths.values())) > 1:
+        raise ValueError(f"columns differ in length: {lengths}")
+    texts = []
+    for name, values in arrays.items():
+        if np.isnan(values).any():
+            row = int(np.argmax(np.isnan(values)))
+            raise ValueError(f"column {name} is not a number in row {row}")
+        # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
+        tidy = np.where(np.isinf(values), np.inf, values + 0.0)
+        texts.append([repr(value) for value in tidy.tolist()])
+    lines = [",".join(arrays), *(",".join(row) for row in zip(*texts, strict=True))]
+    return ("\n".join(lines) + "\n").encode("ascii")
+
+
+def outline_bytes(vertices: Array) -> bytes:
+    """Write an outline (n, 2), mm, as the columns x_mm and y_mm."""
+    return table_bytes({"x_mm": vertices[:, 0], "y_mm": vertices[:, 1]})

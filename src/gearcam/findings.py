@@ -1,0 +1,138 @@
+"""Findings, error estimates, and the registry of checks.
+
+A *check* looks at one aspect of a built design and yields *findings*: poor but buildable. What cannot be
+built raises instead. Checks live beside what they check and register themselves with `check`; their
+limits are the keys of the design file's ``[limits]`` table. Severities: ``note`` (good to know),
+``warning`` (look before you cut), ``error`` (do not cut).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+from gearcam.quantities import Param
+
+Severity = Literal["note", "warning", "error"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """One thing a person should know about a built design.
+
+    Parameters
+    ----------
+    code : str
+        The check's code, such as ``undercut``.
+    severity : {"note", "warning", "error"}
+        How bad it is.
+    message : str
+        One or two plain sentences.
+    value, limit : float or None
+        The number found and the limit it is held against, in `unit`.
+    unit : str
+        Unit of both.
+    where : str
+        Wheel, tooth, angle.
+    """
+
+    code: str
+    severity: Severity
+    message: str
+    value: float | None = None
+    limit: float | None = None
+    unit: str = ""
+    where: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the finding for JSON: what does not exist is left out."""
+        fields = ("code", "severity", "message", "value", "limit", "unit", "where")
+        return {
+            name: getattr(self, name) for name in fields if getattr(self, name) not in (None, "")
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """A number with the size of its error and how that was found."""
+
+    value: float
+    how: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """An entry of the registry.
+
+    Parameters
+    ----------
+    code : str
+        Its name in findings.
+    kind : str
+        The kind of design it belongs to.
+    doc : str
+        What it looks at, one line.
+    limit : tuple of (str, Param, float) or None
+        Name in ``[limits]``, quantity with range, and default in inner units.
+    run : callable
+        ``run(subject, limit)`` yields findings; `limit` in inner units, or nan where there is none.
+    """
+
+    code: str
+    kind: str
+    doc: str
+    limit: tuple[str, Param, float] | None
+    run: Callable[[Any, float], Iterable[Finding]]
+
+
+CHECKS: Final[dict[str, Check]] = {}
+
+
+def check(
+    code: str, *, kind: str, doc: str, limit: tuple[str, Param, float] | None = None
+) -> Callable[[Callable[[Any, float], Iterable[Finding]]], Callable[..., Iterable[Finding]]]:
+    """Register the decorated function as a check (see `Check`).
+
+    Raises
+    ------
+    ValueError
+        If the code is taken.
+    """
+
+    def register(run: Callable[[Any, float], Iterable[Finding]]) -> Callable[..., Iterable[Finding]]:
+        if code in CHECKS:
+            raise ValueError(f"check {code!r} is registered twice")
+        CHECKS[code] = Check(code=code, kind=kind, doc=doc, limit=limit, run=run)
+        return run
+
+    return register
+
+
+def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Finding, ...]:
+    """Run every check of a kind of design on a built subject.
+
+    Parameters
+    ----------
+    kind : str
+        Such as ``gear-pair``.
+    subject : object
+        What the checks look at.
+    limits : mapping of str to float
+        Limits that the design sets, by name, inner units; the others keep their defaults.
+
+    Returns
+    -------
+    tuple of Finding
+        Errors first, then warnings, then notes.
+    """
+    found: list[Finding] = []
+    for entry in CHECKS.values():
+        if entry.kind == kind:
+            limit = float("nan")
+            if entry.limit is not None:
+                name, _, default = entry.limit
+                limit = limits.get(name, default)
+            found += entry.run(subject, limit)
+    order = ("error", "warning", "note")
+    return tuple(sorted(found, key=lambda finding: order.index(finding.severity)))

@@ -1,0 +1,147 @@
+"""The cutter of a wheel: the rack, or where the centrode is concave a pinion conjugate to it.
+
+No straight rack can cut a concave centrode: rolled along it, it erases flank. A pinion cutter (shaper) of
+pitch curvature ``kc > max(-kappa)`` can, and cuts the same flanks, since it is conjugate to the rack. The
+rack is the pinion with ``kc = 0``, and every formula here has that limit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from gearcam.errors import InfeasibleError
+from gearcam.gears.spec import Rack
+
+_CONCAVE_MARGIN = 1.15
+"""kc over the sharpest concave curvature: enough for clearance, and still a large, strong cutter."""
+
+_FLAT = 1e-9
+"""Curvature times module below which a centrode counts as not concave (rounding of a straight part)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cutter:
+    """A cutter in mm, made by `choose_cutter`.
+
+    Parameters
+    ----------
+    alpha : float, rad
+        Pressure angle.
+    addendum, dedendum, tip_radius : float, mm
+        Tooth height of the wheel above, depth below the pitch curve, and rounding of the cutter's tip.
+    kc : float, 1/mm
+        Curvature of the cutter's pitch circle; 0 for the rack.
+    half_space : float, mm
+        Half the width of a space on the pitch curve, pi*m/4.
+    """
+
+    alpha: float
+    addendum: float
+    dedendum: float
+    tip_radius: float
+    kc: float
+    half_space: float
+
+    @property
+    def kind(self) -> str:
+        """``rack`` or ``pinion``."""
+        return "pinion" if self.kc > 0.0 else "rack"
+
+    @property
+    def depth(self) -> float:
+        """Distance of the tip arc's centre below the pitch curve, mm."""
+        return self.dedendum - self.tip_radius
+
+    @cached_property
+    def reach(self) -> float:
+        """Roll from the pitch point of a flank to its joint with the fillet, mm: |s - sf|.
+
+        Rack: ``(d/sin(alpha) + rho)/cos(alpha)``. Pinion: ``(t + rho)/cos(alpha)`` with
+        ``t = R*sin(alphaR) - sin(alpha)/kc``, ``R = 1/kc + d``, ``cos(alphaR) = cos(alpha)/(kc*R)``;
+        written as ``t = d*(2 + kc*d)/(sqrt(sin(alpha)^2 + kc*d*(2 + kc*d)) + sin(alpha))``, which has the
+        rack as its limit without cancellation.
+        """
+        sine, d, kc = math.sin(self.alpha), self.depth, self.kc
+        root = math.sqrt(sine * sine + kc * d * (2.0 + kc * d))
+        t = d * (2.0 + kc * d) / (root + sine)
+        return (t + self.tip_radius) / math.cos(self.alpha)
+
+    @cached_property
+    def offset(self) -> float:
+        """Distance of the tip arc's centre from the flank along the pitch curve, mm.
+
+        Rack: ``rho/cos(alpha) + d*tan(alpha)``. Pinion: ``(inv(alphaR) - inv(alpha))/kc`` in place of
+        the second term.
+        """
+        d, kc = self.depth, self.kc
+        edge = self.tip_radius / math.cos(self.alpha)
+        if kc * self.half_space < _FLAT:
+            return edge + d * math.tan(self.alpha)
+        angle = math.acos(math.cos(self.alpha) / (1.0 + kc * d))
+        rise = (math.tan(angle) - angle) - (math.tan(self.alpha) - self.alpha)
+        return edge + rise / kc
+
+    @property
+    def joint_height(self) -> float:
+        """Rack height of the joint of flank and fillet, mm, negative: below the pitch curve."""
+        return -self.reach * math.sin(self.alpha) * math.cos(self.alpha)
+
+
+def choose_cutter(rack: Rack, module: float, concave_curvature: float, where: str) -> Cutter:
+    """Choose the cutter of a wheel.
+
+    Parameters
+    ----------
+    rack : Rack
+        Heights in modules.
+    module : float, mm
+        Module.
+    concave_curvature : float, 1/mm
+        Largest ``-kappa`` of the centrode; not positive for a convex one.
+    where : str
+        The wheel, for messages.
+
+    Returns
+    -------
+    Cutter
+        The rack for a convex centrode, else a pinion.
+
+    Raises
+    ------
+    InfeasibleError
+        If no tooth of such a cutter can be as deep as the rack asks: the concave part is too tight.
+    """
+    kc = _CONCAVE_MARGIN * concave_curvature if concave_curvature * module > _FLAT else 0.0
+    cutter = Cutter(
+        alpha=rack.pressure_angle,
+        addendum=rack.addendum * module,
+        dedendum=rack.dedendum * module,
+        tip_radius=rack.tip_radius * module,
+        kc=kc,
+        half_space=0.25 * math.pi * module,
+    )
+    if kc > 0.0 and cutter.offset > cutter.half_space:
+        raise InfeasibleError(
+            "a concave part of the centrode is too tight for a pinion cutter with this tip radius",
+            where=where,
+            value=1.0 / concave_curvature,
+            limit=_smallest_concave_radius(cutter),
+            unit="mm",
+            nearest=f"the smallest concave radius is {1.0 / concave_curvature:.6g} mm and must be at "
+            f"least {_smallest_concave_radius(cutter):.6g} mm: lower the ratio's swing, take a smaller "
+            "module (more teeth) or a smaller rack.tip_radius",
+        )
+    return cutter
+
+
+def _smallest_concave_radius(cutter: Cutter) -> float:
+    """Smallest concave radius that leaves the pinion's tooth tip a land, by bisection on kc."""
+    low, high = 0.0, cutter.kc
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        trial = replace(cutter, kc=middle)
+        low, high = (middle, high) if trial.offset <= trial.half_space else (low, middle)
+    return _CONCAVE_MARGIN / low if low > 0.0 else math.inf
+

@@ -1,0 +1,180 @@
+"""Closed forms of a wheel's curves: flank, fillet, root land and tip.
+
+A *flank* is given by the arc length `sf` at which it crosses the pitch curve and its side `sigma` (+1 on
+the tooth's side of rising s). Its points are indexed by the roll s of the rack; ``w = sigma*(sf - s)`` is
+the *reach*, positive on the addendum, and the rack height is ``w*sin(alpha)*cos(alpha)``. All curves are
+functions of the driver angle phi, which gives s and the frame of the pitch point.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.gears.cutter import Cutter
+from gearcam.gears.rolling import TURN, Frames, Plane, Rolling, Wheel
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+class Kind(IntEnum):
+    """The kinds of curve that an outline is made of."""
+
+    FLANK = 0
+    FILLET = 1
+    LAND = 2
+    TIP = 3
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Toothing:
+    """A wheel's centrode with its cutter and tooth places.
+
+    Parameters
+    ----------
+    rolling : Rolling
+        The pair of centrodes.
+    wheel : {1, 2}
+        Which wheel.
+    teeth : int
+        Its number of teeth.
+    cutter : Cutter
+        Its cutter.
+    """
+
+    rolling: Rolling
+    wheel: Wheel
+    teeth: int
+    cutter: Cutter
+
+    @property
+    def turn(self) -> complex:
+        """``N = turn*T``."""
+        return TURN[self.wheel]
+
+    @property
+    def pitch(self) -> float:
+        """Pitch along the centrode, pi*m, mm."""
+        return 4.0 * self.cutter.half_space
+
+    @cached_property
+    def tooth_places(self) -> Array:
+        """Arc length of each tooth's middle, mm: wheel 1 at (k - 1), wheel 2 at (k - 1/2) pitches."""
+        return self.pitch * (np.arange(self.teeth) + (0.0 if self.wheel == 1 else 0.5))
+
+    def frames(self, phi: Array) -> Frames:
+        """Return the frames of this wheel's centrode at driver angles, rad."""
+        return self.rolling.frames(self.wheel, phi)
+
+    def flank_points(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
+        """Return the flank's points at the frames: foot of the perpendicular from the pitch point."""
+        cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)
+        normal = frames.t * (cosine + sigma * sine * self.turn)
+        return frames.p + (sf - frames.s) * cosine * normal
+
+    def regularity(self, frames: Frames, sf: Array, sigma: Array) -> Array:
+        """Return sigma*g: the flank turns back on itself where this is not positive."""
+        cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)
+        return sine + sigma * (sf - frames.s) * frames.kappa * cosine
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rows:
+    """Stretches of curve, one a row, in the order of the outline (rising s).
+
+    Parameters
+    ----------
+    kind : (n,) int array
+        `Kind`.
+    sf, sigma : (n,) arrays
+        Flank that a flank or fillet belongs to; unused for land and tip.
+    start, end : (n,) arrays, rad
+        Driver angles at the ends, in the order of travel.
+    low, high : (n,) arrays, mm
+        For tips: distance from the centrode at the ends; for lands: minus the dedendum.
+    corner : (n,) bool array
+        Whether a corner precedes the row.
+    tooth : (n,) int array
+        Tooth number, from 1, that the row belongs to (for lands: the tooth before the space).
+    """
+
+    kind: NDArray[np.int64]
+    sf: Array
+    sigma: Array
+    start: Array
+    end: Array
+    low: Array
+    high: Array
+    corner: Mask
+    tooth: NDArray[np.int64]
+
+
+def trace(toothing: Toothing, rows: Rows, index: NDArray[np.int64], phi: Array) -> tuple[Plane, Plane]:
+    """Return points and forward unit tangents of rows at driver angles.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        Its curves.
+    index : (k,) int array
+        Row of each point.
+    phi : (k,) array, rad
+        Driver angle of each point.
+
+    Returns
+    -------
+    points, tangents : (k,) complex arrays, mm and 1
+        In the wheel's frame; forward is the direction of the outline with rising s.
+    """
+    cutter, w = toothing.cutter, toothing.turn
+    frames = toothing.frames(phi)
+    kind, sigma, sf = rows.kind[index], rows.sigma[index], rows.sf[index]
+    points, tangents = np.empty_like(frames.p), np.empty_like(frames.p)
+
+    flank = np.flatnonzero(kind == Kind.FLANK)
+    part = Frames(*(values[flank] for values in frames))
+    cosine, sine = np.cos(cutter.alpha), np.sin(cutter.alpha)
+    normal = part.t * (cosine + sigma[flank] * sine * w)
+    points[flank] = part.p + (sf[flank] - part.s) * cosine * normal
+    tangents[flank] = -sigma[flank] * w * normal
+
+    fillet = np.flatnonzero(kind == Kind.FILLET)
+    part = Frames(*(values[fillet] for values in frames))
+    arm = _tip_center(cutter, part, sf[fillet] + sigma[fillet] * cutter.offset, w)
+    length = np.abs(arm)
+    unit = np.where(length > 0.0, arm, -w * part.t) / np.where(length > 0.0, length, 1.0)
+    points[fillet] = part.p + arm + cutter.tip_radius * unit
+    tangents[fillet] = w * unit
+
+    parallel = np.flatnonzero(kind >= Kind.LAND)
+    part = Frames(*(values[parallel] for values in frames))
+    row = index[parallel]
+    span = rows.end[row] - rows.start[row]
+    fraction = (phi[parallel] - rows.start[row]) / np.where(span == 0.0, 1.0, span)
+    rise = rows.high[row] - rows.low[row]
+    height = rows.low[row] + fraction * rise
+    points[parallel] = part.p + height * w * part.t
+    slope = np.where(span == 0.0, 0.0, rise / np.where(span == 0.0, 1.0, span)) / part.speed
+    direction = part.t * (1.0 + part.kappa * height + slope * w)
+    tangents[parallel] = direction / np.abs(direction)
+    return points, tangents
+
+
+def _tip_center(cutter: Cutter, frames: Frames, x: Array, w: complex) -> Plane:
+    """Vector from the pitch point to the centre of the cutter's tip arc (design: V), rack as limit.
+
+    ``V = R*sin(beta)*T + (1/kc - R*cos(beta))*N`` with ``beta = (x - s)*kc`` and ``R = 1/kc + d``.
+    """
+    roll, kc, d = x - frames.s, cutter.kc, cutter.depth
+    if kc == 0.0:
+        return frames.t * (roll - d * w)
+    beta = roll * kc
+    lift = 2.0 * np.sin(0.5 * beta) ** 2 / kc
+    return frames.t * ((1.0 / kc + d) * np.sin(beta) + (lift - d * np.cos(beta)) * w)

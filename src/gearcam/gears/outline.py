@@ -1,0 +1,274 @@
+"""The outline of a wheel: flanks, fillets, root lands and tips put together, trimmed and proved valid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.gears.flank import Kind, Rows, Toothing
+from gearcam.gears.sampling import Sampler, as_pairs
+from gearcam.gears.spaces import (
+    ROWS_PER_TOOTH,
+    Crossing,
+    entangled,
+    join,
+    meet,
+    regular_rows,
+    select,
+    untangle,
+)
+from gearcam.gears.tips import TipEnds, feet, find_tips
+from gearcam.gears.undercut import Undercut, find_cusps
+from gearcam.numeric.contour import Contour
+from gearcam.tolerances import Tolerances
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Flanks:
+    """Every flank of a wheel and where it ends: sigma = +1 of teeth 1 to z, then sigma = -1.
+
+    Parameters
+    ----------
+    sf, sigma : (2z,) arrays, mm and 1
+        Place on the pitch curve and side.
+    cusps : Undercut
+        Cusps.
+    tips : TipEnds
+        Upper ends.
+    lowest, highest : (2z,) arrays, mm
+        Reach w of the ends of what is left of each flank.
+    """
+
+    sf: Array
+    sigma: Array
+    cusps: Undercut
+    tips: TipEnds
+    lowest: Array
+    highest: Array
+
+    @property
+    def undercut(self) -> Mask:
+        """Whether a flank turns back on itself between its joint and its tip, (2z,)."""
+        return np.isfinite(self.cusps.dedendum) | np.isfinite(self.cusps.addendum)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Outline:
+    """A wheel's outline.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        Its curves, loops taken out, closed, rising s.
+    flanks : Flanks
+        Where each flank ends.
+    tolerance : float, mm
+        Largest chord error.
+    oversampling : int
+        Dense points per chord.
+    """
+
+    toothing: Toothing
+    rows: Rows
+    flanks: Flanks
+    tolerance: float
+    oversampling: int
+
+    @cached_property
+    def sampler(self) -> Sampler:
+        """The curves with the density of points that the tolerance asks for."""
+        return Sampler(toothing=self.toothing, rows=self.rows, tolerance=self.tolerance)
+
+    @cached_property
+    def points(self) -> Array:
+        """Vertices of the adaptive polygon, (n, 2), mm, counter-clockwise."""
+        points = as_pairs(self.sampler.chords[1])
+        return points[::-1] if self.toothing.wheel == 2 else points
+
+    @property
+    def chord_error(self) -> float:
+        """Largest measured distance of the curve from its chords, mm."""
+        return self.sampler.chords[2]
+
+    @cached_property
+    def contour(self) -> Contour:
+        """The outline with dense points and tangents, for arcs, and its polygon."""
+        return Contour(
+            runs=self.sampler.runs(self.oversampling, reverse=self.toothing.wheel == 2),
+            vertices=self.points,
+            tolerance=self.tolerance,
+            chord_error=self.chord_error,
+        )
+
+    @cached_property
+    def tip_thickness(self) -> Array:
+        """Distance between the upper ends of each tooth's flanks, (z,), mm."""
+        z = self.toothing.teeth
+        frames = self.toothing.frames(self.flanks.tips.phi)
+        ends = self.toothing.flank_points(frames, self.flanks.sf, self.flanks.sigma)
+        return np.abs(ends[:z] - ends[z:])
+
+    @cached_property
+    def undercut_teeth(self) -> tuple[int, ...]:
+        """Numbers of the teeth with an undercut flank on either side."""
+        z = self.toothing.teeth
+        either = self.flanks.undercut[:z] | self.flanks.undercut[z:]
+        return tuple(int(k) + 1 for k in np.flatnonzero(either))
+
+
+def build_outline(
+    toothing: Toothing, mate_reach: float, tolerance: float, tolerances: Tolerances
+) -> Outline:
+    """Build the outline of a wheel.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    mate_reach : float, mm
+        Reach of the mate's flanks below its pitch curve: beyond it there is nothing to touch but the
+        mate's fillet, so this wheel's flanks end there.
+    tolerance : float, mm
+        Largest chord error.
+    tolerances : Tolerances
+        Inner accuracy.
+
+    Returns
+    -------
+    Outline
+        A simple closed curve.
+
+    Raises
+    ------
+    InfeasibleError
+        If a tooth is cut away.
+    """
+    flanks = _find_flanks(toothing, mate_reach)
+    rows = regular_rows(toothing, flanks.tips)
+    spaces = entangled(toothing, rows, flanks.cusps)
+    rows, flanks = _assemble(toothing, rows, flanks, spaces)
+    outline = Outline(
+        toothing=toothing,
+        rows=rows,
+        flanks=flanks,
+        tolerance=tolerance,
+        oversampling=tolerances.oversampling,
+    )
+    _demand_simple(outline)
+    return outline
+
+
+def _find_flanks(toothing: Toothing, mate_reach: float) -> Flanks:
+    half, z = toothing.cutter.half_space, toothing.teeth
+    sf = np.concatenate([toothing.tooth_places + half, toothing.tooth_places - half])
+    sigma = np.repeat([1.0, -1.0], z)
+    cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
+    tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
+    tips = _sharpen(toothing, sf, sigma, tips)
+    highest = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+    # A cusp beyond the tip is nobody's concern.
+    addendum = np.where(cusps.addendum <= highest * (1.0 + 1e-12), cusps.addendum, np.inf)
+    lowest = np.full(2 * z, -toothing.cutter.reach)
+    return Flanks(
+        sf=sf,
+        sigma=sigma,
+        cusps=Undercut(dedendum=cusps.dedendum, addendum=addendum),
+        tips=tips,
+        lowest=lowest,
+        highest=highest,
+    )
+
+
+def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipEnds:
+    """End the flanks of pointed teeth where they cross."""
+    z = toothing.teeth
+    pointed = np.flatnonzero(tips.foot[:z] <= tips.foot[z:])
+    if pointed.size == 0:
+        return tips
+    phi, foot, height = tips.phi.copy(), tips.foot.copy(), tips.height.copy()
+    full = tips.full.copy()
+    base = toothing.rolling.angle(sf)
+    zero = np.zeros(2 * z)
+    rows = Rows(
+        kind=np.full(2 * z, Kind.FLANK),
+        sf=sf,
+        sigma=sigma,
+        start=base,
+        end=tips.phi,
+        low=zero,
+        high=zero,
+        corner=zero.astype(bool),
+        tooth=np.tile(np.arange(z) + 1, 2),
+    )
+    for tooth in pointed:
+        found = meet(toothing, rows, int(tooth), int(z + tooth))
+        if found is not None:
+            phi[tooth], phi[z + tooth] = found.leaves, found.enters
+            full[[tooth, z + tooth]] = False
+    frames = toothing.frames(phi[pointed])
+    points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
+    low, high = base[z + pointed], base[pointed]
+    middle = feet(toothing, points, low, high, 0.5 * (low + high))
+    under = toothing.frames(middle)
+    for side in (pointed, z + pointed):
+        foot[side], height[side] = middle, np.abs(points - under.p)
+    return replace(tips, phi=phi, foot=foot, height=height, full=full)
+
+
+def _assemble(
+    toothing: Toothing, rows: Rows, flanks: Flanks, spaces: NDArray[np.int64]
+) -> tuple[Rows, Flanks]:
+    """Replace entangled spaces by untangled ones and shorten the flanks they trim."""
+    lowest = flanks.lowest.copy()
+    parts, done = [], 0
+    for space, (part, crossings) in zip(spaces, untangle(toothing, rows, spaces), strict=True):
+        first = ROWS_PER_TOOTH * int(space)
+        parts += [select(rows, np.arange(done, first)), part]
+        done = first + ROWS_PER_TOOTH
+        _trim(toothing, rows, lowest, crossings)
+    parts.append(select(rows, np.arange(done, len(rows.kind))))
+    joined = join(parts)
+    pointed = (joined.kind == Kind.TIP) & (joined.start == joined.end)
+    return select(joined, np.flatnonzero(~pointed)), replace(flanks, lowest=lowest)
+
+
+def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossing]) -> None:
+    """Write down how far the flanks of an untangled space still reach."""
+    z = toothing.teeth
+    for crossing in crossings:
+        for number, phi in ((crossing.before, crossing.leaves), (crossing.after, crossing.enters)):
+            if rows.kind[number] == Kind.FLANK:
+                sf, sigma = rows.sf[number], rows.sigma[number]
+                flank = int(rows.tooth[number]) - 1 + (0 if sigma > 0 else z)
+                lowest[flank] = sigma * (sf - float(toothing.rolling.arc_length(phi)))
+
+
+def _demand_simple(outline: Outline) -> None:
+    """Refuse an outline that crosses itself: a tooth has been cut away, or two wheels' parts meet."""
+    from shapely import LinearRing, is_valid_reason
+
+    ring = LinearRing(outline.points)
+    if ring.is_simple and not np.any(np.all(np.diff(outline.points, axis=0) == 0.0, axis=1)):
+        return
+    cutter = outline.toothing.cutter
+    kappa = float(outline.toothing.rolling.curvature_extremes(outline.toothing.wheel)[1].max())
+    largest = np.sin(cutter.alpha) ** 2 / kappa
+    from shapely import Polygon
+
+    raise InfeasibleError(
+        f"wheel {outline.toothing.wheel} is not one piece: undercut cuts a tooth away",
+        where=is_valid_reason(Polygon(outline.points)),
+        value=outline.toothing.pitch / np.pi,
+        limit=largest,
+        unit="mm",
+        nearest=f"up to a module of {largest:.6g} mm nothing is undercut; take more teeth",
+    )

@@ -1,0 +1,251 @@
+"""Two centrodes that roll on each other, and the frames on them.
+
+Both wheels share one parameter, the driver angle `phi` (rad, any number of turns), and one arc length
+``s(phi)``: rolling gives equal lengths. At `phi` the wheel carries the *frame* of its pitch point in its
+own coordinates: point P, unit tangent T (rising s), outward unit normal ``N = w*T`` with ``w = -1j`` on
+wheel 1 (where s runs counter-clockwise) and ``w = +1j`` on wheel 2 (clockwise), and the curvature kappa,
+so that ``dT/ds = -kappa*N`` and ``dN/ds = +kappa*T`` on both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.laws.base import RatioLaw
+from gearcam.numeric.chebyshev import Expansion, expand
+from gearcam.numeric.jets import Jet, sqrt
+from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.roots import newton_in_bracket
+from gearcam.tolerances import Tolerances
+
+Array = NDArray[np.float64]
+Plane = NDArray[np.complex128]
+Wheel = Literal[1, 2]
+
+TURN = {1: -1j, 2: 1j}
+"""N = TURN[wheel] * T."""
+
+
+class Frames(NamedTuple):
+    """Frames of a centrode at driver angles: arrays of one shape.
+
+    Parameters
+    ----------
+    p, t : complex array, mm and 1
+        Point and unit tangent.
+    kappa : array, 1/mm
+        Curvature, positive for convex.
+    speed : array, mm/rad
+        ds/dphi.
+    s : array, mm
+        Arc length.
+    """
+
+    p: Plane
+    t: Plane
+    kappa: Array
+    speed: Array
+    s: Array
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rolling:
+    """The pair of centrodes of an external pair.
+
+    Parameters
+    ----------
+    law : RatioLaw
+        Their ratio.
+    center_distance : float, mm
+        Distance of the shafts, A.
+    unit_arc : Expansion
+        Arc length over one lobe for A = 1.
+    """
+
+    law: RatioLaw
+    center_distance: float
+    unit_arc: Expansion
+
+    @property
+    def lobe_length(self) -> float:
+        """Length of one lobe, mm; the same on both wheels."""
+        return self.center_distance * self.unit_arc.last
+
+    def lobe_count(self, wheel: Wheel) -> int:
+        """Return the number of lobes of a wheel."""
+        return self.law.lobes.n1 if wheel == 1 else self.law.lobes.n2
+
+    def length(self, wheel: Wheel) -> float:
+        """Return the length of a wheel's centrode, mm."""
+        return self.lobe_length * self.lobe_count(wheel)
+
+    def arc_length(self, phi: ArrayLike) -> Array:
+        """Return s, mm, at driver angles, rad."""
+        period = self.law.lobes.period
+        turns = np.floor(np.asarray(phi, dtype=float) / period)
+        return (self.unit_arc(phi - turns * period) + turns * self.unit_arc.last) * (
+            self.center_distance
+        )
+
+    def angle(self, s: ArrayLike) -> Array:
+        """Return the driver angles, rad, at arc lengths, mm: a table, then Newton in its bracket."""
+        lobe, period = self.unit_arc.last, self.law.lobes.period
+        unit = np.asarray(s, dtype=float) / self.center_distance
+        turns = np.floor(unit / lobe)
+        rest = unit - turns * lobe
+        angles, arcs = self._table
+        index = np.clip(np.searchsorted(arcs, rest, side="right") - 1, 0, len(arcs) - 2)
+        low, high = angles[index], angles[index + 1]
+        start = low + (high - low) * (rest - arcs[index]) / (arcs[index + 1] - arcs[index])
+
+        def miss(phi: Array) -> tuple[Array, Array]:
+            return self.unit_arc(phi) - rest, self._unit_speed(phi)
+
+        pad = 1e-12 * period
+        phi = newton_in_bracket(miss, low - pad, high + pad, start, 4e-16 * period)
+        return phi + turns * period
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        angles = np.linspace(0.0, self.law.lobes.period, 1025)
+        return angles, np.append(self.unit_arc(angles[:-1]), self.unit_arc.last)
+
+    def _unit_speed(self, phi: Array) -> Array:
+        return unit_speed(self.law, phi)
+
+    def frames(self, wheel: Wheel, phi: ArrayLike) -> Frames:
+        """Return the frames of a wheel at driver angles.
+
+        Parameters
+        ----------
+        wheel : {1, 2}
+            Driver or driven wheel.
+        phi : array, rad
+            Driver angles.
+
+        Returns
+        -------
+        Frames
+            In the wheel's own coordinates (wheel 1: polar angle phi1; wheel 2: pi - phi2).
+
+        Notes
+        -----
+        With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and ``q*exp(-1j*phi2)``, so that
+        the speed ``|q|`` is common to both. Curvatures from the second derivatives.
+        """
+        phi = np.asarray(phi, dtype=float)
+        i, di, ddi = self.law.derivatives(phi, 2)
+        a = 1.0 / (1.0 + i)
+        r = self.center_distance * i * a
+        dr = self.center_distance * a * a * di
+        ddr = self.center_distance * a * a * (ddi - 2.0 * a * di * di)
+        speed = np.hypot(r, dr)
+        if wheel == 1:
+            pole = np.exp(1j * phi)
+            point = r * pole
+            kappa = (r * r + 2.0 * dr * dr - r * ddr) / speed**3
+        else:
+            pole = np.exp(-1j * self.law.phi2(phi))
+            point = (r - self.center_distance) * pole
+            kappa = (i * r * r + r * ddr + (i - 1.0) * dr * dr) / speed**3
+        return Frames(point, (dr + 1j * r) / speed * pole, kappa, speed, self.arc_length(phi))
+
+    def curvature_extremes(self, wheel: Wheel) -> tuple[Array, Array]:
+        """Return all extremes of a wheel's curvature over one lobe: driver angles, rad, and 1/mm."""
+        return self._curvature_extremes[wheel - 1]
+
+    @cached_property
+    def _curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        return self._find_extremes(1), self._find_extremes(2)
+
+    def _find_extremes(self, wheel: Wheel) -> tuple[Array, Array]:
+        def curvature(phi: Array) -> tuple[Array, Array]:
+            i, di, ddi, dddi = self.law.ratio.derivatives(phi, 3)
+            i0, i1, i2 = Jet([i, di]), Jet([di, ddi]), Jet([ddi, dddi])
+            a = 1.0 / (1.0 + i0)
+            r, dr, ddr = i0 * a, a * a * i1, a * a * (i2 - 2.0 * (a * i1 * i1))
+            speed = sqrt(r * r + dr * dr)
+            top = (
+                r * r + 2.0 * (dr * dr) - r * ddr
+                if wheel == 1
+                else i0 * r * r + r * ddr + (i0 - 1.0) * (dr * dr)
+            )
+            kappa = top / (speed * speed * speed)
+            return kappa.c[0], kappa.c[1]
+
+        places, values = extremes(curvature, self.law.knots)
+        return places, values / self.center_distance
+
+    @cached_property
+    def arc_error(self) -> float:
+        """Estimated error of arc lengths, mm: truncation of the expansion and rounding over a turn."""
+        return self.center_distance * self.unit_arc.error + 4.0 * np.finfo(float).eps * max(
+            self.length(1), self.length(2)
+        )
+
+
+def unit_speed(law: RatioLaw, phi: Array) -> Array:
+    """Return ds/dphi for unit centre distance at driver angles within the first lobe.
+
+    Parameters
+    ----------
+    law : RatioLaw
+        The ratio law.
+    phi : array, rad
+        Driver angles in ``[0, period]``.
+
+    Returns
+    -------
+    array
+        ``sqrt(r1^2 + r1'^2)/A``.
+    """
+    i, di = law.ratio.derivatives(phi, 1)
+    a = 1.0 / (1.0 + i)
+    return np.hypot(i * a, a * a * di)
+
+
+def roll(
+    law: RatioLaw,
+    *,
+    teeth: tuple[int, int],
+    center_distance: float | None,
+    module: float | None,
+    tolerances: Tolerances,
+) -> Rolling:
+    """Roll the centrodes of a law at a given centre distance or module.
+
+    Parameters
+    ----------
+    law : RatioLaw
+        The ratio law.
+    teeth : (int, int)
+        Tooth counts.
+    center_distance, module : float or None, mm
+        Exactly one is given; the module is ``L/(pi*z)``.
+    tolerances : Tolerances
+        Accuracy of the arc length.
+
+    Returns
+    -------
+    Rolling
+        At its final size.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of the two sizes is given.
+    """
+    arc = expand(lambda phi: unit_speed(law, phi), law.knots, tolerances.expansion)
+    unit_arc = arc.antiderivative()
+    if center_distance is not None and module is None:
+        size = center_distance
+    elif module is not None and center_distance is None:
+        size = module * np.pi * teeth[0] / (unit_arc.last * law.lobes.n1)
+    else:
+        raise ValueError("give exactly one of center_distance and module")
+    return Rolling(law=law, center_distance=size, unit_arc=unit_arc)

@@ -1,0 +1,165 @@
+"""From curves to contours: as few points as the tolerance allows, with the error measured.
+
+A chord of a curve of curvature kappa and length l is off by ``kappa*l^2/8``. The points are therefore
+spread evenly over ``J = integral of sqrt(kappa/(8*tolerance)) ds``, which is the least number of chords,
+rounded up for each stretch between corners. Where the curvature jumps inside a chord the error is
+measured, and the chord is halved if it is too large.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.gears.flank import Rows, Toothing, trace
+from gearcam.gears.rolling import Plane
+from gearcam.numeric.contour import Run
+
+Array = NDArray[np.float64]
+
+_PROBES = 24
+"""Intervals per row on which the density of points is found."""
+
+_FILL = 0.97
+"""Share of the tolerance's chord that is used: the density is known to a few percent only."""
+
+_ROUNDS = 6
+"""Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
+
+_FRACTIONS = np.array([0.25, 0.5, 0.75])
+"""Places inside a chord at which its error is measured."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Sampler:
+    """The rows of a wheel with the density of points that a tolerance asks for.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        Its curves, in order, closed.
+    tolerance : float, mm
+        Largest chord error.
+    """
+
+    toothing: Toothing
+    rows: Rows
+    tolerance: float
+
+    @cached_property
+    def density(self) -> Array:
+        """J from the start at ``_PROBES`` places a row, rising; one more for the end."""
+        count = len(self.rows.kind)
+        place = np.arange(count)[:, None] + np.linspace(0.0, 1.0, _PROBES + 1)
+        index = np.repeat(np.arange(count), _PROBES + 1)
+        phi = self._angles(index, np.tile(np.linspace(0.0, 1.0, _PROBES + 1), count))
+        points, tangents = (v.reshape(place.shape) for v in self._trace(index, phi))
+        turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
+        chords = np.abs(np.diff(points, axis=1))
+        steps = np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
+        steps += 1e-9 * max(1.0, float(steps.max()))
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    @property
+    def least(self) -> float:
+        """The number of chords that the curvature asks for: integral of sqrt(kappa/(8 tol)) ds."""
+        return float(self.density[-1])
+
+    def _angles(self, index: NDArray[np.int64], fraction: Array) -> Array:
+        start, end = self.rows.start[index], self.rows.end[index]
+        return start + fraction * (end - start)
+
+    def _trace(self, index: NDArray[np.int64], phi: Array) -> tuple[Plane, Plane]:
+        return trace(self.toothing, self.rows, index, phi)
+
+    def at(self, j: Array) -> tuple[Plane, Plane]:
+        """Return points and forward unit tangents at places given by their J (after a corner)."""
+        place = np.interp(j, self.density, np.arange(len(self.density)) / _PROBES)
+        index = np.minimum(place.astype(np.int64), len(self.rows.kind) - 1)
+        return self._trace(index, self._angles(index, place - index))
+
+    @cached_property
+    def corners(self) -> Array:
+        """J at the corners; the first is the start."""
+        return self.density[:-1][::_PROBES][self.rows.corner]
+
+    @cached_property
+    def chords(self) -> tuple[Array, Array, float]:
+        """Vertices of the adaptive polygon: their J (closed: start and end), points, measured error."""
+        ends = np.append(self.corners, self.least)
+        counts = np.maximum(np.ceil(np.diff(ends) / _FILL).astype(int), 1)
+        first = np.repeat(ends[:-1], counts)
+        step = np.repeat(np.diff(ends) / counts, counts)
+        number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        vertices = np.append(first + number * step, self.least)
+        points = self.at(vertices[:-1])[0]
+        points = np.append(points, points[0])
+        errors = np.full(len(vertices) - 1, np.inf)
+        worst = 0.0
+        for _ in range(_ROUNDS):
+            todo = np.flatnonzero(np.isinf(errors))
+            errors[todo] = self._errors(vertices, points, todo)
+            worst = float(errors.max())
+            bad = np.flatnonzero(errors > self.tolerance)
+            if bad.size == 0:
+                break
+            middle = 0.5 * (vertices[bad] + vertices[bad + 1])
+            errors[bad] = np.inf
+            vertices = np.insert(vertices, bad + 1, middle)
+            points = np.insert(points, bad + 1, self.at(middle)[0])
+            errors = np.insert(errors, bad + 1, np.inf)
+        return vertices, points[:-1], worst
+
+    def _errors(self, vertices: Array, points: Plane, todo: NDArray[np.int64]) -> Array:
+        """Largest distance of three curve points from each chord."""
+        low, high = vertices[todo], vertices[todo + 1]
+        inner = low + (high - low) * _FRACTIONS[:, None]
+        curve = self.at(inner.ravel())[0].reshape(inner.shape)
+        start, chord = points[todo], points[todo + 1] - points[todo]
+        off = np.imag(np.conj(chord) * (curve - start))
+        return np.abs(off).max(axis=0) / np.maximum(np.abs(chord), np.finfo(float).tiny)
+
+    def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
+        """Return the dense runs between corners.
+
+        Parameters
+        ----------
+        oversampling : int
+            Points per chord of the polygon.
+        reverse : bool
+            Whether the rows run clockwise and the runs are to be turned round.
+
+        Returns
+        -------
+        tuple of Run
+            Counter-clockwise; the vertices of the polygon are among their points.
+        """
+        vertices = self.chords[0]
+        steps = np.arange(oversampling) / oversampling
+        j = np.append((vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel(), self.least)
+        points, tangents = self.at(j)
+        cuts = np.searchsorted(j, np.append(self.corners, self.least))
+        runs = []
+        for start, end in zip(cuts[:-1], cuts[1:], strict=True):
+            before_corner = self._left_end(j[end])
+            p = np.append(points[start:end], before_corner[0])
+            t = np.append(tangents[start:end], before_corner[1])
+            if reverse:
+                p, t = p[::-1], -t[::-1]
+            runs.append(Run(points=as_pairs(p), tangents=as_pairs(t)))
+        return tuple(runs[::-1] if reverse else runs)
+
+    def _left_end(self, j: float) -> tuple[Plane, Plane]:
+        """Point and tangent at the end of the row that ends at a corner."""
+        row = int(np.searchsorted(self.density[:: _PROBES], j)) - 1
+        return self._trace(np.array([row]), self.rows.end[row : row + 1])
+
+
+def as_pairs(points: Plane) -> Array:
+    """Return complex points as an (n, 2) array."""
+    return np.stack([points.real, points.imag], axis=1)

@@ -1,0 +1,316 @@
+"""The chain of curves around a wheel, space by space, with loops taken out.
+
+Between two teeth run five curves: flank, fillet, root land, fillet, flank; over a tooth runs the tip. Where
+nothing is undercut they join smoothly. An undercut flank crosses its fillet, sharp roots let fillets cross
+each other, a root curvature below the dedendum makes the land cross itself: then the chain has loops, which
+the cutter has swept away. `untangle` finds each crossing on the true curves and takes the loop out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.gears.flank import Kind, Rows, Toothing, trace
+from gearcam.gears.rolling import Plane
+from gearcam.gears.tips import TipEnds
+from gearcam.gears.undercut import Undercut
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+ROWS_PER_TOOTH = 6
+_SAMPLES = 49
+_CELLS = 16
+_LEVELS = 9
+"""Each level narrows a crossing 16 times; nine reach rounding from any start."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing:
+    """Two curves that cross: numbers of their rows, and the driver angle on each, rad."""
+
+    before: int
+    leaves: float
+    after: int
+    enters: float
+
+
+def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
+    """Return the rows of a wheel as if nothing were undercut: five a space and one a tip.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    tips : TipEnds
+        Ends of its flanks: the sigma = +1 flanks of all teeth, then the sigma = -1 flanks.
+
+    Returns
+    -------
+    Rows
+        Row ``6*j + k`` is curve k of the space after tooth j + 1; k = 5 is the tip of the tooth after it.
+    """
+    cutter, z = toothing.cutter, toothing.teeth
+    half, length = cutter.half_space, toothing.rolling.length(toothing.wheel)
+    plus = toothing.tooth_places + half
+    minus = np.append(toothing.tooth_places[1:], toothing.tooth_places[0] + length) - half
+    joints = toothing.rolling.angle(
+        np.stack(
+            [
+                plus + cutter.reach,
+                plus + cutter.offset,
+                minus - cutter.offset,
+                minus - cutter.reach,
+            ]
+        )
+    )
+    # Flank and tip ends are known for tooth 1 to z; the last space ends at tooth 1, one turn on.
+    turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+    following = np.append(np.arange(1, z), 0)
+    wrap = np.append(np.zeros(z - 1), turn)
+    top_plus = tips.phi[:z]
+    top_minus = tips.phi[z + following] + wrap
+    tip_start, tip_end = tips.foot[z + following] + wrap, tips.foot[following] + wrap
+    zero, one = np.zeros(z), np.ones(z)
+    land = np.full(z, -cutter.dedendum)
+    table = {
+        "kind": [Kind.FLANK, Kind.FILLET, Kind.LAND, Kind.FILLET, Kind.FLANK, Kind.TIP],
+        "sf": [plus, plus, zero, minus, minus, zero],
+        "sigma": [one, one, zero, -one, -one, zero],
+        "start": [top_plus, joints[0], joints[1], joints[2], joints[3], tip_start],
+        "end": [joints[0], joints[1], joints[2], joints[3], top_minus, tip_end],
+        "low": [zero, zero, land, zero, zero, tips.height[z + following]],
+        "high": [zero, zero, land, zero, zero, tips.height[following]],
+        "corner": [True, False, False, False, False, True],
+        "tooth": [*[np.arange(z) + 1] * 3, *[following + 1] * 3],
+    }
+    columns = {
+        name: np.stack([np.broadcast_to(value, z) for value in values], axis=1).ravel()
+        for name, values in table.items()
+    }
+    return Rows(**columns)
+
+
+def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
+    """Return the spaces (from 0) whose chain of curves may have loops.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        From `regular_rows`.
+    cusps : Undercut
+        Cusps of the sigma = +1 flanks, then of the sigma = -1 flanks.
+
+    Returns
+    -------
+    (k,) int array
+        Spaces with an undercut flank, with a root sharper than the dedendum, or without a land.
+    """
+    z = toothing.teeth
+    undercut = np.isfinite(cusps.dedendum)
+    loops = undercut[:z] | np.roll(undercut[z:], -1)
+    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    if kappa.max() * toothing.cutter.dedendum >= 0.9:
+        start, end = rows.start[1::ROWS_PER_TOOTH], rows.end[3::ROWS_PER_TOOTH]
+        steps = start + (end - start) * np.linspace(0.0, 1.0, 65)[:, None]
+        sharp = toothing.frames(steps).kappa * toothing.cutter.dedendum >= 0.9
+        loops = loops | sharp.any(axis=0)
+    return np.flatnonzero(loops)
+
+
+def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, list[Crossing]]]:
+    """Take the loops out of spaces.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        From `regular_rows`.
+    spaces : (k,) int array
+        Which spaces, from 0.
+
+    Returns
+    -------
+    list of (Rows, list of Crossing)
+        For each space the curves that are left, with the tip behind them, and the crossings found, in
+        order; none where the chain has no loop.
+    """
+    phi, index = _sample(rows, spaces)
+    points, _ = trace(toothing, rows, index.ravel(), phi.ravel())
+    found: list[tuple[int, int, int]] = []
+    for number, chain in enumerate(points.reshape(phi.shape)):
+        found += [(number, before, after) for before, after in _walk(chain)]
+    crossings: list[list[Crossing]] = [[] for _ in spaces]
+    if found:
+        number, before, after = np.array(found).T
+        ends = [_segment(rows, index[number], phi[number], k) for k in (before, after)]
+        refined = _refine(toothing, rows, *ends)
+        for k, crossing in zip(number, refined, strict=True):
+            crossings[k].append(crossing)
+    return [
+        (_cut(rows, int(space), chain), chain) for space, chain in zip(spaces, crossings, strict=True)
+    ]
+
+
+def _cut(rows: Rows, space: int, crossings: list[Crossing]) -> Rows:
+    """Return the rows of a space, changing over at each crossing."""
+    row = ROWS_PER_TOOTH * space
+    last = row + ROWS_PER_TOOTH - 1
+    start, after_corner = float(rows.start[row]), True
+    pieces: list[tuple[int, float, float, bool]] = []
+
+    def travel(stop: int, leaves: float) -> None:
+        for number in range(row, stop + 1):
+            begin = start if number == row else float(rows.start[number])
+            finish = leaves if number == stop else float(rows.end[number])
+            corner = after_corner if number == row else bool(rows.corner[number])
+            pieces.append((number, begin, finish, corner))
+
+    for crossing in crossings:
+        travel(crossing.before, crossing.leaves)
+        row, start = crossing.after, crossing.enters
+    travel(last, float(rows.end[last]))
+    number, begin, end, corner = (np.array(column) for column in zip(*pieces, strict=True))
+    return replace(select(rows, number), start=begin, end=end, corner=corner)
+
+
+def meet(toothing: Toothing, rows: Rows, one: int, other: int) -> Crossing | None:
+    """Return where two rows cross, or None if they do not.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        Its curves.
+    one, other : int
+        Numbers of the rows.
+
+    Returns
+    -------
+    Crossing or None
+        With driver angles, rad.
+    """
+    t = np.linspace(0.0, 1.0, 4 * _SAMPLES)
+    index = np.repeat([one, other], len(t))
+    span = (rows.end - rows.start)[index]
+    phi = rows.start[index] + span * np.tile(t, 2)
+    points, _ = trace(toothing, rows, index, phi)
+    i, j = _crossing_segments(points[: len(t)], points[len(t) :])
+    if i.size == 0:
+        return None
+    ends = [
+        _segment(rows, index[None], phi[None], np.array([k]))
+        for k in (int(i[0]), int(j[0]) + len(t))
+    ]
+    return _refine(toothing, rows, *ends)[0]
+
+
+def select(rows: Rows, index: Index) -> Rows:
+    """Return some rows, in the order of `index`."""
+    return Rows(**{name: getattr(rows, name)[index] for name in Rows.__dataclass_fields__})
+
+
+def join(parts: list[Rows]) -> Rows:
+    """Return rows one after the other."""
+    return Rows(
+        **{
+            name: np.concatenate([getattr(part, name) for part in parts])
+            for name in Rows.__dataclass_fields__
+        }
+    )
+
+
+def _sample(rows: Rows, spaces: Index) -> tuple[Array, Index]:
+    """Sample the five curves of spaces, ever denser towards the joints, where loops can be tiny.
+
+    Returns driver angles and row numbers, a space a line.
+    """
+    t = np.linspace(0.0, 1.0, _SAMPLES)
+    towards_start, towards_end = t**3, 1.0 - (1.0 - t) ** 3
+    grading = [towards_end, towards_start[1:], t[1:], towards_end[1:], towards_start[1:]]
+    curve = np.concatenate([np.full(len(values), k) for k, values in enumerate(grading)])
+    index = ROWS_PER_TOOTH * spaces[:, None] + curve
+    return rows.start[index] + (rows.end - rows.start)[index] * np.concatenate(grading), index
+
+
+def _segment(rows: Rows, index: Index, phi: Array, segment: Index) -> tuple[Index, Array, Array]:
+    """Row and driver angles at the ends of sample segments (one a line of samples)."""
+    line = np.arange(len(segment))
+    row = index[line, segment + 1]
+    same = index[line, segment] == row
+    return row, np.where(same, phi[line, segment], rows.start[row]), phi[line, segment + 1]
+
+
+def _side(p: Plane, q: Plane, x: Plane) -> Array:
+    return np.imag(np.conj(q - p) * (x - p))
+
+
+def _cross(a: Plane, b: Plane, c: Plane, d: Plane) -> NDArray[np.bool_]:
+    """Whether segments a-b and c-d cross or touch."""
+    return (_side(a, b, c) * _side(a, b, d) <= 0.0) & (_side(c, d, a) * _side(c, d, b) <= 0.0)
+
+
+def _crossing_segments(points: Plane, others: Plane) -> tuple[Index, Index]:
+    """Segments of one polyline that cross segments of another: numbers of both."""
+
+    def boxes(chain: Plane) -> list[Array]:
+        pairs = [np.stack([v[:-1], v[1:]]) for v in (chain.real, chain.imag)]
+        return [pairs[0].min(0), pairs[0].max(0), pairs[1].min(0), pairs[1].max(0)]
+
+    left, right, low, high = (v[:, None] for v in boxes(points))
+    left2, right2, low2, high2 = boxes(others)
+    near = (left <= right2) & (left2 <= right) & (low <= high2) & (low2 <= high)
+    i, j = np.nonzero(near)
+    hit = _cross(points[i], points[i + 1], others[j], others[j + 1])
+    hit &= (points[i] != points[i + 1]) & (others[j] != others[j + 1])
+    return i[hit], j[hit]
+
+
+def _walk(points: Plane) -> list[tuple[int, int]]:
+    """Walk a polyline from its start and leave it at each crossing for its later branch."""
+    i, j = _crossing_segments(points, points)
+    later = j > i + 1
+    i, j = i[later], j[later]
+    result, position = [], -1
+    while (i > position).any():
+        start = int(i[i > position].min())
+        end = int(j[i == start].max())
+        result.append((start, end))
+        position = end
+    return result
+
+
+def _refine(
+    toothing: Toothing,
+    rows: Rows,
+    one: tuple[Index, Array, Array],
+    other: tuple[Index, Array, Array],
+) -> list[Crossing]:
+    """Narrow crossings on the true curves, bracketed at every level: (row, low, high) of both."""
+    count = len(one[0])
+    row = np.stack([one[0], other[0]])
+    low, high = np.stack([one[1], other[1]]), np.stack([one[2], other[2]])
+    for _ in range(_LEVELS):
+        grid = low[..., None] + (high - low)[..., None] * np.linspace(0.0, 1.0, _CELLS + 1)
+        index = np.broadcast_to(row[..., None], grid.shape)
+        a, b = trace(toothing, rows, index.ravel(), grid.ravel())[0].reshape(grid.shape)
+        a, b = a[:, :, None], b[:, None, :]
+        hit = _cross(a[:, :-1], a[:, 1:], b[:, :, :-1], b[:, :, 1:]).reshape(count, -1)
+        cell = np.stack(np.divmod(hit.argmax(axis=1), _CELLS))[..., None]
+        found = hit.any(axis=1)
+        low = np.where(found, np.take_along_axis(grid, cell, axis=2)[..., 0], low)
+        high = np.where(found, np.take_along_axis(grid, cell + 1, axis=2)[..., 0], high)
+        if not found.any():
+            break
+    middle = 0.5 * (low + high)
+    return [
+        Crossing(before=int(r[0]), leaves=float(m[0]), after=int(r[1]), enters=float(m[1]))
+        for r, m in zip(row.T, middle.T, strict=True)
+    ]

@@ -1,0 +1,40 @@
+"""What a design says of a gear pair: the pair, the rack and nothing computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, param
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rack:
+    """The basic rack; heights in modules. The defaults are the common full-depth rack.
+
+    The tip radius is the largest that leaves a land: 0.38 leaves a straight flank to 0.999968 modules.
+    """
+
+    pressure_angle: float = param(
+        ANGLE, default=0.3490658503988659, ge=5, le=35, doc="pressure angle of the rack"
+    )
+    addendum: float = param(
+        NUMBER, default=1.0, gt=0.1, le=2, doc="tooth height above the pitch curve, in modules"
+    )
+    dedendum: float = param(
+        NUMBER, default=1.25, gt=0.1, le=2.5, doc="depth below the pitch curve, in modules"
+    )
+    tip_radius: float = param(
+        NUMBER, default=0.38, ge=0, le=1, doc="rounding of the cutter's tip, in modules"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairSpec:
+    """Exactly one of centre distance and module is given; the other is solved."""
+
+    center_distance: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6, doc="distance of the shafts"
+    )
+    module: float | None = param(LENGTH, default=None, gt=0, le=1e4, doc="module L/(pi*z)")
+    teeth: tuple[int, int] = param(COUNT, ge=3, le=10000, doc="tooth counts, driver first")
+    face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="width of the wheels")

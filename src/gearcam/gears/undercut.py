@@ -1,0 +1,121 @@
+"""Undercut: where a flank turns back on itself, tooth by tooth and side by side.
+
+A flank is regular while ``sigma*g = sin(alpha) + w*kappa*cos(alpha)`` is positive, with the curvature at
+the rolling point. On a convex centrode it can vanish below the pitch curve, on a concave one above; at a
+knot the curvature may jump, and g with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.gears.flank import Toothing
+from gearcam.numeric.roots import bracketed_root
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Undercut:
+    """Where flanks turn back on themselves: one entry a flank.
+
+    Parameters
+    ----------
+    dedendum, addendum : (n,) arrays, mm
+        Reach w at the first cusp below (negative) and above the pitch curve; -inf and +inf without one.
+    """
+
+    dedendum: Array
+    addendum: Array
+
+
+def find_cusps(
+    toothing: Toothing, sf: Array, sigma: Array, lowest: float, highest: float
+) -> Undercut:
+    """Find the first cusp of every flank on either side of the pitch curve, exactly.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    sf, sigma : (n,) arrays
+        Flanks.
+    lowest, highest : float, mm
+        Range of reach that a flank could have: down to the fillet joint, up to the tip.
+
+    Returns
+    -------
+    Undercut
+        A cusp is a sign change of g, at a root or at a jump of the curvature.
+    """
+    sine, cosine = np.sin(toothing.cutter.alpha), np.cos(toothing.cutter.alpha)
+    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    sides = []
+    for reach, worst in ((lowest, kappa.max()), (highest, kappa.min())):
+        cusp = np.full(sf.shape, np.copysign(np.inf, reach))
+        if sine + reach * cosine * worst <= 0.0:
+            cusp = _first_cusp(toothing, sf, sigma, reach)
+        sides.append(cusp)
+    return Undercut(dedendum=sides[0], addendum=sides[1])
+
+
+def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
+    """First zero of the regularity between w = 0 and `reach`, or an infinity of its sign."""
+
+    def regularity(phi: Array, at: Index) -> Array:
+        return toothing.regularity(toothing.frames(phi), sf[at], sigma[at])
+
+    grid = _cusp_grid(toothing, sf, sigma, reach)
+    at = np.broadcast_to(np.arange(len(sf))[:, None], grid.shape)
+    values = regularity(grid.ravel(), at.ravel()).reshape(grid.shape)
+    grid, values = _refine_minima(grid, values, regularity)
+    negative = values <= 0.0
+    first = np.argmax(negative, axis=1)
+    hit = np.flatnonzero(negative.any(axis=1))
+    result = np.full(sf.shape, np.copysign(np.inf, reach))
+    phi = bracketed_root(
+        lambda x: regularity(x, hit),
+        grid[hit, np.maximum(first[hit] - 1, 0)],
+        grid[hit, first[hit]],
+        1e-14 * toothing.rolling.law.lobes.period,
+    )
+    result[hit] = sigma[hit] * (sf[hit] - toothing.rolling.arc_length(phi))
+    return result
+
+
+def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
+    """Driver angles from w = 0 to `reach`, a flank a row, both sides of every knot among them."""
+    law = toothing.rolling.law
+    start, end = toothing.rolling.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
+    span, period = end - start, law.lobes.period
+    columns = [np.broadcast_to(np.linspace(0.0, 1.0, 65), (len(sf), 65))]
+    for knot in law.knots[:-1]:
+        nearest = knot + period * np.round((0.5 * (start + end) - knot) / period)
+        columns += [np.clip((nearest - start) / span + side, 0.0, 1.0) for side in (-1e-9, 1e-9)]
+    return start + span * np.sort(np.concatenate(columns, axis=1), axis=1)
+
+
+def _refine_minima(
+    grid: Array, values: Array, function: Callable[[Array, Index], Array]
+) -> tuple[Array, Array]:
+    """Replace samples at positive local minima near zero by the true minimum (golden section)."""
+    low = values[:, 1:-1]
+    dip = (low > 0.0) & (low < 0.05) & (low <= values[:, :-2]) & (low <= values[:, 2:])
+    rows, cols = np.nonzero(dip)
+    if rows.size == 0:
+        return grid, values
+    a, b = grid[rows, cols], grid[rows, cols + 2]
+    ratio = 0.5 * (np.sqrt(5.0) - 1.0)
+    for _ in range(45):
+        c, d = b - ratio * (b - a), a + ratio * (b - a)
+        left = function(c, rows) < function(d, rows)
+        a, b = np.where(left, a, c), np.where(left, d, b)
+    grid, values = grid.copy(), values.copy()
+    grid[rows, cols + 1] = 0.5 * (a + b)
+    values[rows, cols + 1] = function(0.5 * (a + b), rows)
+    return grid, values

@@ -1,0 +1,192 @@
+"""Laws by formula: the driven angle, the ratio, or the shape of the driver centrode, in phi1."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import Claim, LawEntry, Lobes, RatioLaw, angle_text, make_law, register
+from gearcam.laws.formula_syntax import FormulaError, parse
+from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.jets import FUNCTIONS, Jet
+from gearcam.numeric.piecewise import Piece
+from gearcam.numeric.roots import newton_in_bracket
+from gearcam.quantities import TEXT, param
+from gearcam.tolerances import Tolerances
+
+_NAMES = ("phi2", "ratio", "r1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Formula:
+    """Exactly one of three formulas; derivatives are exact (Taylor arithmetic), never differences."""
+
+    phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
+    ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
+    r1: str | None = param(TEXT, default=None, doc="driver centrode's radius at any scale")
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        given = [name for name in _NAMES if getattr(self, name) is not None]
+        if len(given) != 1:
+            state = "none is given" if not given else f"{' and '.join(given)} are given"
+            yield given[-1] if given else "phi2", None, state, "exactly one of phi2, ratio, r1"
+        for name in given:
+            try:
+                parse(getattr(self, name))
+            except FormulaError as error:
+                yield name, None, str(error), "+ - * / **, phi1, pi, numbers, " + ", ".join(FUNCTIONS)
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law.
+
+        Raises
+        ------
+        InfeasibleError
+            Where the formula is not finite, smooth, monotonic or periodic, or does not close.
+        """
+        if self.phi2 is not None:
+            return _from_motion(_compile(self.phi2), lobes, tolerances)
+        name = "ratio" if self.ratio is not None else "r1"
+        function = _compile(getattr(self, name) or "1")
+        _demand_positive(function, name, lobes)
+        solve = _from_ratio if self.ratio is not None else _from_driver
+        try:
+            return solve(function, lobes, tolerances)
+        except NotSmoothError as error:
+            state = "is not smooth" if error.finite else "is not finite"
+            raise InfeasibleError(f"{name} {state}", where=angle_text(error.place)) from error
+
+
+def _compile(text: str) -> Callable[[Jet], Jet]:
+    expression = parse(text)
+
+    def function(x: Jet) -> Jet:
+        with np.errstate(all="ignore"):
+            value = expression.evaluate(x, FUNCTIONS)
+            return value if isinstance(value, Jet) else 0.0 * x + value
+
+    return function
+
+
+def _demand_positive(function: Callable[[Jet], Jet], name: str, lobes: Lobes) -> None:
+    x = np.linspace(0.0, lobes.period, 2049)
+    values = function(Jet.variable(x, 0)).derivatives()[0]
+    for bad, state in ((~np.isfinite(values), "is not finite"), (values <= 0, "is not positive")):
+        if bad.any():
+            raise InfeasibleError(
+                f"{name} {state}", where=angle_text(x[bad][0]), limit=0.0, unit=""
+            )
+
+
+def _from_motion(motion: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+    """phi2 is given: the ratio is its derivative, and phi2 its integral in closed form."""
+
+    def ratio(x: Jet) -> Jet:
+        one_more = motion(Jet.variable(x.c[0], x.order + 1))
+        slopes = [(k + 1) * value for k, value in enumerate(one_more.c[1:])]
+        return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
+
+    x = np.linspace(0.0, lobes.period, 2049)
+    values, slopes = motion(Jet.variable(x, 1)).derivatives()
+    bad = ~np.isfinite(values) | ~np.isfinite(slopes)
+    if bad.any():
+        raise InfeasibleError("phi2 is not finite", where=angle_text(x[bad][0]))
+    if (slopes <= 0).any():
+        place = int(np.argmax(slopes <= 0))
+        raise InfeasibleError(
+            "phi2 is not monotonic: the driven wheel would turn back",
+            where=angle_text(x[place]),
+            value=float(slopes[place]),
+            limit=0.0,
+            nearest=f"the ratio there is {slopes[place]:.6g} and must be positive",
+        )
+    try:
+        expand(lambda t: ratio(Jet.variable(t, 0)).derivatives()[0], [0.0, lobes.period], tolerances.expansion)
+    except NotSmoothError as error:
+        raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
+    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances)
+
+
+def _from_ratio(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+    """The ratio is given up to a factor, which closure decides."""
+    total = expand(
+        lambda t: shape(Jet.variable(t, 0)).derivatives()[0], [0.0, lobes.period], tolerances.expansion
+    ).antiderivative()
+    factor = lobes.advance / total.last
+    piece = Piece(lambda x: factor * shape(x))
+    return make_law(
+        lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor}
+    )
+
+
+def _from_driver(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+    """The driver centrode is given: i = r/(c - r), with c the centre distance over the scale of r.
+
+    The driven angle over a lobe falls as c grows, from infinity at the largest r, so that there is one
+    root, between the largest r and the c that would close a wheel of that radius all around.
+    """
+    ends = np.array([0.0, lobes.period])
+
+    def radius(t: np.ndarray) -> np.ndarray:
+        return shape(Jet.variable(t, 0)).derivatives()[0]
+
+    mean = expand(radius, ends, tolerances.expansion).antiderivative().last / lobes.period
+    largest = float(radius(np.linspace(0.0, lobes.period, 2049)).max())
+    ratio = lobes.period / lobes.advance
+
+    def excess(c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        center = float(c)
+        tolerance = tolerances.expansion
+        driven = expand(lambda t: radius(t) / (center - radius(t)), ends, tolerance)
+        slope = expand(lambda t: radius(t) / (center - radius(t)) ** 2, ends, tolerance)
+        miss = lobes.advance - driven.antiderivative().last
+        return np.asarray(miss), np.asarray(slope.antiderivative().last)
+
+    low, high = largest * (1.0 + 1e-9), largest * (1.0 + ratio) * (1.0 + 1e-9)
+    start = min(max(mean * (1.0 + ratio), 0.75 * low + 0.25 * high), high)
+    center = float(newton_in_bracket(excess, low, high, start, 1e-15 * high))
+    piece = Piece(lambda x: shape(x) / (center - shape(x)))
+    solved = {"center_distance_over_scale": center}
+    return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
+
+
+def _claims() -> tuple[Claim, ...]:
+    turn = 2 * math.pi
+    root = math.sqrt(1 - 0.3**2)
+    return (
+        Claim(
+            parameters=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
+            ratio={0.0: 0.84, math.pi / 2: 1.16, math.pi / 4: 1.0},
+            motion={math.pi / 4: math.pi / 4 - 0.08, math.pi: math.pi, turn: turn},
+            continuity=3,
+        ),
+        Claim(
+            parameters=Formula(ratio="1/(1 + 0.3*cos(phi1))"),
+            ratio={0.0: root / 1.3, math.pi: root / 0.7, math.pi / 2: root},
+            motion={math.pi: math.pi, turn: turn, math.pi / 2: 2 * math.atan(math.sqrt(7 / 13))},
+            continuity=3,
+        ),
+        Claim(
+            parameters=Formula(r1="1/(1 + 0.5*cos(phi1))"),
+            ratio={0.0: 1 / 3, math.pi: 3.0, math.pi / 2: 0.6},
+            motion={math.pi: math.pi, math.pi / 2: 2 * math.atan(1 / 3), turn: turn},
+            continuity=3,
+        ),
+    )
+
+
+register(
+    LawEntry(
+        name="formula",
+        parameters=Formula,
+        doc="one formula in phi1: phi2 (closes by itself), ratio (scaled), or r1 (any scale)",
+        continuity="analytic where the formula is",
+        source="003 Table 1.1, the three hypotheses",
+        claims=_claims,
+    )
+)

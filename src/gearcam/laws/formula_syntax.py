@@ -1,0 +1,393 @@
+"""Formulas: text becomes an expression that can compute and nothing else.
+
+A *formula* is made of numbers, ``pi``, the driver angle ``phi1`` (rad), the operators
+``+ - * / **``, parentheses, and functions of one argument. The text is split into these words
+first, so that anything else is refused by its column in plain language; only then is it handed to
+Python's own grammar, and the syntax tree is checked against a list of allowed nodes and turned into
+a flat *program* for a stack of values. Nothing is ever executed by Python: no attributes,
+subscripts, comparisons, imports or other names can be reached.
+
+Numbers are read as floats and parts without ``phi1`` are computed once, so neither ``9**9**9**9``
+nor a number of a thousand digits costs anything: what has no finite real value is refused at its
+place. The variable may be any object with the operators, together with a table of functions that
+take it: an array, or a jet that also carries derivatives.
+"""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import math
+import operator
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam.errors import GearcamError
+
+VARIABLE: Final = "phi1"
+"""The angle of the driver, rad."""
+
+MAX_LENGTH: Final = 2000
+"""Longest formula, characters; it also bounds the work of everything below."""
+
+MAX_NESTING: Final = 50
+"""Deepest nesting of parentheses and towers of powers."""
+
+MAX_EXPONENT: Final = 100.0
+"""Largest constant exponent; beyond it a value is 0 or beyond all bounds for any gear."""
+
+CONSTANTS: Final = {"pi": math.pi}
+
+NUMPY: Final[dict[str, Callable[[Any], Any]]] = {
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "sinh": np.sinh,
+    "cosh": np.cosh,
+    "tanh": np.tanh,
+    "exp": np.exp,
+    "log": np.log,
+    "sqrt": np.sqrt,
+}
+"""The functions of a formula, for arrays; tables for other types have the same names."""
+
+ALLOWED: Final = f"{VARIABLE}, pi, numbers, + - * / ** ( ), {', '.join(NUMPY)}"
+"""What a formula may be made of, for messages."""
+
+_BINARY: Final[dict[type, Callable[[Any, Any], Any]]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+_UNARY: Final[dict[type, Callable[[Any], Any]]] = {ast.USub: operator.neg, ast.UAdd: operator.pos}
+
+_TOKEN = re.compile(
+    r"(?P<space>[ \t\r\n]+)"
+    r"|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+    r"|(?P<name>[^\W\d]\w*)"
+    r"|(?P<operator>\*\*|[-+*/])"
+    r"|(?P<open>\()"
+    r"|(?P<close>\))"
+)
+_HINTS: Final = {
+    "^": "a power is written **",
+    ",": "functions take one argument, and the decimal sign is a point",
+    "=": "give the right side only",
+    "[": "use round parentheses",
+    "{": "use round parentheses",
+    "\N{MINUS SIGN}": "this is a typographic minus: type -",
+    "\N{EN DASH}": "this is a dash: type -",
+    "\N{MULTIPLICATION SIGN}": "multiply with *",
+    "\N{MIDDLE DOT}": "multiply with *",
+    "\N{DEGREE SIGN}": "angles in formulas are in radians: multiply by pi/180",
+}
+_ALIASES: Final = {
+    "phi": VARIABLE,
+    "theta": VARIABLE,
+    "x": VARIABLE,
+    "t": VARIABLE,
+    "arcsin": "asin",
+    "arccos": "acos",
+    "arctan": "atan",
+    "ln": "log",
+    "e": "exp(1)",
+    "\N{GREEK SMALL LETTER PI}": "pi",
+    "\N{GREEK SMALL LETTER PHI}": VARIABLE,
+}
+
+
+class FormulaError(GearcamError, ValueError):
+    """A formula that cannot be read.
+
+    Parameters
+    ----------
+    what : str
+        What is wrong, without the place.
+    column : int or None
+        Where, counted from 1 in the formula's text; None where it is the whole formula.
+    allowed : str
+        What is allowed there.
+    hint : str
+        What was probably meant.
+    """
+
+    def __init__(
+        self, what: str, *, column: int | None = None, allowed: str = "", hint: str = ""
+    ) -> None:
+        self.what, self.column, self.allowed, self.hint = what, column, allowed, hint
+        place = f"column {column}: {what}" if column is not None else what
+        tail = [f"allowed: {allowed}"] if allowed else []
+        super().__init__("; ".join([place, *tail, *([hint] if hint else [])]))
+
+
+@dataclass(frozen=True)
+class _Step:
+    """One step of a program: push a constant or the variable, or take values, push the result."""
+
+    kind: str  # "constant", "variable", "call", "unary", "binary"
+    column: int
+    payload: Any = None
+
+
+@dataclass(frozen=True, eq=False)
+class Expression:
+    """A formula that has been read.
+
+    Parameters
+    ----------
+    text : str
+        The formula as written.
+    program : tuple of steps
+        What a stack of values does, in order.
+    """
+
+    text: str
+    program: tuple[_Step, ...]
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the formula leaves the angle out."""
+        return len(self.program) == 1 and self.program[0].kind == "constant"
+
+    def evaluate(self, x: Any, functions: Mapping[str, Callable[[Any], Any]] = NUMPY) -> Any:
+        """Compute the formula.
+
+        Parameters
+        ----------
+        x : array, float or any object with the operators
+            The driver's angle, rad.
+        functions : mapping of str to callable
+            The functions for this type of `x`, by the names of `NUMPY`.
+
+        Returns
+        -------
+        same type as `x`
+            Also for a constant formula. Outside a function's domain the values are nan or inf,
+            without a warning, for the caller to find and to name by their angle.
+        """
+        stack: list[Any] = []
+        with np.errstate(all="ignore"):
+            if self.is_constant:
+                return x * 0.0 + self.program[0].payload
+            for step in self.program:
+                _run(step, stack, x, functions)
+        return stack.pop()
+
+
+def parse(text: str) -> Expression:
+    """Read a formula.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``phi1 - 0.08*sin(2*phi1)``; `ALLOWED` lists the words.
+
+    Returns
+    -------
+    Expression
+        Ready to be evaluated.
+
+    Raises
+    ------
+    FormulaError
+        For anything that is not made of the allowed words, and for parts without ``phi1`` whose
+        value is not a finite real number.
+    """
+    if not text.strip():
+        raise FormulaError("the formula is empty", allowed=ALLOWED)
+    if len(text) > MAX_LENGTH:
+        raise FormulaError(
+            f"the formula has {len(text)} characters", allowed=f"at most {MAX_LENGTH} characters"
+        )
+    _check_words(text)
+    # Only the words above are left, all in ASCII, and blanks of any kind become spaces (the grammar
+    # gives line ends a meaning); so columns of the tree are columns of the text.
+    flat = re.sub(r"\s", " ", text)
+    lead = len(flat) - len(flat.lstrip())
+    try:
+        tree = ast.parse(flat.lstrip(), mode="eval")
+    except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
+        raise FormulaError("this cannot be read as a formula", allowed=ALLOWED) from error
+    return Expression(text, tuple(_program(tree.body, lead)))
+
+
+def _check_words(text: str) -> None:
+    """Check each word, its neighbours and the parentheses."""
+    before = "start"
+    opened: list[int] = []
+    for kind, word, column in _words(text):
+        _check_neighbours(before, kind, word, column)
+        if kind == "open":
+            opened.append(column)
+        elif kind == "close":
+            if not opened:
+                raise FormulaError("this closing parenthesis was never opened", column=column)
+            opened.pop()
+        if len(opened) > MAX_NESTING:
+            raise FormulaError(
+                "parentheses are nested too deep", column=column, allowed=f"{MAX_NESTING} deep"
+            )
+        before = kind
+    if before in ("operator", "function", "open"):
+        raise FormulaError("the formula ends too early", column=len(text.rstrip()) + 1)
+    if opened:
+        raise FormulaError("this parenthesis is never closed", column=opened[-1])
+
+
+def _words(text: str) -> Iterator[tuple[str, str, int]]:
+    """Split the text: kind (value, function, operator, open, close), word, column from 1."""
+    position = 0
+    while position < len(text):
+        match = _TOKEN.match(text, position)
+        column = position + 1
+        if match is None:
+            sign = text[position]
+            shown = repr(sign) if sign.isprintable() else f"U+{ord(sign):04X}"
+            raise FormulaError(
+                f"unexpected sign {shown}",
+                column=column,
+                allowed=ALLOWED,
+                hint=_HINTS.get(sign, ""),
+            )
+        kind, word = str(match.lastgroup), match.group()
+        position = match.end()
+        if kind == "name":
+            _check_name(word, column)
+            yield "function" if word in NUMPY else "value", word, column
+        elif kind == "number":
+            _check_number(word, column)
+            yield "value", word, column
+        elif kind != "space":
+            yield kind, word, column
+
+
+def _check_name(word: str, column: int) -> None:
+    known = (VARIABLE, *CONSTANTS, *NUMPY)
+    if word in known:
+        return
+    near = _ALIASES.get(word) or _ALIASES.get(word.lower())
+    if near is None:
+        close = difflib.get_close_matches(word.lower(), known, n=1)
+        near = close[0] if close else None
+    raise FormulaError(
+        f"unknown name {word!r}",
+        column=column,
+        allowed=ALLOWED,
+        hint=f"did you mean {near}?" if near else "",
+    )
+
+
+def _check_number(word: str, column: int) -> None:
+    if not math.isfinite(float(word)):
+        raise FormulaError(
+            "this number is too large", column=column, allowed="numbers up to 1.8e308"
+        )
+    if word.isdigit() and word != "0" and word.startswith("0"):
+        raise FormulaError(
+            f"the number {word} begins with a zero", column=column, hint=f"write {float(word):g}"
+        )
+
+
+def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
+    """Refuse two words that cannot stand side by side (the signs + and - may start a value)."""
+    after_value = before in ("value", "close")
+    if before == "function" and kind != "open":
+        raise FormulaError("a function's argument stands in parentheses: sin(phi1)", column=column)
+    if kind in ("value", "function", "open") and after_value:
+        raise FormulaError(
+            f"an operator is missing before {word!r}",
+            column=column,
+            allowed="+ - * / **",
+            hint="multiplication is written with *",
+        )
+    if kind == "operator" and not after_value and word not in ("+", "-"):
+        raise FormulaError(f"a value is missing before {word!r}", column=column)
+    if kind == "close" and before == "operator":
+        raise FormulaError(f"a value is missing before {word!r}", column=column)
+    if kind == "close" and before == "open":
+        raise FormulaError("nothing stands between these parentheses", column=column - 1)
+
+
+def _program(root: ast.expr, lead: int) -> list[_Step]:
+    """Turn a syntax tree into steps, without recursion; constant parts are computed here."""
+    program: list[_Step] = []
+    todo: list[ast.expr | _Step] = [root]
+    while todo:
+        item = todo.pop()
+        if isinstance(item, _Step):
+            _append(program, item)
+            continue
+        column = item.col_offset + lead + 1
+        match item:
+            case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
+                program.append(_Step("constant", column, float(value)))
+            case ast.Name(id=name) if name == VARIABLE:
+                program.append(_Step("variable", column))
+            case ast.Name(id=name) if name in CONSTANTS:
+                program.append(_Step("constant", column, CONSTANTS[name]))
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
+                todo += [_Step("binary", column, _BINARY[type(op)]), right, left]
+            case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
+                todo += [_Step("unary", column, _UNARY[type(op)]), operand]
+            case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in NUMPY:
+                todo += [_Step("call", column, name), argument]
+            case _:
+                raise FormulaError("this is not allowed", column=column, allowed=ALLOWED)
+    return program
+
+
+def _append(program: list[_Step], step: _Step) -> None:
+    """Add an operation; where its operands are constants, replace all by the result."""
+    if step.kind == "binary" and step.payload is operator.pow:
+        _check_exponent(program[-1])
+    count = 2 if step.kind == "binary" else 1
+    operands = program[-count:]
+    if any(operand.kind != "constant" for operand in operands):
+        program.append(step)
+        return
+    values = [operand.payload for operand in operands]
+    function = getattr(math, step.payload) if step.kind == "call" else step.payload
+    try:
+        result = function(*values)
+    except (ArithmeticError, ValueError):
+        result = math.nan
+    if isinstance(result, complex) or not math.isfinite(result):
+        raise FormulaError(
+            "this part has no finite real value", column=step.column, allowed="finite real numbers"
+        )
+    program[-count:] = [_Step("constant", step.column, float(result))]
+
+
+def _check_exponent(step: _Step) -> None:
+    if step.kind == "constant" and abs(step.payload) > MAX_EXPONENT:
+        raise FormulaError(
+            f"exponent {step.payload:g} is too large",
+            column=step.column,
+            allowed=f"exponents from {-MAX_EXPONENT:g} to {MAX_EXPONENT:g}",
+        )
+
+
+def _run(
+    step: _Step, stack: list[Any], x: Any, functions: Mapping[str, Callable[[Any], Any]]
+) -> None:
+    match step.kind:
+        case "constant":
+            stack.append(step.payload)
+        case "variable":
+            stack.append(x)
+        case "call":
+            stack.append(functions[step.payload](stack.pop()))
+        case "unary":
+            stack.append(step.payload(stack.pop()))
+        case _:
+            right = stack.pop()
+            stack.append(step.payload(stack.pop(), right))

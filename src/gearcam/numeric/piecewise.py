@@ -1,0 +1,177 @@
+"""Piecewise analytic functions: closed-form pieces between knots, with exact derivatives.
+
+A *piece* is a function written for jets, so that its derivatives are exact; it may bring its integral in
+closed form. Between knots a piece is smooth; at a knot any derivative may jump, and `continuity` says
+which is the first to do so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.numeric.chebyshev import Expansion, expand
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.roots import bracketed_root
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A smooth piece, with its integral where that has a closed form.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(jet) -> jet``.
+    integral : callable or None
+        ``integral(jet) -> jet`` with derivative `function`, any constant.
+    """
+
+    function: Callable[[Jet], Jet]
+    integral: Callable[[Jet], Jet] | None = None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Piecewise:
+    """A function of one variable, smooth between knots.
+
+    Parameters
+    ----------
+    knots : (n + 1,) array
+        Rising.
+    pieces : tuple of n callables
+        ``piece(jet) -> jet``.
+    offsets : (n,) array
+        Added to the pieces: integration constants.
+    """
+
+    knots: Array
+    pieces: tuple[Callable[[Jet], Jet], ...]
+    offsets: Array
+
+    def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
+        """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
+        x = np.asarray(x, dtype=float)
+        flat = x.ravel()
+        if len(self.pieces) == 1:
+            jet = self.pieces[0](Jet.variable(flat, order)) + self.offsets[0]
+            return [np.broadcast_to(v, flat.shape).reshape(x.shape) for v in jet.derivatives()]
+        index = np.searchsorted(self.knots[1:-1], flat, side="right")
+        result = np.empty((order + 1, flat.size))
+        for number, piece in enumerate(self.pieces):
+            here = np.flatnonzero(index == number)
+            if here.size:
+                jet = piece(Jet.variable(flat[here], order)) + self.offsets[number]
+                for k, values in enumerate(jet.derivatives()):
+                    result[k, here] = values
+        return list(result.reshape(order + 1, *x.shape))
+
+    def __call__(self, x: ArrayLike) -> Array:
+        """Return the values at `x`."""
+        return self.derivatives(x, 0)[0]
+
+    @property
+    def last(self) -> float:
+        """Value at the last knot, from the left."""
+        return float(self.side(len(self.knots) - 1, -1, 0)[0])
+
+    def side(self, knot: int, side: int, order: int) -> list[float]:
+        """Return the derivatives at a knot by the piece on its left (-1) or right (+1)."""
+        number = knot - 1 if side < 0 else knot
+        jet = self.pieces[number](Jet.variable(self.knots[knot : knot + 1], order))
+        return [float(v[0]) for v in (jet + self.offsets[number]).derivatives()]
+
+    @cached_property
+    def continuity(self) -> tuple[int, ...]:
+        """Order of continuity at each inner knot and, last, across the ends (-1: a jump, at most 3)."""
+        last = len(self.knots) - 1
+        pairs = [(k, k) for k in range(1, last)] + [(last, 0)]
+        result = []
+        for left, right in pairs:
+            before, after = self.side(left, -1, 3), self.side(right, 1, 3)
+            scale = max(1.0, *(abs(v) for v in before + after))
+            equal = [abs(b - a) <= 1e-9 * scale for b, a in zip(before, after, strict=True)]
+            result.append(equal.index(False) - 1 if False in equal else 3)
+        return tuple(result)
+
+
+def piecewise(knots: ArrayLike, pieces: list[Piece]) -> Piecewise:
+    """Return the function that the pieces make between the knots."""
+    return Piecewise(
+        knots=np.asarray(knots, dtype=float),
+        pieces=tuple(piece.function for piece in pieces),
+        offsets=np.zeros(len(pieces)),
+    )
+
+
+def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecewise | Expansion:
+    """Return the integral from the first knot, in closed form where every piece has one.
+
+    Parameters
+    ----------
+    knots : (n + 1,) array
+        Rising.
+    pieces : list of n Piece
+        The integrand.
+    tolerance : float
+        Relative truncation error of the expansion that is used otherwise.
+
+    Returns
+    -------
+    Piecewise or Expansion
+        A continuous function, zero at the first knot.
+
+    Raises
+    ------
+    NotSmoothError
+        Where the integrand is not finite or not smooth between the knots.
+    """
+    grid = np.asarray(knots, dtype=float)
+    integrals = [piece.integral for piece in pieces]
+    closed = tuple(integral for integral in integrals if integral is not None)
+    if len(closed) < len(pieces):
+        return expand(piecewise(grid, pieces), grid, tolerance).antiderivative()
+    offsets, total = [], 0.0
+    for low, high, integral in zip(grid[:-1], grid[1:], closed, strict=True):
+        start, end = integral(Jet.variable([low, high], 0)).c[0]
+        offsets.append(total - start)
+        total += end - start
+    return Piecewise(knots=grid, pieces=closed, offsets=np.array(offsets))
+
+
+def extremes(
+    function: Callable[[Array], tuple[Array, Array]], knots: ArrayLike, samples: int = 256
+) -> tuple[Array, Array]:
+    """Find all extremes of a piecewise smooth function: roots of its slope, and both sides of knots.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(x) -> (value, slope)``, vectorised.
+    knots : (n + 1,) array
+        Between them the function is smooth.
+    samples : int
+        Points per interval on which sign changes of the slope are sought.
+
+    Returns
+    -------
+    places, values : arrays
+        Candidates for the largest and smallest value, in rising order of place.
+    """
+    grid = np.asarray(knots, dtype=float)
+    width = np.diff(grid)
+    steps = np.linspace(1e-12, 1.0 - 1e-12, samples)[:, None]
+    x = grid[:-1] + width * steps
+    slopes = function(x.ravel())[1].reshape(x.shape)
+    change = slopes[:-1] * slopes[1:] < 0.0
+    # An extreme is flat: a place good to 1e-10 of an interval gives its value to rounding.
+    tolerance = 1e-10 * float(width.min())
+    roots = bracketed_root(lambda t: function(t)[1], x[:-1][change], x[1:][change], tolerance)
+    found = np.sort(np.concatenate([x[0], roots, x[-1]]))
+    return found, function(found)[0]

@@ -1,0 +1,94 @@
+"""Quantities: the units of parameters, and where they are turned into mm and rad.
+
+Parameters of laws, racks and blanks are frozen dataclasses whose fields are made by `param`. Inside the
+program their values are mm and rad; a design file writes them under ``name + suffix`` (``knots`` becomes
+``knots_deg``) in the unit of the quantity. The file's keys, ranges, schema and messages all follow from
+these fields, so that a new law stays one short entry.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+Solve = Literal["solve"]
+"""A value that closure decides."""
+
+REQUIRED: Final = dataclasses.MISSING
+"""Default of a parameter that the file must give."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A kind of value: its suffix in files, its factor to the inner unit, its unit's name."""
+
+    suffix: str
+    factor: float
+    unit: str
+
+
+ANGLE: Final = Quantity("_deg", math.pi / 180.0, "deg")
+LENGTH: Final = Quantity("_mm", 1.0, "mm")
+NUMBER: Final = Quantity("", 1.0, "")
+COUNT: Final = Quantity("", 1.0, "")
+TEXT: Final = Quantity("", 1.0, "")
+
+
+@dataclass(frozen=True)
+class Param:
+    """What a parameter's field promises; bounds are in the unit of the file.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        Unit and suffix.
+    gt, ge, lt, le : float or None
+        Bounds of each value, in the file's unit.
+    choices : tuple of str or None
+        The allowed words, for texts.
+    min_length : int or None
+        Fewest entries, for lists.
+    doc : str
+        One line for schema, template and messages.
+    """
+
+    quantity: Quantity = NUMBER
+    gt: float | None = None
+    ge: float | None = None
+    lt: float | None = None
+    le: float | None = None
+    choices: tuple[str, ...] | None = None
+    min_length: int | None = None
+    doc: str = ""
+
+    def key(self, name: str) -> str:
+        """Return the key in a design file, such as ``module_mm``."""
+        return name + self.quantity.suffix
+
+
+def param(
+    quantity: Quantity = NUMBER,
+    *,
+    default: Any = REQUIRED,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+    choices: tuple[str, ...] | None = None,
+    min_length: int | None = None,
+    doc: str = "",
+) -> Any:
+    """Make a dataclass field that knows its quantity, bounds and meaning (see `Param`)."""
+    made = Param(quantity, gt, ge, lt, le, choices, min_length, doc)
+    return dataclasses.field(default=default, metadata={"param": made})
+
+
+def params_of(owner: type) -> dict[str, Param]:
+    """Return the parameters of a dataclass by field name, in order."""
+    return {
+        field.name: field.metadata["param"]
+        for field in dataclasses.fields(owner)
+        if "param" in field.metadata
+    }

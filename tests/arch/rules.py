@@ -1,0 +1,218 @@
+"""The rules of the house that no linter knows, read from the syntax tree.
+
+Each rule takes a file and returns its faults as sentences; an empty list is a pass. The tests
+beside this module apply them to the package and show, on planted samples, that each can fail.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCE = ROOT / "src" / "gearcam"
+MAX_FILE = 400
+MAX_FUNCTION = 60
+HEAVY = frozenset(
+    {"scipy", "trimesh", "manifold3d", "ezdxf", "rich", "lxml", "networkx", "plotly", "jinja2"}
+)
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def python_files(*folders: Path) -> list[Path]:
+    return sorted(path for folder in folders for path in folder.rglob("*.py"))
+
+
+def parse(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+
+
+# --- size and manners ---------------------------------------------------------------------------
+
+
+def size_faults(path: Path) -> list[str]:
+    """A file that no one can hold in the head, or a function (its docstring not counted)."""
+    faults = []
+    lines = len(path.read_text(encoding="utf-8").splitlines())
+    if lines >= MAX_FILE:
+        faults.append(f"{path.name}: {lines} lines, fewer than {MAX_FILE} are allowed")
+    for node in ast.walk(parse(path)):
+        if isinstance(node, Function):
+            length = _length(node)
+            if length >= MAX_FUNCTION:
+                faults.append(f"{path.name}:{node.lineno} {node.name}: {length} lines of code")
+    return faults
+
+
+def _length(node: Function) -> int:
+    lines = (node.end_lineno or node.lineno) - node.lineno + 1
+    if ast.get_docstring(node) is not None:
+        doc = node.body[0]
+        lines -= (doc.end_lineno or doc.lineno) - doc.lineno + 1
+    return lines
+
+
+def manner_faults(path: Path) -> list[str]:
+    """Star imports, asserts as checks of input, prints and exits outside the command line."""
+    faults = []
+    for node in ast.walk(parse(path)):
+        if isinstance(node, ast.ImportFrom) and any(name.name == "*" for name in node.names):
+            faults.append(f"{path.name}:{node.lineno} star import")
+        if isinstance(node, ast.Assert):
+            faults.append(f"{path.name}:{node.lineno} assert")
+        if isinstance(node, ast.Call) and path.name != "cli.py":
+            name = ast.unparse(node.func)
+            if name in {"print", "exit", "quit", "sys.exit"} and path.name != "__main__.py":
+                faults.append(f"{path.name}:{node.lineno} {name}()")
+    return faults
+
+
+def heavy_import_faults(path: Path) -> list[str]:
+    """Slow libraries imported when the module is, not when they are needed."""
+    faults = []
+    for node in _loaded_at_import(parse(path).body):
+        names = (
+            [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else [name.name for name in node.names]
+        )
+        faults += [
+            f"{path.name}:{node.lineno} imports {name} at the top"
+            for name in names
+            if name.split(".")[0] in HEAVY
+        ]
+    return faults
+
+
+def _loaded_at_import(body: list[ast.stmt]) -> Iterator[ast.Import | ast.ImportFrom]:
+    for node in body:
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node
+        elif isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            yield from _loaded_at_import(node.orelse)
+        elif not isinstance(node, Function):
+            for field in ("body", "orelse", "finalbody", "handlers"):
+                yield from _loaded_at_import(getattr(node, field, []))
+
+
+# --- docstrings ---------------------------------------------------------------------------------
+
+
+def docstring_faults(path: Path) -> list[str]:
+    """Public names without a docstring, or with one that leaves out what numpydoc asks for.
+
+    A function of two parameters or more names each under Parameters, or defers with
+    "(see `Name`)"; one that returns says so, under Returns or by a first sentence "Return ..." or
+    "Yield ..."; what it raises itself is named. Every field of a dataclass is named in the
+    docstring of its class, or carries its own `doc=`. Private names, magic methods and overloads
+    are free; properties need their one line.
+    """
+    tree = parse(path)
+    faults = [] if ast.get_docstring(tree) else ["the module has no docstring"]
+    faults += _body_faults(tree.body, "")
+    return [f"{path.name}: {fault}" for fault in faults]
+
+
+def _body_faults(body: list[ast.stmt], owner: str) -> list[str]:
+    faults: list[str] = []
+    for node in body:
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            faults += _class_faults(node, owner + node.name)
+            faults += _body_faults(node.body, f"{owner}{node.name}.")
+        elif isinstance(node, Function) and not node.name.startswith("_"):
+            faults += _function_faults(node, owner + node.name, method=bool(owner))
+    return faults
+
+
+def _class_faults(node: ast.ClassDef, name: str) -> list[str]:
+    doc = ast.get_docstring(node)
+    if not doc:
+        return [f"class {name} has no docstring"]
+    if not any("dataclass" in ast.unparse(mark) for mark in node.decorator_list):
+        return []
+    fields = [
+        item.target.id
+        for item in node.body
+        if isinstance(item, ast.AnnAssign)
+        and isinstance(item.target, ast.Name)
+        and not item.target.id.startswith("_")
+        and "ClassVar" not in ast.unparse(item.annotation)
+        and not (item.value is not None and "doc=" in ast.unparse(item.value))
+    ]
+    return [
+        f"class {name}: field {field} is not described"
+        for field in fields
+        if not _named(field, doc)
+    ]
+
+
+def _function_faults(node: Function, name: str, *, method: bool) -> list[str]:
+    marks = [ast.unparse(mark) for mark in node.decorator_list]
+    if any(mark.endswith(("overload", ".setter")) for mark in marks):
+        return []
+    doc = ast.get_docstring(node)
+    if not doc:
+        return [f"{name} has no docstring"]
+    if any(mark.endswith("property") for mark in marks):
+        return []
+    static = any(mark.endswith("staticmethod") for mark in marks)
+    parameters = _parameters(node, skip_first=method and not static)
+    faults = _parameter_faults(parameters, doc, name)
+    returns = node.returns is not None and ast.unparse(node.returns) not in {
+        "None",
+        "NoReturn",
+        "Never",
+    }
+    if returns and not (_section(doc, "(?:Returns|Yields)") or re.match("(Return|Yield)s? ", doc)):
+        faults.append(f"{name}: what it returns is not described")
+    raises = _section(doc, "Raises")
+    faults += [
+        f"{name}: raises {error}, not described"
+        for error in sorted(_raised(node))
+        if not _named(error, raises)
+    ]
+    return faults
+
+
+def _parameters(node: Function, *, skip_first: bool) -> list[str]:
+    arguments = node.args
+    names = [item.arg for item in (*arguments.posonlyargs, *arguments.args)][int(skip_first) :]
+    names += [item.arg for item in arguments.kwonlyargs]
+    names += [item.arg for item in (arguments.vararg, arguments.kwarg) if item is not None]
+    return [name for name in names if not name.startswith("_")]
+
+
+def _parameter_faults(parameters: list[str], doc: str, name: str) -> list[str]:
+    section = _section(doc, "Parameters")
+    if not section and (len(parameters) < 2 or re.search(r"\(see `\w[\w.]*`\)", doc)):
+        return []
+    return [
+        f"{name}: parameter {parameter} is not described"
+        for parameter in parameters
+        if not _named(parameter, section)
+    ]
+
+
+def _section(doc: str, title: str) -> str:
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w[^\n]*\n---|\Z)", doc, re.MULTILINE | re.DOTALL)
+    return found.group(1) if found else ""
+
+
+def _named(word: str, text: str) -> bool:
+    return re.search(rf"(?<!\w){re.escape(word)}(?!\w)", text) is not None
+
+
+def _raised(node: ast.AST) -> set[str]:
+    """Names of the errors that a function raises itself (nested functions aside)."""
+    found: set[str] = set()
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, Function | ast.Lambda | ast.ClassDef):
+            continue
+        if isinstance(child, ast.Raise) and isinstance(child.exc, ast.Call):
+            name = ast.unparse(child.exc.func).split(".")[-1]
+            if name[0].isupper():
+                found.add(name)
+        found |= _raised(child)
+    return found

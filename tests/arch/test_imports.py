@@ -1,0 +1,127 @@
+"""Imports go one way, and a build loads only the libraries that its files need."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from arch import rules
+
+UNWANTED = ("scipy", "trimesh", "manifold3d", "ezdxf", "plotly")
+LINT = """
+import sys
+from importlinter import cli
+sys.path.insert(0, sys.argv[1])
+sys.exit(cli.lint_imports(config_filename=sys.argv[2], no_cache=True))
+"""
+LOADED = """
+import json, sys
+from gearcam.cli import main
+sys.argv = ["gearcam", *sys.argv[1:]]
+try:
+    code = main() or 0
+except SystemExit as stop:
+    code = stop.code or 0
+print(json.dumps({"code": code, "modules": sorted(sys.modules)}))
+"""
+
+
+def _contracts(root: Path) -> subprocess.CompletedProcess[str]:
+    """Check the contracts of the project on the sources under `root`."""
+    environment = os.environ | {"PYTHONPATH": str(root / "src")}
+    return subprocess.run(
+        [sys.executable, "-c", LINT, str(root / "src"), str(rules.ROOT / "pyproject.toml")],
+        cwd=root,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_contracts_hold() -> None:
+    done = _contracts(rules.ROOT)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("room", "line", "contract"),
+    [
+        ("errors", "from gearcam import findings", "One way through the house"),
+        ("design", "from gearcam import export", "One way through the house"),
+        ("numeric", "import shapely", "Mathematics needs numpy and nothing else"),
+        ("export", "from gearcam import laws", "Exporters see parts"),
+        ("parts", "import manifold3d", "manifold3d only in solids"),
+        ("solids", "import trimesh", "trimesh (and what it needs) only in export.mesh"),
+        ("jobs", "import ezdxf", "ezdxf only in export.dxf"),
+        ("jobs", "import shapely", "shapely only where regions are cut"),
+        ("jobs", "import scipy.optimize", "pydantic only in design"),
+    ],
+)
+def test_a_wrong_import_is_caught(tmp_path: Path, room: str, line: str, contract: str) -> None:
+    copy = tmp_path / "src" / "gearcam"
+    shutil.copytree(rules.SOURCE, copy)
+    place = copy / room / "planted.py" if (copy / room).is_dir() else copy / f"{room}.py"
+    assert place.exists() or place.name == "planted.py"
+    with place.open("a", encoding="utf-8") as file:
+        file.write(f"\n\ndef planted():\n    {line}\n")
+    done = _contracts(tmp_path)
+    broken = [text for text in done.stdout.splitlines() if " BROKEN" in text]
+    assert done.returncode != 0
+    assert any(contract in text for text in broken), done.stdout + done.stderr
+
+
+def test_slow_libraries_are_imported_where_they_are_needed() -> None:
+    files = rules.python_files(rules.SOURCE)
+    assert [fault for path in files for fault in rules.heavy_import_faults(path)] == []
+
+
+@pytest.mark.parametrize(
+    ("code", "caught"),
+    [
+        ("import ezdxf\n", True),
+        ("from scipy.optimize import brentq\n", True),
+        ("try:\n    import trimesh\nexcept ImportError:\n    trimesh = 0\n", True),
+        ("class A:\n    import manifold3d\n", True),
+        ("def f():\n    import ezdxf\n", False),
+        ("if TYPE_CHECKING:\n    import ezdxf\n", False),
+        ("import numpy\n", False),
+    ],
+)
+def test_an_early_import_is_caught(tmp_path: Path, code: str, caught: bool) -> None:
+    sample = tmp_path / "sample.py"
+    sample.write_text(code)
+    assert bool(rules.heavy_import_faults(sample)) is caught
+
+
+def _loaded(tmp_path: Path, *arguments: str) -> set[str]:
+    """Run a build in a process of its own and return the top names of what it loaded."""
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, "build", *arguments, "-o", str(tmp_path)],
+        cwd=rules.ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout.splitlines()[-1])
+    assert answer["code"] == 0, done.stdout + done.stderr
+    return {name.split(".")[0] for name in answer["modules"]}
+
+
+def test_a_csv_build_loads_no_other_writer(tmp_path: Path) -> None:
+    loaded = _loaded(tmp_path, "profiles/ellipse.toml")
+    assert (tmp_path / "ellipse" / "gear1_outline.csv").exists()
+    assert "numpy" in loaded
+    assert loaded.isdisjoint(UNWANTED)
+
+
+def test_a_drawing_loads_its_writer(tmp_path: Path) -> None:
+    """The control: the list of loaded modules does show a library once it is used."""
+    assert "ezdxf" in _loaded(tmp_path, "profiles/ellipse.toml", "--only", "dxf")

@@ -1,0 +1,219 @@
+"""DXF files read back hold the drawing, in millimetres, and their measured error is true."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ezdxf.document import Drawing as Document
+from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.math import bulge_to_arc
+
+from gearcam.drawings import Drawing, pair_drawing, wheel_drawing
+from gearcam.errors import DesignError
+from gearcam.export.dxf import DxfError, dxf_bytes, measure_dxf, read_dxf
+from gearcam.parts import Part, timing_mark
+from helpers_contour import gear_contour, square_contour
+
+TOLERANCE = 1e-3
+
+
+def wheel(tolerance: float = TOLERANCE) -> Part:
+    contour = gear_contour(18, 5.0, tolerance)
+    mark = timing_mark(40.0, 0.0, 5.0, 6.25, 20.0, bore_diameter=20.0)
+    return Part(name="gear1", contour=contour, bore_diameter=20.0, width=20.0, marks=(mark,))
+
+
+@pytest.fixture(scope="module")
+def part() -> Part:
+    return wheel()
+
+
+@pytest.fixture(scope="module")
+def pair(part: Part) -> Drawing:
+    centrode = part.contour.vertices[::50] * 0.9
+    return pair_drawing([part, part], 95.0, [centrode, centrode])
+
+
+def outline_of(document: Document) -> LWPolyline:
+    """The only outline of a wheel's file."""
+    (found,) = document.modelspace().query("LWPOLYLINE")
+    assert isinstance(found, LWPolyline)
+    return found
+
+
+def entities(document: Document) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for entity in document.modelspace():
+        found.setdefault(entity.dxf.layer, []).append(entity.dxftype())
+    return found
+
+
+def area(rows: np.ndarray) -> float:
+    """Area of a closed bulge polyline: shoelace and circular segments, by ezdxf's own arcs."""
+    ends = np.roll(rows, -1, axis=0)
+    total = 0.5 * float(np.sum(rows[:, 0] * ends[:, 1] - ends[:, 0] * rows[:, 1]))
+    for (x, y, bulge), (u, v, _) in zip(rows.tolist(), ends.tolist(), strict=True):
+        if bulge:
+            _, start, end, radius = bulge_to_arc((x, y), (u, v), bulge)
+            angle = (end - start) % (2 * np.pi)
+            total += np.sign(bulge) * 0.5 * radius**2 * (angle - np.sin(angle))
+    return total
+
+
+@pytest.mark.parametrize("curves", ["arcs", "lines"])
+def test_a_wheel_file_holds_outline_bore_and_mark(part: Part, curves: str) -> None:
+    document = read_dxf(dxf_bytes(wheel_drawing(part), TOLERANCE, curves))
+    assert document.acad_release == "R2010"
+    assert document.header["$INSUNITS"] == 4
+    assert document.header["$MEASUREMENT"] == 1
+    assert entities(document) == {"OUTLINE": ["LWPOLYLINE"], "BORE": ["CIRCLE"], "MARK": ["CIRCLE"]}
+    assert outline_of(document).closed
+    bore, mark = document.modelspace().query("CIRCLE")
+    assert bore.dxf.radius == 10.0
+    assert tuple(bore.dxf.center) == (0.0, 0.0, 0.0)
+    assert mark.dxf.radius == part.marks[0].diameter / 2
+    assert tuple(mark.dxf.center)[:2] == tuple(part.marks[0].center)
+
+
+def test_the_pair_file_has_a_layer_per_feature_and_its_extents(pair: Drawing) -> None:
+    document = read_dxf(dxf_bytes(pair, TOLERANCE))
+    assert entities(document) == {
+        "GEAR1_OUTLINE": ["LWPOLYLINE"],
+        "GEAR1_BORE": ["CIRCLE"],
+        "GEAR1_MARK": ["CIRCLE"],
+        "GEAR2_OUTLINE": ["LWPOLYLINE"],
+        "GEAR2_BORE": ["CIRCLE"],
+        "GEAR2_MARK": ["CIRCLE"],
+        "CENTRODE": ["LWPOLYLINE", "LWPOLYLINE"],
+        "CENTER": ["LINE"] * 4,
+    }
+    colours = [document.layers.get(layer).color for layer in pair.layers]
+    assert colours == [7, 5, 1, 7, 5, 1, 3, 8]
+    assert document.layers.get("CENTRODE").dxf.linetype == "DASHED"
+    widest = max(contour.vertices[:, 0].max() for contour in pair.contours)
+    assert document.header["$EXTMAX"][0] == pytest.approx(widest, abs=1e-9)
+
+
+@pytest.mark.parametrize("curves", ["arcs", "lines"])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_the_measured_error_stays_within_the_tolerance(curves: str, tolerance: float) -> None:
+    drawing = wheel_drawing(wheel(tolerance))
+    error = measure_dxf(dxf_bytes(drawing, tolerance, curves), drawing.contours)
+    assert 0.8 * tolerance < error <= tolerance
+
+
+def test_the_pair_is_measured_in_its_place(pair: Drawing) -> None:
+    data = dxf_bytes(pair, TOLERANCE)
+    assert measure_dxf(data, pair.contours) <= TOLERANCE
+    assert measure_dxf(data, pair.contours[::-1]) > 10
+
+
+def test_the_arcs_turn_the_right_way(part: Part) -> None:
+    """The area with arcs, counted by ezdxf's arcs, is the true one."""
+    document = read_dxf(dxf_bytes(wheel_drawing(part), TOLERANCE))
+    rows = np.array(outline_of(document).get_points(format="xyb"))
+    runs = np.vstack([run.points[:-1] for run in part.contour.runs])
+    x, y = runs.T
+    true = 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+    assert area(rows) == pytest.approx(true, abs=0.2)
+    rows[:, 2] *= -1
+    assert abs(area(rows) - true) > 1
+
+
+@pytest.mark.parametrize("fault", ["sign", "dropped", "inches", "mirrored"])
+def test_a_fault_in_the_file_is_measured(part: Part, fault: str) -> None:
+    drawing = wheel_drawing(part)
+    document = read_dxf(dxf_bytes(drawing, TOLERANCE))
+    polyline = outline_of(document)
+    rows = np.array(polyline.get_points(format="xyb"))
+    longest = int(np.argmax(np.abs(rows[:, 2])))
+    if fault == "sign":
+        rows[longest, 2] *= -1
+    elif fault == "dropped":
+        rows = np.delete(rows, longest, axis=0)
+    elif fault == "inches":
+        rows[:, :2] /= 25.4
+    else:
+        rows *= [1, -1, -1]
+    polyline.set_points(rows.tolist(), format="xyb")
+    assert measure_dxf(written(document), drawing.contours) > 3 * TOLERANCE
+
+
+def written(document: Document) -> bytes:
+    import io
+
+    stream = io.StringIO()
+    document.write(stream)
+    return stream.getvalue().encode()
+
+
+def test_files_that_do_not_hold_the_drawing_are_refused(part: Part, pair: Drawing) -> None:
+    drawing = wheel_drawing(part)
+    data = dxf_bytes(drawing, TOLERANCE)
+    with pytest.raises(DxfError, match="should hold 1 closed outlines, it holds 2"):
+        measure_dxf(dxf_bytes(pair, TOLERANCE), drawing.contours)
+    document = read_dxf(data)
+    document.units = 1
+    with pytest.raises(DxfError, match="millimetres"):
+        measure_dxf(written(document), drawing.contours)
+    document = read_dxf(data)
+    outline_of(document).closed = False
+    with pytest.raises(DxfError, match="closed"):
+        measure_dxf(written(document), drawing.contours)
+    for damaged in (b"", b"no DXF", data[: len(data) // 2], b"\xff\xfe\x00"):
+        with pytest.raises(DxfError):
+            read_dxf(damaged)
+
+
+def test_straight_sides_stay_straight() -> None:
+    square = Part(name="plate", contour=square_contour(10.0), bore_diameter=None, width=1.0)
+    document = read_dxf(dxf_bytes(wheel_drawing(square), TOLERANCE))
+    rows = outline_of(document).get_points(format="xyb")
+    assert rows == [(5.0, 5.0, 0.0), (-5.0, 5.0, 0.0), (-5.0, -5.0, 0.0), (5.0, -5.0, 0.0)]
+
+
+@pytest.mark.parametrize("curves", ["splines", "circles"])
+def test_other_curves_are_refused_by_name(part: Part, curves: str) -> None:
+    with pytest.raises(DesignError) as caught:
+        dxf_bytes(wheel_drawing(part), TOLERANCE, curves)
+    problem = caught.value.problems[0]
+    assert problem.key == "output.dxf_curves"
+    assert problem.allowed == '"arcs", "lines"'
+    assert ("not available yet" in problem.message) == (curves == "splines")
+
+
+def test_the_same_design_gives_the_same_bytes(part: Part) -> None:
+    """In other processes too, where sets have another order."""
+    drawing = wheel_drawing(part)
+    assert dxf_bytes(drawing, TOLERANCE) == dxf_bytes(drawing, TOLERANCE)
+    script = """
+import hashlib
+from gearcam.drawings import wheel_drawing
+from gearcam.export.dxf import dxf_bytes
+from gearcam.parts import Part
+from helpers_contour import square_contour
+part = Part(name="p", contour=square_contour(9.0), bore_diameter=2.0, width=1.0)
+print(hashlib.sha256(dxf_bytes(wheel_drawing(part), 1e-3)).hexdigest())
+"""
+    roots = [str(Path(__file__).parents[1]), *sys.path]
+    seen = set()
+    for seed in ("0", "4", "11"):
+        place = {**os.environ, "PYTHONPATH": os.pathsep.join(roots), "PYTHONHASHSEED": seed}
+        run = [sys.executable, "-c", script]
+        seen.add(subprocess.run(run, env=place, capture_output=True, check=True).stdout)
+    assert len(seen) == 1
+
+
+def test_a_turned_wheel_is_measured_too(part: Part) -> None:
+    from gearcam.drawings import place
+
+    turned = replace(
+        wheel_drawing(part), features=place(wheel_drawing(part).features, 0.7, (3.0, 4.0))
+    )
+    assert measure_dxf(dxf_bytes(turned, TOLERANCE), turned.contours) <= TOLERANCE

@@ -1,0 +1,44 @@
+"""Tables read back, by the csv module, as the very same numbers."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+
+import numpy as np
+import pytest
+
+from gearcam.export.table import outline_bytes, table_bytes
+
+
+def read(data: bytes) -> tuple[list[str], list[list[float]]]:
+    rows = list(csv.reader(io.StringIO(data.decode("ascii"), newline="")))
+    return rows[0], [[float(text) for text in row] for row in rows[1:]]
+
+
+def test_numbers_survive_to_the_last_bit() -> None:
+    random = np.random.default_rng(0)
+    values = random.standard_normal((500, 2)) * 10.0 ** random.integers(-20, 20, (500, 2))
+    head, rows = read(outline_bytes(values))
+    assert head == ["x_mm", "y_mm"]
+    assert (np.array(rows) == values).all()
+
+
+def test_the_radius_of_a_straight_part_is_inf() -> None:
+    data = table_bytes({"s_mm": [0.0, 1.0, 2.0], "rho_mm": [np.inf, -np.inf, -3.5]})
+    assert data == b"s_mm,rho_mm\n0.0,inf\n1.0,inf\n2.0,-3.5\n"
+    assert math.isinf(read(data)[1][0][1])
+
+
+def test_zero_has_no_sign() -> None:
+    assert table_bytes({"a": [-0.0]}) == b"a\n0.0\n"
+
+
+def test_what_is_no_table_is_refused() -> None:
+    with pytest.raises(ValueError, match="column b is not a number in row 1"):
+        table_bytes({"a": [1.0, 2.0], "b": [1.0, math.nan]})
+    with pytest.raises(ValueError, match="length"):
+        table_bytes({"a": [1.0, 2.0], "b": [1.0]})
+    with pytest.raises(ValueError, match="header"):
+        table_bytes({"a,b": [1.0]})

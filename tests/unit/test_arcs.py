@@ -1,0 +1,218 @@
+"""Biarcs stay within the tolerance, keep tangents, and distances to arcs are exact."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from gearcam.numeric.arcs import deviation, distances, fit_arcs, fit_closed, flatten_bulges
+from gearcam.numeric.contour import Run
+from helpers_contour import arc, disc_contour, gear_contour, line, sample, squashed
+
+TOLERANCE = 1e-3
+
+
+def spiral(growth: float = 0.3) -> Run:
+    """A logarithmic spiral: its curvature changes all along."""
+
+    def curve(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        points = 20 * np.exp((growth + 1j) * 2 * u)
+        return points, points * (growth + 1j)
+
+    return sample(curve, TOLERANCE / 50)[0]
+
+
+def wave() -> Run:
+    """Two inflections: y = 2 sin(x), x from 0 to 3 pi."""
+
+    def curve(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        x = 3 * np.pi * u
+        return x + 2j * np.sin(x), 1 + 2j * np.cos(x)
+
+    return sample(curve, TOLERANCE / 50)[0]
+
+
+def end_tangents(vertices: np.ndarray, bulges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unit tangents at both ends of each arc, from its bulge."""
+    chord = np.diff(vertices[:, 0] + 1j * vertices[:, 1])
+    half = 2 * np.arctan(bulges)
+    unit = chord / np.abs(chord)
+    return unit * np.exp(-1j * half), unit * np.exp(1j * half)
+
+
+@pytest.mark.parametrize("run", [spiral(), spiral(-0.5), wave()], ids=["out", "in", "wave"])
+def test_the_fit_stays_within_the_tolerance_and_uses_it(run: Run) -> None:
+    vertices, bulges = fit_arcs(run, TOLERANCE)
+    there = distances(run.points, vertices, bulges, closed=False).max()
+    places = flatten_bulges(vertices, bulges, math.inf, closed=False, least=20)
+    back = distances(places, run.points, np.zeros(len(run.points) - 1), closed=False).max()
+    assert 0.8 * TOLERANCE < there <= TOLERANCE * (1 + 1e-9)
+    assert back <= 1.03 * TOLERANCE
+
+
+@pytest.mark.parametrize("run", [spiral(), spiral(-0.5), wave()], ids=["out", "in", "wave"])
+def test_the_fit_is_tangent_continuous_and_ends_with_the_run(run: Run) -> None:
+    vertices, bulges = fit_arcs(run, TOLERANCE)
+    first, last = end_tangents(vertices, bulges)
+    assert np.abs(np.angle(first[1:] / last[:-1])).max() < 1e-9
+    given = run.tangents[:, 0] + 1j * run.tangents[:, 1]
+    assert abs(np.angle(first[0] / given[0])) < 1e-9
+    assert abs(np.angle(last[-1] / given[-1])) < 1e-9
+    assert (vertices[[0, -1]] == run.points[[0, -1]]).all()
+
+
+def test_the_number_of_arcs_grows_with_the_cube_root_of_the_exactness() -> None:
+    run = sample(
+        lambda u: (20 * np.exp((0.3 + 1j) * 2 * u), np.exp((0.3 + 1j) * 2 * u) * (0.3 + 1j)), 2e-9
+    )
+    counts = [len(fit_arcs(run[0], tolerance)[1]) for tolerance in (1e-3, 1e-6)]
+    assert counts[1] / counts[0] == pytest.approx(10, rel=0.35)
+
+
+def test_a_circle_becomes_few_exact_arcs() -> None:
+    contour = disc_contour(50.0)
+    vertices, bulges = fit_closed(contour.runs, TOLERANCE)
+    assert len(bulges) == 6
+    angles = np.degrees(4 * np.arctan(bulges))
+    assert angles.sum() == pytest.approx(360, abs=1e-9)
+    dense = flatten_bulges(vertices, bulges, 1e-4)
+    assert np.hypot(*dense.T) == pytest.approx(50.0, abs=1e-9)
+
+
+def test_a_straight_run_is_one_straight_piece() -> None:
+    run, _ = sample(line(1 + 1j, 30 - 7j), 1e-5)
+    many = Run(
+        points=np.linspace(run.points[0], run.points[-1], 50),
+        tangents=np.repeat(run.tangents[:1], 50, 0),
+    )
+    for straight in (run, many):
+        vertices, bulges = fit_arcs(straight, TOLERANCE)
+        assert bulges.tolist() == [0.0]
+        assert (vertices == run.points[[0, -1]]).all()
+
+
+def test_repeated_points_do_no_harm() -> None:
+    run = spiral()
+    doubled = Run(points=np.repeat(run.points, 2, 0), tangents=np.repeat(run.tangents, 2, 0))
+    assert (fit_arcs(doubled, TOLERANCE)[0] == fit_arcs(run, TOLERANCE)[0]).all()
+
+
+def test_a_mirrored_run_mirrors_the_bulges() -> None:
+    run, flip = wave(), np.array([1.0, -1.0])
+    _, bulges = fit_arcs(run, TOLERANCE)
+    _, mirrored = fit_arcs(Run(points=run.points * flip, tangents=run.tangents * flip), TOLERANCE)
+    assert mirrored == pytest.approx(-bulges, abs=1e-12)
+    assert (bulges < 0).any()
+    assert (bulges > 0).any()
+
+
+def test_what_cannot_be_fitted_is_refused() -> None:
+    run = spiral()
+    with pytest.raises(ValueError, match="positive"):
+        fit_arcs(run, 0.0)
+    with pytest.raises(ValueError, match="two different points"):
+        fit_arcs(Run(points=run.points[:1], tangents=run.tangents[:1]), TOLERANCE)
+    with pytest.raises(ValueError, match="finite"):
+        fit_arcs(Run(points=run.points * np.nan, tangents=run.tangents), TOLERANCE)
+    with pytest.raises(ValueError, match="do not join"):
+        fit_closed([run], TOLERANCE)
+
+
+def test_a_wheel_takes_far_fewer_arcs_than_chords() -> None:
+    contour = gear_contour(36, 5.0, TOLERANCE)
+    vertices, bulges = fit_closed(contour.runs, 0.96 * TOLERANCE)
+    assert len(vertices) < len(contour.vertices) / 3
+    dense = np.vstack([run.points[:-1] for run in contour.runs])
+    assert 0.8 * TOLERANCE < deviation(vertices, bulges, dense) <= TOLERANCE
+
+
+@pytest.mark.parametrize("fault", ["sign", "dropped", "scaled", "shifted"])
+def test_the_measured_deviation_sees_a_fault(fault: str) -> None:
+    contour = gear_contour(12, 5.0, TOLERANCE)
+    vertices, bulges = fit_closed(contour.runs, TOLERANCE)
+    dense = np.vstack([run.points[:-1] for run in contour.runs])
+    good = deviation(vertices, bulges, dense)
+    longest = int(
+        np.argmax(np.abs(bulges) * np.hypot(*np.diff(vertices, axis=0, append=vertices[:1]).T))
+    )
+    if fault == "sign":
+        bulges = bulges.copy()
+        bulges[longest] *= -1
+    elif fault == "dropped":
+        vertices, bulges = np.delete(vertices, longest, 0), np.delete(bulges, longest)
+    elif fault == "scaled":
+        vertices = vertices / 25.4
+    else:
+        vertices = vertices + np.array([2e-3, 0.0])
+    assert good <= 1.03 * TOLERANCE
+    assert deviation(vertices, bulges, dense) > 1.5 * TOLERANCE
+
+
+def test_an_arc_that_only_the_polyline_has_is_seen() -> None:
+    """Every dense point lies on the polyline, but the polyline also goes elsewhere."""
+    square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+    spur = np.vstack([square[:1], [[5.0, 0.0], [5.0, -3.0], [5.0, 0.0]], square[1:]])
+    assert distances(square, spur, np.zeros(7)).max() == 0
+    assert deviation(spur, np.zeros(7), square) == pytest.approx(3.0, rel=0.2)
+
+
+@pytest.mark.parametrize("bulge", [0.0, 1e-12, -1e-5, 0.3, -0.3, 1.0, -1.0, 2.5, -2.5])
+def test_distances_to_one_arc_are_exact(bulge: float) -> None:
+    """Against a brute search over a fine subdivision of the arc, made by another formula."""
+    p, q = np.array([1.0, 2.0]), np.array([4.0, -2.0])
+    points = np.random.default_rng(1).uniform(-8, 8, (200, 2))
+    found = distances(points, np.array([p, q]), np.array([bulge]), closed=False)
+    z, w = complex(*p), complex(*q)
+    if abs(bulge) < 1e-9:
+        places = z + (w - z) * np.linspace(0, 1, 40001)
+    else:
+        centre = 0.5 * (z + w) + 0.5j * (w - z) * (1 - bulge**2) / (2 * bulge)
+        places = centre + (z - centre) * np.exp(4j * np.arctan(bulge) * np.linspace(0, 1, 40001))
+    assert places[-1] == pytest.approx(w, abs=1e-6)
+    brute = np.abs((points[:, 0] + 1j * points[:, 1])[:, None] - places).min(axis=1)
+    assert found == pytest.approx(brute, abs=2e-5)
+
+
+def test_distances_do_not_depend_on_the_blocks() -> None:
+    contour = gear_contour(12, 5.0, 1e-2)
+    vertices, bulges = fit_closed(contour.runs, 1e-2)
+    points = np.random.default_rng(2).uniform(-40, 40, (300, 2))
+    together = distances(points, vertices, bulges)
+    alone = [distances(point[None], vertices, bulges)[0] for point in points]
+    each = [
+        min(
+            distances(
+                point[None], vertices[[k, (k + 1) % len(vertices)]], bulges[k : k + 1], False
+            )[0]
+            for k in range(len(vertices))
+        )
+        for point in points[:10]
+    ]
+    assert together == pytest.approx(np.array(alone), abs=1e-13)
+    assert together[:10] == pytest.approx(np.array(each), abs=1e-13)
+
+
+def test_flattening_keeps_the_sagitta_and_the_area() -> None:
+    quarter = math.tan(math.pi / 8)
+    corners = 10 * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    bulges = np.full(4, quarter)
+    points = flatten_bulges(corners, bulges, 1e-3)
+    assert np.hypot(*points.T) == pytest.approx(10.0, abs=1e-12)
+    middles = 0.5 * (points + np.roll(points, -1, 0))
+    sagitta = 10 - np.hypot(*middles.T).min()
+    assert 0.8e-3 < sagitta <= 1e-3
+    x, y = points.T
+    assert 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) == pytest.approx(
+        100 * np.pi, rel=2e-4
+    )
+
+
+def test_an_open_polyline_keeps_its_last_point() -> None:
+    run = sample(squashed(arc(0, 10, 0, 1), (1, 0.5), 0.2), 1e-5)[0]
+    vertices, bulges = fit_arcs(run, TOLERANCE)
+    points = flatten_bulges(vertices, bulges, 1e-4, closed=False)
+    assert (points[-1] == run.points[-1]).all()
+    with pytest.raises(ValueError, match="bulges"):
+        flatten_bulges(vertices, bulges, 1e-4, closed=True)

@@ -1,0 +1,133 @@
+"""Parts have the area and volume of what is cut, and timing marks lie on solid metal."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from gearcam.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
+from gearcam.errors import InfeasibleError
+from gearcam.numeric.contour import Contour, Run
+from gearcam.parts import Blank, Mark, Part, circle_points, timing_mark
+from gearcam.quantities import params_of
+from helpers_contour import gear_contour, square_contour
+
+
+def reverse(contour: Contour) -> Contour:
+    """The same curve, clockwise."""
+    runs = tuple(Run(points=r.points[::-1], tangents=-r.tangents[::-1]) for r in contour.runs[::-1])
+    return Contour(runs=runs, vertices=contour.vertices[::-1], tolerance=1e-3, chord_error=0.0)
+
+
+def test_area_and_volume_of_a_square_plate() -> None:
+    mark = Mark(center=np.array([12.0, 0.0]), diameter=2.0, depth=0.5)
+    part = Part(
+        name="plate", contour=square_contour(30.0), bore_diameter=10.0, width=8.0, marks=(mark,)
+    )
+    assert part.area == pytest.approx(900 - 25 * math.pi, rel=1e-14)
+    assert part.volume == pytest.approx((900 - 25 * math.pi) * 8 - 0.5 * math.pi, rel=1e-14)
+    assert part.region.area == pytest.approx(part.area, rel=1e-4)
+    assert len(part.region.interiors) == 1
+
+
+def test_a_part_without_bore_has_none() -> None:
+    part = Part(name="plate", contour=square_contour(30.0), bore_diameter=None, width=8.0)
+    assert part.area == pytest.approx(900, rel=1e-14)
+    assert len(part.region.interiors) == 0
+    assert wheel_drawing(part).layers == ("OUTLINE",)
+
+
+def test_wrong_parts_are_refused() -> None:
+    contour = square_contour(30.0)
+    with pytest.raises(ValueError, match="counter-clockwise"):
+        Part(name="p", contour=reverse(contour), bore_diameter=None, width=8.0)
+    with pytest.raises(ValueError, match="width"):
+        Part(name="p", contour=contour, bore_diameter=None, width=0.0)
+    with pytest.raises(ValueError, match="bore"):
+        Part(name="p", contour=contour, bore_diameter=-1.0, width=8.0)
+
+
+def test_the_blank_is_a_parameter_set() -> None:
+    assert Blank().bore_diameter is None
+    assert [f.name for f in fields(Blank)] == list(params_of(Blank)) == ["bore_diameter"]
+    assert params_of(Blank)["bore_diameter"].key("bore_diameter") == "bore_diameter_mm"
+
+
+def test_the_marks_face_each_other_on_the_line_of_centres() -> None:
+    first = timing_mark(100.0, 0.0, 5.0, 6.25, 50.0, bore_diameter=40.0)
+    second = timing_mark(80.0, math.pi, 5.0, 6.25, 50.0, bore_diameter=40.0)
+    assert first.diameter == second.diameter == pytest.approx(2.0)
+    assert first.depth == 0.5
+    assert first.center == pytest.approx([100 - 6.25 - 1 - 1, 0.0], abs=1e-12)
+    assert second.center == pytest.approx([-(80 - 6.25 - 1 - 1), 0.0], abs=1e-12)
+
+
+def test_a_thin_wheel_gets_a_shallow_mark() -> None:
+    assert timing_mark(100.0, 0.0, 5.0, 6.25, 2.0).depth == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("rim", [0.01, 0.3, 1.0, 2.9, 3.1, 50.0])
+@pytest.mark.parametrize("tilt", [0.0, 0.6])
+def test_a_mark_lies_between_bore_and_root(rim: float, tilt: float) -> None:
+    """Distances to the root along the centrode's normal, to the bore along the radius."""
+    bore = 2 * (100 - (6.25 + rim) / math.cos(tilt))
+    mark = timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_diameter=bore, tilt=tilt)
+    to_bore = mark.center[0] - bore / 2 - mark.diameter / 2
+    to_root = (100 - mark.center[0]) * math.cos(tilt) - 6.25 - mark.diameter / 2
+    assert to_bore > 0.2 * rim
+    assert to_root > min(0.9, 0.3 * rim)
+    assert 0 < mark.diameter <= 2.0
+
+
+def test_no_rim_no_mark() -> None:
+    with pytest.raises(InfeasibleError, match="no room for a timing mark") as caught:
+        timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_diameter=187.5)
+    assert caught.value.limit == pytest.approx(187.5)
+    assert "187.5" in caught.value.nearest
+
+
+def test_circle_points_keep_the_sagitta() -> None:
+    points = circle_points((1.0, 2.0), 40.0, 1e-3)
+    assert np.hypot(*(points - [1.0, 2.0]).T) == pytest.approx(20.0, abs=1e-12)
+    middles = 0.5 * (points + np.roll(points, -1, 0)) - [1.0, 2.0]
+    sagitta = 20 - np.hypot(*middles.T).min()
+    assert 0.9e-3 < sagitta <= 1e-3
+
+
+def test_placing_turns_then_shifts() -> None:
+    contour = gear_contour(8, 3.0)
+    moved = placed(contour, 0.4, (10.0, -3.0))
+    assert isinstance(moved, Contour)
+    c, s = math.cos(0.4), math.sin(0.4)
+    turn = np.array([[c, -s], [s, c]])
+    assert moved.vertices == pytest.approx(contour.vertices @ turn.T + [10, -3], abs=1e-12)
+    assert moved.runs[3].points == pytest.approx(
+        contour.runs[3].points @ turn.T + [10, -3], abs=1e-12
+    )
+    assert moved.runs[3].tangents == pytest.approx(contour.runs[3].tangents @ turn.T, abs=1e-12)
+    assert moved.area == pytest.approx(contour.area, rel=1e-12)
+    circle = placed(Circle(center=np.array([1.0, 0.0]), diameter=2.0), math.pi / 2, (5.0, 0.0))
+    assert isinstance(circle, Circle)
+    assert circle.center == pytest.approx([5.0, 1.0], abs=1e-15)
+    assert placed(contour, 0.0, (0.0, 0.0)) is contour
+
+
+def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:
+    contour = gear_contour(8, 3.0)
+    part = Part(name="g", contour=contour, bore_diameter=6.0, width=5.0)
+    centrode = np.array([[12.0, 0.0], [0.0, 9.0], [-12.0, 0.0]])
+    drawing = pair_drawing([part, part], 24.0, [centrode, centrode])
+    first, second = drawing.contours
+    assert second.vertices - first.vertices == pytest.approx(
+        np.tile([24.0, 0.0], (len(first.vertices), 1))
+    )
+    paths = [f.shape for f in drawing.features if isinstance(f.shape, Path)]
+    assert paths[1].points[0].tolist() == [36.0, 0.0]
+    assert drawing.layers == (
+        "GEAR1_OUTLINE", "GEAR1_BORE", "GEAR2_OUTLINE", "GEAR2_BORE", "CENTRODE", "CENTER",
+    )  # fmt: skip
+    with pytest.raises(ValueError, match="two parts"):
+        pair_drawing([part], 24.0)

@@ -1,0 +1,211 @@
+"""A build's files are written whole or not at all, and stale ones go."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+from pathlib import Path
+
+import pytest
+
+from gearcam.errors import WriteError
+from gearcam.export.write import is_plain, previous_files, write_all
+
+
+def summary(*names: object) -> bytes:
+    return json.dumps({"format": 1, "files": list(names)}).encode()
+
+
+def build(folder: Path, files: dict[str, bytes]) -> tuple[str, ...]:
+    return write_all(folder, {"summary.json": summary(*files), **files})
+
+
+def state(folder: Path) -> dict[str, bytes]:
+    """Every file of a folder, hidden ones too."""
+    return {place.name: place.read_bytes() for place in folder.iterdir() if place.is_file()}
+
+
+def test_files_are_written_into_a_new_folder(tmp_path: Path) -> None:
+    folder = tmp_path / "a" / "b"
+    assert build(folder, {"one.dxf": b"1", "two.csv": b"\x00\r\n"}) == ()
+    assert state(folder) == {
+        "one.dxf": b"1", "two.csv": b"\x00\r\n", "summary.json": summary("one.dxf", "two.csv"),
+    }  # fmt: skip
+
+
+def test_files_have_ordinary_permissions(tmp_path: Path) -> None:
+    build(tmp_path, {"one.dxf": b"1"})
+    (tmp_path / "plain").write_bytes(b"")
+    assert (tmp_path / "one.dxf").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+def test_stale_files_are_removed_and_others_left(tmp_path: Path) -> None:
+    build(tmp_path, {"one.dxf": b"1", "two.dxf": b"2", "three.stl": b"3"})
+    (tmp_path / "mine.txt").write_bytes(b"keep")
+    (tmp_path / "two.dxf").unlink()
+    assert build(tmp_path, {"one.dxf": b"new"}) == ("three.stl",)
+    assert state(tmp_path) == {
+        "one.dxf": b"new", "mine.txt": b"keep", "summary.json": summary("one.dxf"),
+    }  # fmt: skip
+
+
+ELSEWHERE = ["../mine.txt", "/etc/hosts", "sub/mine.txt", "..", ".", "", ".hidden", 7, None]
+STRANGE = {
+    "empty": b"",
+    "cut": b"{",
+    "list": b"[]",
+    "null": b"null",
+    "number": b'{"files": 3}',
+    "mapping": b'{"files": {"mine.txt": 1}}',
+    "no text": b"\xff\xfe",
+    "deep": b"[" * 100_000,
+    "elsewhere": summary(*ELSEWHERE),
+}
+
+
+@pytest.mark.parametrize("content", STRANGE.values(), ids=STRANGE)
+def test_a_strange_summary_removes_nothing(tmp_path: Path, content: bytes) -> None:
+    folder = tmp_path / "out"
+    (folder / "sub").mkdir(parents=True)
+    for place in (
+        tmp_path / "mine.txt",
+        folder / "mine.txt",
+        folder / "sub" / "mine.txt",
+        folder / ".hidden",
+    ):
+        place.write_bytes(b"keep")
+    (folder / "summary.json").write_bytes(content)
+    assert build(folder, {"one.dxf": b"1"}) == ()
+    assert (tmp_path / "mine.txt").exists()
+    assert (folder / "sub" / "mine.txt").exists()
+    assert state(folder).keys() == {"one.dxf", "summary.json", "mine.txt", ".hidden"}
+
+
+def test_stale_links_are_removed_but_not_followed(tmp_path: Path) -> None:
+    folder, outside = tmp_path / "out", tmp_path / "outside.txt"
+    outside.write_bytes(b"keep")
+    build(folder, {"one.dxf": b"1"})
+    (folder / "summary.json").write_bytes(summary("one.dxf", "link.dxf", "folder"))
+    (folder / "link.dxf").symlink_to(outside)
+    (folder / "folder").mkdir()
+    assert build(folder, {"one.dxf": b"1"}) == ("link.dxf",)
+    assert outside.read_bytes() == b"keep"
+    assert (folder / "folder").is_dir()
+    assert not (folder / "link.dxf").is_symlink()
+
+
+def test_a_link_in_the_way_is_replaced_but_not_followed(tmp_path: Path) -> None:
+    folder, outside = tmp_path / "out", tmp_path / "outside.txt"
+    outside.write_bytes(b"keep")
+    folder.mkdir()
+    (folder / "one.dxf").symlink_to(outside)
+    build(folder, {"one.dxf": b"1"})
+    assert outside.read_bytes() == b"keep"
+    assert (folder / "one.dxf").read_bytes() == b"1"
+    assert not (folder / "one.dxf").is_symlink()
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("after", range(6))
+@pytest.mark.parametrize("existing", [True, False])
+def test_a_failure_at_any_move_leaves_everything_as_it_was(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    error: BaseException,
+    after: int,
+    existing: bool,
+) -> None:
+    """Five moves: three files, one stale file put aside, the summary."""
+    folder = tmp_path / "out"
+    before: dict[str, bytes] = {}
+    if existing:
+        build(folder, {"one.dxf": b"1", "two.dxf": b"2", "stale.dxf": b"s"})
+        before = state(folder)
+    real, calls = os.replace, []
+
+    def failing(source: str, target: str) -> None:
+        calls.append(target)
+        if len(calls) == after + 1:
+            raise error
+        real(source, target)
+
+    monkeypatch.setattr(os, "replace", failing)
+    new = {"one.dxf": b"one", "two.dxf": b"two", "new.dxf": b"new"}
+    moves = 5 if existing else 4
+    if after >= moves:
+        build(folder, new)
+        assert state(folder).keys() == {*new, "summary.json"}
+        return
+    with pytest.raises((WriteError, KeyboardInterrupt)):
+        build(folder, new)
+    if existing:
+        assert state(folder) == before
+    else:
+        assert not folder.exists()
+
+
+def test_the_summary_is_replaced_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    build(tmp_path, {"one.dxf": b"1", "stale.dxf": b"s"})
+    real, moved = os.replace, []
+
+    def watching(source: Path, target: Path) -> None:
+        moved.append("stale.dxf" if Path(source).name == "stale.dxf" else Path(target).name)
+        real(source, target)
+
+    monkeypatch.setattr(os, "replace", watching)
+    build(tmp_path, {"one.dxf": b"1", "two.dxf": b"2"})
+    assert moved == ["one.dxf", "two.dxf", "stale.dxf", "summary.json"]
+
+
+def test_a_disk_that_refuses_leaves_everything_as_it_was(tmp_path: Path) -> None:
+    """A real refusal half way through the second file, by the limit of a file's size."""
+    build(tmp_path, {"one.dxf": b"1"})
+    before, limits = state(tmp_path), resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, limits[1]))
+    try:
+        with pytest.raises(WriteError, match=r"cannot write to .*two\.dxf: "):
+            build(tmp_path, {"one.dxf": b"new", "two.dxf": bytes(200_000)})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert state(tmp_path) == before
+
+
+def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
+    (tmp_path / "out").write_bytes(b"keep")
+    for folder in (tmp_path / "out", tmp_path / "out" / "deeper"):
+        with pytest.raises(WriteError, match="cannot write to"):
+            build(folder, {"one.dxf": b"1"})
+    assert state(tmp_path) == {"out": b"keep"}
+
+
+def test_a_folder_in_place_of_a_file(tmp_path: Path) -> None:
+    (tmp_path / "two.dxf").mkdir()
+    with pytest.raises(WriteError, match=r"two\.dxf: a folder is in the way"):
+        build(tmp_path, {"one.dxf": b"1", "two.dxf": b"2"})
+    assert state(tmp_path) == {}
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="the superuser may write everywhere")
+def test_a_folder_that_may_not_be_written(tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(WriteError, match="Permission denied"):
+            build(tmp_path, {"one.dxf": b"1"})
+    finally:
+        tmp_path.chmod(0o700)
+
+
+@pytest.mark.parametrize(
+    "name", ["", ".", "..", "a/b", "a\\b", "../x", "/x", "c:x", ".hidden", "a\0b"]
+)
+def test_names_that_are_not_plain_are_refused(tmp_path: Path, name: str) -> None:
+    assert not is_plain(name)
+    with pytest.raises(ValueError, match="plain"):
+        write_all(tmp_path, {name: b""})
+
+
+def test_previous_files_are_read_once_each(tmp_path: Path) -> None:
+    (tmp_path / "summary.json").write_bytes(summary("a.dxf", "b.dxf", "a.dxf", "summary.json"))
+    assert previous_files(tmp_path) == ("a.dxf", "b.dxf")
+    assert previous_files(tmp_path / "none") == ()
