@@ -25,7 +25,7 @@ from gearcam.errors import DesignError, InfeasibleError, Problem, WriteError
 
 if TYPE_CHECKING:
     from gearcam.findings import Finding
-    from gearcam.jobs import GearPairJob
+    from gearcam.jobs import GearPairJob, Progress, Written
 
 GOOD: Final = 0
 FINDINGS: Final = 1
@@ -106,9 +106,8 @@ def build(
     """Build designs into DIR/<name>/."""
     kinds = _kinds(only)
 
-    def action(job: GearPairJob, progress: Callable[..., None] | None) -> Iterator[str]:
-        written = job.write(output, files=kinds, progress=progress)
-        yield from _written_lines(written)
+    def action(job: GearPairJob, progress: Progress | None) -> Written:
+        return job.write(output, files=kinds, progress=progress)
 
     _each(files, "built", action, debug=debug)
 
@@ -117,8 +116,8 @@ def build(
 def check(files: Files, output: Output = "output", debug: Debug = False) -> None:
     """Check designs and write nothing but DIR/<name>/summary.json."""
 
-    def action(job: GearPairJob, progress: Callable[..., None] | None) -> Iterator[str]:  # noqa: ARG001
-        yield from _written_lines(job.check(output))
+    def action(job: GearPairJob, progress: Progress | None) -> Written:  # noqa: ARG001
+        return job.check(output)
 
     _each(files, "checked", action, debug=debug)
 
@@ -212,7 +211,7 @@ def _refuse(problems: Sequence[Problem]) -> None:
     raise typer.Exit(WRONG)
 
 
-Action = Callable[["GearPairJob", "Callable[..., None] | None"], Iterator[str]]
+Action = Callable[["GearPairJob", "Progress | None"], "Written"]
 
 
 def _each(files: Sequence[str], done: str, action: Action, *, debug: bool) -> None:
@@ -245,18 +244,18 @@ def _each(files: Sequence[str], done: str, action: Action, *, debug: bool) -> No
 
 def _one(file: str, names: dict[str, str], done: str, action: Action) -> int:
     """Do something with one file and say what came of it."""
-    from gearcam.jobs import GearPairJob
-
     start = time.perf_counter()
     design = load(file)
     _demand_new_name(design, file, names)
+    from gearcam.jobs import GearPairJob  # a file that is refused needs none of it
+
     job = GearPairJob(design)
     with _progress(file) as progress:
-        lines = list(action(job, progress))
-        findings = tuple(job.findings)
-        head = [*_pair_lines(job.summary()), *_finding_lines(findings)]
+        written = action(job, progress)
     _say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
-    _say(textwrap.indent("\n".join([*head, *lines]), "  "))
+    findings = job.findings
+    told = [_pair_lines(written.summary), _finding_lines(findings), _written_lines(written)]
+    _say(textwrap.indent("\n".join(line for lines in told for line in lines), "  "))
     return FINDINGS if any(finding.severity == "error" for finding in findings) else GOOD
 
 
@@ -294,12 +293,11 @@ def _finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
         yield _wrapped(finding.message, first="      ", rest="      ")
 
 
-def _written_lines(written: Any) -> Iterator[str]:
-    folder = Path(written.directory)
-    names = [str(name) for name in written.files]
+def _written_lines(written: Written) -> Iterator[str]:
+    folder = written.directory
     yield f"written to {folder}"
-    width = max((len(name) for name in names), default=0)
-    for name in names:
+    width = max(map(len, (*written.files, *written.removed)), default=0)
+    for name in written.files:
         yield f"  {name:<{width}}  {_size(folder / name):>9}"
     for name in written.removed:
         yield f"  {name:<{width}}  removed: no longer part of the design"
@@ -342,7 +340,7 @@ def _wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:
 
 
 @contextlib.contextmanager
-def _progress(file: str) -> Iterator[Callable[..., None] | None]:
+def _progress(file: str) -> Iterator[Progress | None]:
     """Draw a bar while long work runs, on a terminal; elsewhere there is nothing to call."""
     if not sys.stderr.isatty():
         yield None
@@ -353,7 +351,7 @@ def _progress(file: str) -> Iterator[Callable[..., None] | None]:
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(file, total=None)
 
-        def advance(stage: str, done: int = 0, total: int | None = None) -> None:
+        def advance(stage: str, done: int, total: int) -> None:
             bar.update(task, description=f"{file}: {stage}", completed=done, total=total)
 
         yield advance

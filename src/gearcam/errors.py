@@ -2,9 +2,11 @@
 
 Three kinds of refusal, each from a common base and from the builtin that fits:
 
-* `DesignError`: the design file (or the call) is wrong by reading it. It carries every problem of the
+* `DesignError`: the design file (or the call) is wrong by reading it. It carries every problem of
+the
   file at once, each with its place.
-* `InfeasibleError`: the design reads well, but computing shows that it cannot be made. It carries the
+* `InfeasibleError`: the design reads well, but computing shows that it cannot be made. It carries
+the
   number that fails, the limit, and the nearest feasible value where one is known.
 * `WriteError`: the disk refuses.
 """

@@ -1,9 +1,9 @@
 """Findings, error estimates, and the registry of checks.
 
-A *check* looks at one aspect of a built design and yields *findings*: poor but buildable. What cannot be
-built raises instead. Checks live beside what they check and register themselves with `check`; their
-limits are the keys of the design file's ``[limits]`` table. Severities: ``note`` (good to know),
-``warning`` (look before you cut), ``error`` (do not cut).
+A *check* looks at one aspect of a built design and yields *findings*: poor but buildable. What
+cannot be built raises instead. Checks live beside what they check and register themselves with
+`check`; their limits are the keys of the design file's ``[limits]`` table. Severities: ``note``
+(good to know), ``warning`` (look before you cut), ``error`` (do not cut).
 """
 
 from __future__ import annotations
@@ -100,7 +100,9 @@ def check(
         If the code is taken.
     """
 
-    def register(run: Callable[[Any, float], Iterable[Finding]]) -> Callable[..., Iterable[Finding]]:
+    def register(
+        run: Callable[[Any, float], Iterable[Finding]],
+    ) -> Callable[..., Iterable[Finding]]:
         if code in CHECKS:
             raise ValueError(f"check {code!r} is registered twice")
         CHECKS[code] = Check(code=code, kind=kind, doc=doc, limit=limit, run=run)

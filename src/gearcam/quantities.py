@@ -1,9 +1,9 @@
 """Quantities: the units of parameters, and where they are turned into mm and rad.
 
-Parameters of laws, racks and blanks are frozen dataclasses whose fields are made by `param`. Inside the
-program their values are mm and rad; a design file writes them under ``name + suffix`` (``knots`` becomes
-``knots_deg``) in the unit of the quantity. The file's keys, ranges, schema and messages all follow from
-these fields, so that a new law stays one short entry.
+Parameters of laws, racks and blanks are frozen dataclasses whose fields are made by `param`.
+Inside the program their values are mm and rad; a design file writes them under ``name + suffix``
+(``knots`` becomes ``knots_deg``) in the unit of the quantity. The file's keys, ranges, schema and
+messages all follow from these fields, so that a new law stays one short entry.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ class Tolerances:
     Parameters
     ----------
     expansion : float
-        Relative truncation error allowed to a Chebyshev expansion of a piece. Near the rounding error
-        of double precision: expansions are the root of every length and angle.
+        Relative truncation error allowed to a Chebyshev expansion of a piece. Near the rounding
+        error of double precision: expansions are the root of every length and angle.
     refusal : float
         Largest miss of the driven angle over a lobe that is built at all, rad: 1e-6 rad is 0.2
         micrometres at 200 mm. Ratios typed with seven digits pass, with a finding (see the check
@@ -23,8 +23,8 @@ class Tolerances:
     crossing : float
         Distance at which the crossing of two curves counts as found, in modules.
     oversampling : int
-        Dense points per final chord of an outline; 8 makes the error of the dense polygon 1/64 of the
-        chord error.
+        Dense points per final chord of an outline; 8 makes the error of the dense polygon 1/64 of
+        the chord error.
     """
 
     expansion: float = 1e-15

@@ -100,29 +100,44 @@ def _loaded_at_import(body: list[ast.stmt]) -> Iterator[ast.Import | ast.ImportF
 # --- docstrings ---------------------------------------------------------------------------------
 
 
-def docstring_faults(path: Path) -> list[str]:
+def promised_methods(*paths: Path) -> frozenset[str]:
+    """Names of the methods of protocols: described there, once for all who keep the promise."""
+    return frozenset(
+        item.name
+        for path in paths
+        for node in ast.walk(parse(path))
+        if isinstance(node, ast.ClassDef) and "Protocol" in map(ast.unparse, node.bases)
+        for item in node.body
+        if isinstance(item, Function)
+    )
+
+
+def docstring_faults(path: Path, promised: frozenset[str] = frozenset()) -> list[str]:
     """Public names without a docstring, or with one that leaves out what numpydoc asks for.
 
-    A function of two parameters or more names each under Parameters, or defers with
-    "(see `Name`)"; one that returns says so, under Returns or by a first sentence "Return ..." or
-    "Yield ..."; what it raises itself is named. Every field of a dataclass is named in the
-    docstring of its class, or carries its own `doc=`. Private names, magic methods and overloads
-    are free; properties need their one line.
+    A function of two parameters or more names each under Parameters, or in its one paragraph, or
+    defers with "(see `Name`)"; one that returns says so, under Returns or by a first sentence
+    "Return ..." or "Yield ..."; what it raises itself is named. Every field of a dataclass is named
+    in the docstring of its class, or carries its own `doc=`. Private names, magic methods and
+    overloads are free; properties, and functions of one parameter that state in one line what they
+    are, need that line; so do commands (their options carry help) and methods that a protocol
+    has promised.
     """
     tree = parse(path)
     faults = [] if ast.get_docstring(tree) else ["the module has no docstring"]
-    faults += _body_faults(tree.body, "")
+    faults += _body_faults(tree.body, "", promised)
     return [f"{path.name}: {fault}" for fault in faults]
 
 
-def _body_faults(body: list[ast.stmt], owner: str) -> list[str]:
+def _body_faults(body: list[ast.stmt], owner: str, promised: frozenset[str]) -> list[str]:
     faults: list[str] = []
     for node in body:
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
             faults += _class_faults(node, owner + node.name)
-            faults += _body_faults(node.body, f"{owner}{node.name}.")
+            faults += _body_faults(node.body, f"{owner}{node.name}.", promised)
         elif isinstance(node, Function) and not node.name.startswith("_"):
-            faults += _function_faults(node, owner + node.name, method=bool(owner))
+            brief = bool(owner) and node.name in promised
+            faults += _function_faults(node, owner + node.name, method=bool(owner), brief=brief)
     return faults
 
 
@@ -148,23 +163,21 @@ def _class_faults(node: ast.ClassDef, name: str) -> list[str]:
     ]
 
 
-def _function_faults(node: Function, name: str, *, method: bool) -> list[str]:
+def _function_faults(node: Function, name: str, *, method: bool, brief: bool) -> list[str]:
     marks = [ast.unparse(mark) for mark in node.decorator_list]
     if any(mark.endswith(("overload", ".setter")) for mark in marks):
         return []
     doc = ast.get_docstring(node)
     if not doc:
         return [f"{name} has no docstring"]
-    if any(mark.endswith("property") for mark in marks):
+    if brief or any(mark.endswith("property") or ".command(" in mark for mark in marks):
         return []
     static = any(mark.endswith("staticmethod") for mark in marks)
     parameters = _parameters(node, skip_first=method and not static)
     faults = _parameter_faults(parameters, doc, name)
-    returns = node.returns is not None and ast.unparse(node.returns) not in {
-        "None",
-        "NoReturn",
-        "Never",
-    }
+    plain = "\n" not in doc and len(parameters) < 2
+    silent = {"None", "NoReturn", "Never"}
+    returns = node.returns is not None and ast.unparse(node.returns) not in silent and not plain
     if returns and not (_section(doc, "(?:Returns|Yields)") or re.match("(Return|Yield)s? ", doc)):
         faults.append(f"{name}: what it returns is not described")
     raises = _section(doc, "Raises")
@@ -188,6 +201,8 @@ def _parameter_faults(parameters: list[str], doc: str, name: str) -> list[str]:
     section = _section(doc, "Parameters")
     if not section and (len(parameters) < 2 or re.search(r"\(see `\w[\w.]*`\)", doc)):
         return []
+    if "\n\n" not in doc:
+        section = doc
     return [
         f"{name}: parameter {parameter} is not described"
         for parameter in parameters

@@ -171,6 +171,12 @@ def test_files_that_do_not_hold_the_drawing_are_refused(part: Part, pair: Drawin
             read_dxf(damaged)
 
 
+def test_a_file_that_fails_the_audit_is_refused(part: Part) -> None:
+    data = dxf_bytes(wheel_drawing(part), TOLERANCE)
+    with pytest.raises(DxfError, match=r"faults \(1\)"):
+        read_dxf(data.replace(b"OUTLINE\n", b"OUT*LINE\n"))
+
+
 def test_straight_sides_stay_straight() -> None:
     square = Part(name="plate", contour=square_contour(10.0), bore_diameter=None, width=1.0)
     document = read_dxf(dxf_bytes(wheel_drawing(square), TOLERANCE))

@@ -163,6 +163,11 @@ def test_a_broken_mesh_is_refused(kind: str, fault: str, mesh: Mesh) -> None:
         FORMATS[kind][0](Mesh(vertices=vertices, triangles=triangles), "gear1")
 
 
+@pytest.mark.parametrize("triangles", [np.zeros((0, 3), int), np.array([[0, 0, 1]])])
+def test_nothing_and_folded_triangles_are_not_closed(triangles: np.ndarray) -> None:
+    assert not Mesh(vertices=np.eye(3), triangles=triangles).watertight
+
+
 @pytest.mark.parametrize("kind", ["stl", "glb"])
 def test_vertices_that_fall_together_in_single_precision_stay_closed(kind: str) -> None:
     """A square with a corner cut at 1e-7 mm: two vertices become one."""

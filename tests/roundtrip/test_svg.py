@@ -11,7 +11,7 @@ import pytest
 
 from gearcam.drawings import Drawing, pair_drawing
 from gearcam.export.svg import pair_notes, svg_bytes
-from gearcam.numeric.arcs import distances
+from gearcam.numeric.bulges import distances
 from gearcam.parts import Part, timing_mark
 from helpers_contour import gear_contour
 

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from gearcam.numeric.arcs import deviation, distances, fit_arcs, fit_closed, flatten_bulges
+from gearcam.numeric.arcs import fit_arcs, fit_closed
+from gearcam.numeric.bulges import deviation, distances, flatten_bulges
 from gearcam.numeric.contour import Run
 from helpers_contour import arc, disc_contour, gear_contour, line, sample, squashed
 
@@ -126,6 +127,27 @@ def test_a_wheel_takes_far_fewer_arcs_than_chords() -> None:
     assert len(vertices) < len(contour.vertices) / 3
     dense = np.vstack([run.points[:-1] for run in contour.runs])
     assert 0.8 * TOLERANCE < deviation(vertices, bulges, dense) <= TOLERANCE
+
+
+def test_a_flat_step_beside_a_sharp_bend_is_checked_within() -> None:
+    """A sharp arc runs smoothly into a flat one whose points lie far apart, as a fillet does.
+
+    An arc that carries on the bend's curvature leaves the curve most between two points of the flat
+    part; measured against the true curve, not its points.
+    """
+    worst = 0.0
+    for sharp in np.linspace(1.5, 3.0, 12):
+        bend, _ = sample(arc(sharp * 1j, sharp, -np.pi / 2 - 1.0, -np.pi / 2), TOLERANCE / 50)
+        flat, _ = sample(arc(-100j, 100, np.pi / 2, np.pi / 2 - 0.05), TOLERANCE / 50)
+        run = Run(
+            points=np.vstack([bend.points, flat.points[1:]]),
+            tangents=np.vstack([bend.tangents, flat.tangents[1:]]),
+        )
+        vertices, bulges = fit_arcs(run, TOLERANCE)
+        x = np.linspace(0.0, 3.0, 5000)
+        true = np.column_stack([x, np.sqrt(100**2 - x**2) - 100])
+        worst = max(worst, distances(true, vertices, bulges, closed=False).max())
+    assert 0.8 * TOLERANCE < worst < 1.03 * TOLERANCE
 
 
 @pytest.mark.parametrize("fault", ["sign", "dropped", "scaled", "shifted"])

@@ -65,6 +65,12 @@ def test_the_marks_face_each_other_on_the_line_of_centres() -> None:
     assert second.center == pytest.approx([-(80 - 6.25 - 1 - 1), 0.0], abs=1e-12)
 
 
+def test_a_mark_lies_in_its_direction() -> None:
+    x, y = timing_mark(100.0, 2.0, 5.0, 6.25, 50.0).center
+    assert math.atan2(y, x) == pytest.approx(2.0)
+    assert math.hypot(x, y) == pytest.approx(91.75)
+
+
 def test_a_thin_wheel_gets_a_shallow_mark() -> None:
     assert timing_mark(100.0, 0.0, 5.0, 6.25, 2.0).depth == pytest.approx(0.2)
 

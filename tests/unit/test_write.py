@@ -86,10 +86,11 @@ def test_stale_links_are_removed_but_not_followed(tmp_path: Path) -> None:
     folder, outside = tmp_path / "out", tmp_path / "outside.txt"
     outside.write_bytes(b"keep")
     build(folder, {"one.dxf": b"1"})
-    (folder / "summary.json").write_bytes(summary("one.dxf", "link.dxf", "folder"))
+    (folder / "summary.json").write_bytes(summary("one.dxf", "link.dxf", "dangling.dxf", "folder"))
     (folder / "link.dxf").symlink_to(outside)
     (folder / "folder").mkdir()
-    assert build(folder, {"one.dxf": b"1"}) == ("link.dxf",)
+    (folder / "dangling.dxf").symlink_to(tmp_path / "nowhere")
+    assert build(folder, {"one.dxf": b"1"}) == ("link.dxf", "dangling.dxf")
     assert outside.read_bytes() == b"keep"
     assert (folder / "folder").is_dir()
     assert not (folder / "link.dxf").is_symlink()
@@ -143,6 +144,27 @@ def test_a_failure_at_any_move_leaves_everything_as_it_was(
         assert state(folder) == before
     else:
         assert not folder.exists()
+
+
+def test_a_link_in_the_way_is_put_back_as_a_link(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, outside = tmp_path / "out", tmp_path / "outside.txt"
+    outside.write_bytes(b"keep")
+    folder.mkdir()
+    (folder / "one.dxf").symlink_to(outside)
+    real = os.replace
+
+    def failing(source: Path, target: Path) -> None:
+        real(source, target)
+        if Path(target).name == "two.dxf":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "replace", failing)
+    with pytest.raises(KeyboardInterrupt):
+        build(folder, {"one.dxf": b"1", "two.dxf": b"2"})
+    assert (folder / "one.dxf").readlink() == outside
+    assert [place.name for place in folder.iterdir()] == ["one.dxf"]
 
 
 def test_the_summary_is_replaced_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,10 +74,14 @@ class Rolling:
         panel = np.clip(np.searchsorted(arcs, rest, side="right") - 1, 0, len(arcs) - 2)
         low, high = self._edges[panel], self._edges[panel + 1]
         phi = low + (high - low) * (rest - arcs[panel]) / (arcs[panel + 1] - arcs[panel])
-        for _ in range(6):
+        for _ in range(4):
             _, _, r, dr = self._radii(panel, phi)
             phi = phi - (arcs[panel] + self._panel(panel, low, phi)[0] - rest) / np.hypot(r, dr)
         return panel, phi, driven[panel] + self._panel(panel, low, phi)[1], turn
+
+    def angles(self, s: Array) -> Array:
+        """Driver angles, rad, at arc lengths within one turn."""
+        return self._angles(np.asarray(s, dtype=float))[1]
 
     def frames(self, wheel: int, s: Array) -> Frames:
         """The frames of wheel 1 or 2 in its own coordinates, at arc lengths s in mm."""

@@ -12,14 +12,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from witness.kinematics import Basic, Rolling
+from witness.kinematics import Basic, Frames, Rolling
 
 Array = NDArray[np.float64]
 REACH = 4.6
 """How far from a space, in modules, its cutter tooth still touches it."""
 
 
-def rack_tooth(basic: Basic, arc_points: int = 800) -> Array:
+def rack_tooth(basic: Basic, arc_points: int) -> Array:
     """One cutter tooth, (n, 2) in mm: x along the pitch line from its middle, y outward."""
     m, alpha = basic.module, basic.alpha
     depth = basic.dedendum - basic.tip_radius
@@ -46,13 +46,18 @@ def positions(length: float, middle: float, reach: float, steps: int) -> Array:
     return step * np.arange(first, last + 1)
 
 
-def cut_space(rolling: Rolling, wheel: int, k: int, basic: Basic, steps: int) -> shapely.Geometry:
+def cut_space(
+    rolling: Rolling, wheel: int, k: int, basic: Basic, steps: int, *, arc_points: int = 800
+) -> shapely.Geometry:
     """What the rack's tooth takes out of the plane around the space that follows tooth k."""
     middle = basic.space(wheel, k)
     s = positions(rolling.length, middle, REACH * basic.module, steps)
-    at = rolling.frames(wheel, s)
-    tooth = rack_tooth(basic)
-    along = middle + tooth[None, :, 0] - s[:, None]
+    return cut_at(rolling.frames(wheel, s), middle - s, rack_tooth(basic, arc_points))
+
+
+def cut_at(at: Frames, ahead: Array, tooth: Array) -> shapely.Geometry:
+    """The union of one tooth at positions: their frames, and how far ahead its middle is."""
+    along = ahead[:, None] + tooth[None, :, 0]
     rings = (
         at.point[:, None]
         + along[..., None] * at.tangent[:, None]
@@ -61,12 +66,34 @@ def cut_space(rolling: Rolling, wheel: int, k: int, basic: Basic, steps: int) ->
     return shapely.union_all(shapely.polygons(rings))
 
 
+def whole_wheel(
+    rolling: Rolling, wheel: int, teeth: int, basic: Basic, steps: int, arc_points: int
+) -> shapely.Geometry:
+    """The whole wheel: one union of all cutter teeth at all positions, one difference."""
+    s = rolling.length / steps * np.arange(steps)
+    at = rolling.frames(wheel, s)
+    middles = np.array([basic.space(wheel, k) for k in range(1, teeth + 1)])
+    ahead = middles[:, None] - s
+    ahead -= rolling.length * np.round(ahead / rolling.length)
+    tooth_number, position = np.nonzero(np.abs(ahead) <= REACH * basic.module)
+    near = Frames(at.point[position], at.tangent[position], at.normal[position])
+    cut = cut_at(near, ahead[tooth_number, position], rack_tooth(basic, arc_points))
+    edge = rolling.frames(wheel, rolling.length / (1000 * teeth) * np.arange(1000 * teeth))
+    disc = shapely.polygons(edge.point + basic.addendum * basic.module * edge.normal)
+    return shapely.difference(disc, cut)
+
+
 def blank(
-    rolling: Rolling, wheel: int, k: int, basic: Basic, height: float | None = None
+    rolling: Rolling,
+    wheel: int,
+    k: int,
+    basic: Basic,
+    height: float | None = None,
+    depth: float | None = None,
 ) -> shapely.Geometry:
     """The strip of the blank around a space: up to the tip curve, down to below the root.
 
-    `height` in modules replaces the addendum. Convex centrodes only: there the parallel of the
+    `height` and `depth` in modules replace these. Convex centrodes only: there the parallel of the
     centrode is its offset. (Concave: `height` must stay below the radius of curvature.)
     """
     m = basic.module
@@ -75,7 +102,8 @@ def blank(
     at = rolling.frames(wheel, s)
     top = basic.addendum if height is None else height
     outer = at.point + top * m * at.normal
-    inner = at.point - (basic.dedendum + 0.5) * m * at.normal
+    bottom = basic.dedendum + 0.5 if depth is None else depth
+    inner = at.point - bottom * m * at.normal
     return shapely.polygons(np.concatenate([outer, inner[::-1]]))
 
 

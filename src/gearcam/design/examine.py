@@ -35,7 +35,15 @@ _OPEN_PAIRS: Final = "open pairs (driven_travel_deg) are not built by this versi
 
 @dataclass
 class Examined:
-    """Faults, and the parameter objects of the tables that have none."""
+    """What an examination has found.
+
+    Parameters
+    ----------
+    faults : list of Fault
+        All that is wrong.
+    parts : dict
+        Parameter objects of what is right, by the names of a design's fields.
+    """
 
     faults: list[Fault] = field(default_factory=list)
     parts: dict[str, Any] = field(default_factory=dict)

@@ -48,7 +48,20 @@ def lines_of(text: str) -> dict[Path, int]:
 
 
 def line_at(lines: Mapping[Path, int], path: Path) -> int:
-    """Return the line of a path, or of its nearest parent that the text has."""
+    """Return the line of a path.
+
+    Parameters
+    ----------
+    lines : mapping of path to int
+        From `lines_of`.
+    path : tuple
+        Keys and item numbers.
+
+    Returns
+    -------
+    int
+        The line of the path, or of its nearest parent that the text has.
+    """
     while path and path not in lines:
         path = path[:-1]
     return lines.get(path, 1)

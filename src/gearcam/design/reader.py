@@ -97,7 +97,7 @@ def loads(text: str, *, file: str = "") -> GearPairDesign:
 
 
 def _problems(faults: list[Fault], text: str, file: str) -> list[Problem]:
-    lines = lines_of(text.replace("\r\n", "\n"))
+    lines = lines_of(text)
     placed = [
         Problem(
             message=fault.message,

@@ -113,7 +113,17 @@ class Entry:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The keys of one table of the file."""
+    """The keys of one table of the file.
+
+    Parameters
+    ----------
+    title : str
+        Its name in the file.
+    owner : type or None
+        The parameter dataclass; None for the limits, which belong to checks.
+    entries : mapping of str to Entry
+        By key.
+    """
 
     title: str
     owner: type | None
@@ -136,7 +146,20 @@ class Table:
 
 @lru_cache(maxsize=64)
 def table_of(title: str, owner: type) -> Table:
-    """Return the table of a parameter dataclass."""
+    """Return the table of a parameter dataclass.
+
+    Parameters
+    ----------
+    title : str
+        Its name in the file.
+    owner : type
+        The dataclass; its fields are made by `gearcam.quantities.param`.
+
+    Returns
+    -------
+    Table
+        With an entry for each field, in order.
+    """
     hints = typing.get_type_hints(owner)
     defaults = {field.name: field.default for field in dataclasses.fields(owner)}
     made = (

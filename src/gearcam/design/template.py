@@ -69,7 +69,8 @@ def _table(title: str, known: Table, given: Mapping[str, Any]) -> Iterator[str]:
     if known.entries:
         yield ""
         head = f"[{title}]"
-        yield _beside(head, _NOTES.get(title, "")) if given else f"# {head}"
+        note = _NOTES.get(title, "")
+        yield (_beside(head, note) if note else head) if given else f"# {head}"
         yield from _entries(known, given)
 
 

@@ -95,12 +95,12 @@ def key_hint(key: str, known: Mapping[str, Entry] | Iterable[str]) -> str:
     known : mapping of str to Entry, or iterable of str
         The keys of its table.
     """
-    if isinstance(known, Mapping):
-        stem = _SUFFIX.sub("", key)
-        for entry in known.values():
-            if stem == entry.name or nearest(stem, [entry.name]) == entry.name:
-                return f"did you mean {entry.key}?" + _unit_words(key, entry)
-    return did_you_mean(key, known)
+    if not isinstance(known, Mapping):
+        return did_you_mean(key, known)
+    named = {word: entry for entry in known.values() for word in (entry.key, entry.name)}
+    stem = _SUFFIX.sub("", key)
+    near = stem if stem in named else nearest(key, named)
+    return f"did you mean {named[near].key}?" + _unit_words(key, named[near]) if near else ""
 
 
 def _unit_words(key: str, entry: Entry) -> str:

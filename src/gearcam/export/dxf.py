@@ -32,7 +32,8 @@ from gearcam.drawings import (
     Shape,
 )
 from gearcam.errors import DesignError, GearcamError, Problem
-from gearcam.numeric.arcs import deviation, fit_closed
+from gearcam.numeric.arcs import fit_closed
+from gearcam.numeric.bulges import deviation
 from gearcam.numeric.contour import Contour
 
 if TYPE_CHECKING:
@@ -224,7 +225,7 @@ def read_dxf(data: bytes) -> Document:
     Raises
     ------
     DxfError
-        If the file is damaged, or ezdxf's audit finds errors in it.
+        If the file is damaged, or ezdxf's audit finds anything to report or to mend.
     """
     from ezdxf.filemanagement import read
     from ezdxf.lldxf.const import DXFError
@@ -233,9 +234,10 @@ def read_dxf(data: bytes) -> Document:
         document = read(io.StringIO(data.decode("utf-8")))
     except (DXFError, UnicodeDecodeError) as error:
         raise DxfError(f"the DXF file cannot be read: {error}") from error
-    errors = document.audit().errors
-    if errors:
-        raise DxfError(f"the DXF file has {len(errors)} faults, the first: {errors[0].message}")
+    audit = document.audit()
+    faults = [*audit.errors, *audit.fixes]
+    if faults:
+        raise DxfError(f"the DXF file has faults ({len(faults)}), the first: {faults[0].message}")
     return document
 
 

@@ -1,8 +1,9 @@
 """The cutter of a wheel: the rack, or where the centrode is concave a pinion conjugate to it.
 
-No straight rack can cut a concave centrode: rolled along it, it erases flank. A pinion cutter (shaper) of
-pitch curvature ``kc > max(-kappa)`` can, and cuts the same flanks, since it is conjugate to the rack. The
-rack is the pinion with ``kc = 0``, and every formula here has that limit.
+No straight rack can cut a concave centrode: rolled along it, it erases flank. A pinion cutter
+(shaper) of pitch curvature ``kc > max(-kappa)`` can, and cuts the same flanks, since it is
+conjugate to the rack. The rack is the pinion with ``kc = 0``, and every formula here has that
+limit.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import Rack
 
 _CONCAVE_MARGIN = 1.15
-"""kc over the sharpest concave curvature: enough for clearance, and still a large, strong cutter."""
+"""kc over the sharpest concave curvature: enough for clearance, and still a large cutter."""
 
 _FLAT = 1e-9
-"""Curvature times module below which a centrode counts as not concave (rounding of a straight part)."""
+"""Curvature times module below which a centrode counts as straight, not concave (rounding)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +31,8 @@ class Cutter:
     alpha : float, rad
         Pressure angle.
     addendum, dedendum, tip_radius : float, mm
-        Tooth height of the wheel above, depth below the pitch curve, and rounding of the cutter's tip.
+        Tooth height of the wheel above, depth below the pitch curve, and rounding of the cutter's
+        tip.
     kc : float, 1/mm
         Curvature of the cutter's pitch circle; 0 for the rack.
     half_space : float, mm
@@ -59,9 +61,9 @@ class Cutter:
         """Roll from the pitch point of a flank to its joint with the fillet, mm: |s - sf|.
 
         Rack: ``(d/sin(alpha) + rho)/cos(alpha)``. Pinion: ``(t + rho)/cos(alpha)`` with
-        ``t = R*sin(alphaR) - sin(alpha)/kc``, ``R = 1/kc + d``, ``cos(alphaR) = cos(alpha)/(kc*R)``;
-        written as ``t = d*(2 + kc*d)/(sqrt(sin(alpha)^2 + kc*d*(2 + kc*d)) + sin(alpha))``, which has the
-        rack as its limit without cancellation.
+        ``t = R*sin(alphaR) - sin(alpha)/kc``, ``R = 1/kc + d``, ``cos(alphaR) =
+        cos(alpha)/(kc*R)``; written as ``t = d*(2 + kc*d)/(root + sin(alpha))`` with ``root^2 =
+        sin(alpha)^2 + kc*d*(2 + kc*d)``, which has the rack as its limit without cancellation.
         """
         sine, d, kc = math.sin(self.alpha), self.depth, self.kc
         root = math.sqrt(sine * sine + kc * d * (2.0 + kc * d))
@@ -72,8 +74,8 @@ class Cutter:
     def offset(self) -> float:
         """Distance of the tip arc's centre from the flank along the pitch curve, mm.
 
-        Rack: ``rho/cos(alpha) + d*tan(alpha)``. Pinion: ``(inv(alphaR) - inv(alpha))/kc`` in place of
-        the second term.
+        Rack: ``rho/cos(alpha) + d*tan(alpha)``. Pinion: ``(inv(alphaR) - inv(alpha))/kc`` in place
+        of the second term.
         """
         d, kc = self.depth, self.kc
         edge = self.tip_radius / math.cos(self.alpha)
@@ -129,9 +131,9 @@ def choose_cutter(rack: Rack, module: float, concave_curvature: float, where: st
             value=1.0 / concave_curvature,
             limit=_smallest_concave_radius(cutter),
             unit="mm",
-            nearest=f"the smallest concave radius is {1.0 / concave_curvature:.6g} mm and must be at "
-            f"least {_smallest_concave_radius(cutter):.6g} mm: lower the ratio's swing, take a smaller "
-            "module (more teeth) or a smaller rack.tip_radius",
+            nearest=f"the smallest concave radius is {1.0 / concave_curvature:.6g} mm and must be "
+            f"at least {_smallest_concave_radius(cutter):.6g} mm: lower the ratio's swing, take a "
+            "smaller module (more teeth) or a smaller rack.tip_radius",
         )
     return cutter
 
@@ -144,4 +146,3 @@ def _smallest_concave_radius(cutter: Cutter) -> float:
         trial = replace(cutter, kc=middle)
         low, high = (middle, high) if trial.offset <= trial.half_space else (low, middle)
     return _CONCAVE_MARGIN / low if low > 0.0 else math.inf
-

@@ -1,9 +1,10 @@
 """Closed forms of a wheel's curves: flank, fillet, root land and tip.
 
-A *flank* is given by the arc length `sf` at which it crosses the pitch curve and its side `sigma` (+1 on
-the tooth's side of rising s). Its points are indexed by the roll s of the rack; ``w = sigma*(sf - s)`` is
-the *reach*, positive on the addendum, and the rack height is ``w*sin(alpha)*cos(alpha)``. All curves are
-functions of the driver angle phi, which gives s and the frame of the pitch point.
+A *flank* is given by the arc length `sf` at which it crosses the pitch curve and its side `sigma`
+(+1 on the tooth's side of rising s). Its points are indexed by the roll s of the rack; ``w =
+sigma*(sf - s)`` is the *reach*, positive on the addendum, and the rack height is
+``w*sin(alpha)*cos(alpha)``. All curves are functions of the driver angle phi, which gives s and
+the frame of the pitch point.
 """
 
 from __future__ import annotations
@@ -64,15 +65,16 @@ class Toothing:
 
     @cached_property
     def tooth_places(self) -> Array:
-        """Arc length of each tooth's middle, mm: wheel 1 at (k - 1), wheel 2 at (k - 1/2) pitches."""
-        return self.pitch * (np.arange(self.teeth) + (0.0 if self.wheel == 1 else 0.5))
+        """Arc length of each tooth's middle, mm: (k - 1) pitches, on wheel 2 (k - 1/2)."""
+        first = 0.0 if self.wheel == 1 else 0.5
+        return self.pitch * np.arange(first, first + self.teeth)
 
     def frames(self, phi: Array) -> Frames:
         """Return the frames of this wheel's centrode at driver angles, rad."""
         return self.rolling.frames(self.wheel, phi)
 
     def flank_points(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
-        """Return the flank's points at the frames: foot of the perpendicular from the pitch point."""
+        """Return the flank's points at the frames: feet of perpendiculars from the pitch point."""
         cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)
         normal = frames.t * (cosine + sigma * sine * self.turn)
         return frames.p + (sf - frames.s) * cosine * normal
@@ -114,7 +116,9 @@ class Rows:
     tooth: NDArray[np.int64]
 
 
-def trace(toothing: Toothing, rows: Rows, index: NDArray[np.int64], phi: Array) -> tuple[Plane, Plane]:
+def trace(
+    toothing: Toothing, rows: Rows, index: NDArray[np.int64], phi: Array
+) -> tuple[Plane, Plane]:
     """Return points and forward unit tangents of rows at driver angles.
 
     Parameters
@@ -139,14 +143,14 @@ def trace(toothing: Toothing, rows: Rows, index: NDArray[np.int64], phi: Array) 
     points, tangents = np.empty_like(frames.p), np.empty_like(frames.p)
 
     flank = np.flatnonzero(kind == Kind.FLANK)
-    part = Frames(*(values[flank] for values in frames))
+    part = frames.take(flank)
     cosine, sine = np.cos(cutter.alpha), np.sin(cutter.alpha)
     normal = part.t * (cosine + sigma[flank] * sine * w)
     points[flank] = part.p + (sf[flank] - part.s) * cosine * normal
     tangents[flank] = -sigma[flank] * w * normal
 
     fillet = np.flatnonzero(kind == Kind.FILLET)
-    part = Frames(*(values[fillet] for values in frames))
+    part = frames.take(fillet)
     arm = _tip_center(cutter, part, sf[fillet] + sigma[fillet] * cutter.offset, w)
     length = np.abs(arm)
     unit = np.where(length > 0.0, arm, -w * part.t) / np.where(length > 0.0, length, 1.0)
@@ -154,7 +158,7 @@ def trace(toothing: Toothing, rows: Rows, index: NDArray[np.int64], phi: Array) 
     tangents[fillet] = w * unit
 
     parallel = np.flatnonzero(kind >= Kind.LAND)
-    part = Frames(*(values[parallel] for values in frames))
+    part = frames.take(parallel)
     row = index[parallel]
     span = rows.end[row] - rows.start[row]
     fraction = (phi[parallel] - rows.start[row]) / np.where(span == 0.0, 1.0, span)

@@ -1,4 +1,4 @@
-"""The outline of a wheel: flanks, fillets, root lands and tips put together, trimmed and proved valid."""
+"""The outline of a wheel: flanks, fillets, lands and tips put together, trimmed and proved."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from gearcam.gears.spaces import (
 )
 from gearcam.gears.tips import TipEnds, feet, find_tips
 from gearcam.gears.undercut import Undercut, find_cusps
-from gearcam.numeric.contour import Contour
+from gearcam.numeric.contour import Contour, polygon_area
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -94,6 +94,11 @@ class Outline:
         points = as_pairs(self.sampler.chords[1])
         return points[::-1] if self.toothing.wheel == 2 else points
 
+    @cached_property
+    def area(self) -> float:
+        """Area of the polygon, mm^2."""
+        return polygon_area(self.points)
+
     @property
     def chord_error(self) -> float:
         """Largest measured distance of the curve from its chords, mm."""
@@ -135,8 +140,8 @@ def build_outline(
     toothing : Toothing
         The wheel.
     mate_reach : float, mm
-        Reach of the mate's flanks below its pitch curve: beyond it there is nothing to touch but the
-        mate's fillet, so this wheel's flanks end there.
+        Reach of the mate's flanks below its pitch curve: beyond it there is nothing to touch but
+        the mate's fillet, so this wheel's flanks end there.
     tolerance : float, mm
         Largest chord error.
     tolerances : Tolerances
@@ -253,7 +258,7 @@ def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossin
 
 
 def _demand_simple(outline: Outline) -> None:
-    """Refuse an outline that crosses itself: a tooth has been cut away, or two wheels' parts meet."""
+    """Refuse an outline that crosses itself: a tooth has been cut away."""
     from shapely import LinearRing, is_valid_reason
 
     ring = LinearRing(outline.points)

@@ -1,10 +1,11 @@
 """Two centrodes that roll on each other, and the frames on them.
 
-Both wheels share one parameter, the driver angle `phi` (rad, any number of turns), and one arc length
-``s(phi)``: rolling gives equal lengths. At `phi` the wheel carries the *frame* of its pitch point in its
-own coordinates: point P, unit tangent T (rising s), outward unit normal ``N = w*T`` with ``w = -1j`` on
-wheel 1 (where s runs counter-clockwise) and ``w = +1j`` on wheel 2 (clockwise), and the curvature kappa,
-so that ``dT/ds = -kappa*N`` and ``dN/ds = +kappa*T`` on both.
+Both wheels share one parameter, the driver angle `phi` (rad, any number of turns), and one arc
+length ``s(phi)``: rolling gives equal lengths. At `phi` the wheel carries the *frame* of its pitch
+point in its own coordinates: point P, unit tangent T (rising s), outward unit normal ``N = w*T``
+with ``w =
+-1j`` on wheel 1 (where s runs counter-clockwise) and ``w = +1j`` on wheel 2 (clockwise), and the
+curvature kappa, so that ``dT/ds = -kappa*N`` and ``dN/ds = +kappa*T`` on both.
 """
 
 from __future__ import annotations
@@ -52,6 +53,12 @@ class Frames(NamedTuple):
     speed: Array
     s: Array
 
+    def take(self, index: NDArray[np.int64] | int) -> Frames:
+        """Return the frames at some places (or of one row)."""
+        return Frames(
+            self.p[index], self.t[index], self.kappa[index], self.speed[index], self.s[index]
+        )
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Rolling:
@@ -86,14 +93,14 @@ class Rolling:
 
     def arc_length(self, phi: ArrayLike) -> Array:
         """Return s, mm, at driver angles, rad."""
-        period = self.law.lobes.period
-        turns = np.floor(np.asarray(phi, dtype=float) / period)
+        phi, period = np.asarray(phi, dtype=float), self.law.lobes.period
+        turns = np.floor(phi / period)
         return (self.unit_arc(phi - turns * period) + turns * self.unit_arc.last) * (
             self.center_distance
         )
 
     def angle(self, s: ArrayLike) -> Array:
-        """Return the driver angles, rad, at arc lengths, mm: a table, then Newton in its bracket."""
+        """Return the driver angles, rad, at arc lengths, mm: a table, then Newton bracketed."""
         lobe, period = self.unit_arc.last, self.law.lobes.period
         unit = np.asarray(s, dtype=float) / self.center_distance
         turns = np.floor(unit / lobe)
@@ -135,8 +142,8 @@ class Rolling:
 
         Notes
         -----
-        With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and ``q*exp(-1j*phi2)``, so that
-        the speed ``|q|`` is common to both. Curvatures from the second derivatives.
+        With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and ``q*exp(-1j*phi2)``, so
+        that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
         i, di, ddi = self.law.derivatives(phi, 2)
@@ -145,18 +152,17 @@ class Rolling:
         dr = self.center_distance * a * a * di
         ddr = self.center_distance * a * a * (ddi - 2.0 * a * di * di)
         speed = np.hypot(r, dr)
+        axis, pole = 0.0, np.exp(1j * phi if wheel == 1 else -1j * self.law.phi2(phi))
         if wheel == 1:
-            pole = np.exp(1j * phi)
-            point = r * pole
             kappa = (r * r + 2.0 * dr * dr - r * ddr) / speed**3
         else:
-            pole = np.exp(-1j * self.law.phi2(phi))
-            point = (r - self.center_distance) * pole
+            axis = self.center_distance
             kappa = (i * r * r + r * ddr + (i - 1.0) * dr * dr) / speed**3
-        return Frames(point, (dr + 1j * r) / speed * pole, kappa, speed, self.arc_length(phi))
+        point, tangent = (r - axis) * pole, (dr + 1j * r) / speed * pole
+        return Frames(point, tangent, kappa, speed, self.arc_length(phi))
 
     def curvature_extremes(self, wheel: Wheel) -> tuple[Array, Array]:
-        """Return all extremes of a wheel's curvature over one lobe: driver angles, rad, and 1/mm."""
+        """Return a wheel's extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
         return self._curvature_extremes[wheel - 1]
 
     @cached_property
@@ -176,14 +182,15 @@ class Rolling:
                 else i0 * r * r + r * ddr + (i0 - 1.0) * (dr * dr)
             )
             kappa = top / (speed * speed * speed)
-            return kappa.c[0], kappa.c[1]
+            value, slope = kappa.derivatives()
+            return value, slope
 
         places, values = extremes(curvature, self.law.knots)
         return places, values / self.center_distance
 
     @cached_property
     def arc_error(self) -> float:
-        """Estimated error of arc lengths, mm: truncation of the expansion and rounding over a turn."""
+        """Estimated error of arc lengths, mm: truncated expansions, and rounding over a turn."""
         return self.center_distance * self.unit_arc.error + 4.0 * np.finfo(float).eps * max(
             self.length(1), self.length(2)
         )

@@ -1,15 +1,16 @@
 """From curves to contours: as few points as the tolerance allows, with the error measured.
 
-A chord of a curve of curvature kappa and length l is off by ``kappa*l^2/8``. The points are therefore
-spread evenly over ``J = integral of sqrt(kappa/(8*tolerance)) ds``, which is the least number of chords,
-rounded up for each stretch between corners. Where the curvature jumps inside a chord the error is
-measured, and the chord is halved if it is too large.
+A chord of a curve of curvature kappa and length l is off by ``kappa*l^2/8``. The points are
+therefore spread evenly over ``J = integral of sqrt(kappa/(8*tolerance)) ds``, which is the least
+number of chords, rounded up for each stretch between corners. Where the curvature jumps inside a
+chord the error is measured, and the chord is halved if it is too large.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,8 +90,8 @@ class Sampler:
         return self.density[:-1][::_PROBES][self.rows.corner]
 
     @cached_property
-    def chords(self) -> tuple[Array, Array, float]:
-        """Vertices of the adaptive polygon: their J (closed: start and end), points, measured error."""
+    def chords(self) -> tuple[Array, Plane, float]:
+        """Vertices of the polygon: their J (start and end), points, and the measured error."""
         ends = np.append(self.corners, self.least)
         counts = np.maximum(np.ceil(np.diff(ends) / _FILL).astype(int), 1)
         first = np.repeat(ends[:-1], counts)
@@ -141,12 +142,14 @@ class Sampler:
         """
         vertices = self.chords[0]
         steps = np.arange(oversampling) / oversampling
-        j = np.append((vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel(), self.least)
+        j = np.append(
+            (vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel(), self.least
+        )
         points, tangents = self.at(j)
         cuts = np.searchsorted(j, np.append(self.corners, self.least))
         runs = []
-        for start, end in zip(cuts[:-1], cuts[1:], strict=True):
-            before_corner = self._left_end(j[end])
+        for start, end in pairwise(cuts.tolist()):
+            before_corner = self._left_end(float(j[end]))
             p = np.append(points[start:end], before_corner[0])
             t = np.append(tangents[start:end], before_corner[1])
             if reverse:
@@ -156,7 +159,7 @@ class Sampler:
 
     def _left_end(self, j: float) -> tuple[Plane, Plane]:
         """Point and tangent at the end of the row that ends at a corner."""
-        row = int(np.searchsorted(self.density[:: _PROBES], j)) - 1
+        row = int(np.searchsorted(self.density[::_PROBES], j)) - 1
         return self._trace(np.array([row]), self.rows.end[row : row + 1])
 
 

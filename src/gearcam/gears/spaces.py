@@ -1,9 +1,10 @@
 """The chain of curves around a wheel, space by space, with loops taken out.
 
-Between two teeth run five curves: flank, fillet, root land, fillet, flank; over a tooth runs the tip. Where
-nothing is undercut they join smoothly. An undercut flank crosses its fillet, sharp roots let fillets cross
-each other, a root curvature below the dedendum makes the land cross itself: then the chain has loops, which
-the cutter has swept away. `untangle` finds each crossing on the true curves and takes the loop out.
+Between two teeth run five curves: flank, fillet, root land, fillet, flank; over a tooth runs the
+tip. Where nothing is undercut they join smoothly. An undercut flank crosses its fillet, sharp
+roots let fillets cross each other, a root curvature below the dedendum makes the land cross
+itself: then the chain has loops, which the cutter has swept away. `untangle` finds each crossing
+on the true curves and takes the loop out.
 """
 
 from __future__ import annotations
@@ -51,7 +52,8 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     Returns
     -------
     Rows
-        Row ``6*j + k`` is curve k of the space after tooth j + 1; k = 5 is the tip of the tooth after it.
+        Row ``6*j + k`` is curve k of the space after tooth j + 1; k = 5 is the tip of the tooth
+        after it.
     """
     cutter, z = toothing.cutter, toothing.teeth
     half, length = cutter.half_space, toothing.rolling.length(toothing.wheel)
@@ -138,8 +140,8 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, 
     Returns
     -------
     list of (Rows, list of Crossing)
-        For each space the curves that are left, with the tip behind them, and the crossings found, in
-        order; none where the chain has no loop.
+        For each space the curves that are left, with the tip behind them, and the crossings found,
+        in order; none where the chain has no loop.
     """
     phi, index = _sample(rows, spaces)
     points, _ = trace(toothing, rows, index.ravel(), phi.ravel())
@@ -154,7 +156,8 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, 
         for k, crossing in zip(number, refined, strict=True):
             crossings[k].append(crossing)
     return [
-        (_cut(rows, int(space), chain), chain) for space, chain in zip(spaces, crossings, strict=True)
+        (_cut(rows, int(space), chain), chain)
+        for space, chain in zip(spaces, crossings, strict=True)
     ]
 
 

@@ -11,7 +11,8 @@ from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, param
 class Rack:
     """The basic rack; heights in modules. The defaults are the common full-depth rack.
 
-    The tip radius is the largest that leaves a land: 0.38 leaves a straight flank to 0.999968 modules.
+    The tip radius is the largest that leaves a land: 0.38 leaves a straight flank to 0.999968
+    modules.
     """
 
     pressure_angle: float = param(

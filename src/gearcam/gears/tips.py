@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Frames, Plane
+from gearcam.gears.rolling import Plane
 from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -62,8 +62,8 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
 
     Notes
     -----
-    Newton's method on the two curves is tried first and kept where its root is one, inside the allowed
-    reach; the others are searched in their bracket.
+    Newton's method on the two curves is tried first and kept where its root is one, inside the
+    allowed reach; the others are searched in their bracket.
     """
     addendum = toothing.cutter.addendum
     phi, foot, height = _quick(toothing, sf, sigma)
@@ -78,7 +78,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
 
 
 def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, Array]:
-    """Driver angles of the crossings of flanks and tip curve and of their feet; height nan if none."""
+    """Driver angles of the crossings with the tip curve, and of their feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
     phi, foot = toothing.rolling.angle(
@@ -87,7 +87,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
     miss = np.full(sf.shape, np.inf, dtype=complex)
     for _ in range(8):
         both = toothing.frames(np.stack([phi, foot]))
-        roll, base = (Frames(*(values[k] for values in both)) for k in (0, 1))
+        roll, base = both.take(0), both.take(1)
         miss = toothing.flank_points(roll, sf, sigma) - base.p - addendum * w * base.t
         if float(np.abs(miss).max()) <= _MISS * addendum:
             break
@@ -105,7 +105,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
 def _search(
     toothing: Toothing, sf: Array, sigma: Array, highest: Array
 ) -> tuple[Array, Array, Array, Mask]:
-    """Search the tip ends in their bracket: driver angles, feet, heights, and whether they are full."""
+    """Search tip ends in their bracket: driver angles, feet, heights, whether they are full."""
     rolling, addendum, w = toothing.rolling, toothing.cutter.addendum, toothing.turn
     around = 3.0 * toothing.cutter.half_space + addendum
     near = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2

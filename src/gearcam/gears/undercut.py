@@ -1,8 +1,8 @@
 """Undercut: where a flank turns back on itself, tooth by tooth and side by side.
 
-A flank is regular while ``sigma*g = sin(alpha) + w*kappa*cos(alpha)`` is positive, with the curvature at
-the rolling point. On a convex centrode it can vanish below the pitch curve, on a concave one above; at a
-knot the curvature may jump, and g with it.
+A flank is regular while ``sigma*g = sin(alpha) + w*kappa*cos(alpha)`` is positive, with the
+curvature at the rolling point. On a convex centrode it can vanish below the pitch curve, on a
+concave one above; at a knot the curvature may jump, and g with it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ class Undercut:
     Parameters
     ----------
     dedendum, addendum : (n,) arrays, mm
-        Reach w at the first cusp below (negative) and above the pitch curve; -inf and +inf without one.
+        Reach w at the first cusp below (negative) and above the pitch curve; -inf and +inf without
+        one.
     """
 
     dedendum: Array

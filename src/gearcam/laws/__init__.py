@@ -1,4 +1,4 @@
-"""Transmission-ratio laws: what motion is wanted, as piecewise analytic functions of the driver angle.
+"""Transmission-ratio laws: what motion is wanted, as piecewise analytic functions.
 
 Depends on numpy alone. Importing this package fills the registry `gearcam.laws.base.LAWS`.
 """

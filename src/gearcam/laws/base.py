@@ -1,10 +1,10 @@
 """What a ratio law promises, and the registry of laws.
 
-A law gives ``i21 = dphi2/dphi1 > 0`` and its integral ``phi2`` over one *period* of the driver: the driver
-has `n1` equal lobes, the driven wheel `n2`, so that one period turns the driver by ``2*pi/n1`` and the
-driven wheel by ``2*pi/n2``. A law is made from its *parameters*, a frozen dataclass with the method
-``build(lobes, tolerances)``; `register` hangs it in the registry together with its claims, which one
-parametrised test proves for all laws.
+A law gives ``i21 = dphi2/dphi1 > 0`` and its integral ``phi2`` over one *period* of the driver:
+the driver has `n1` equal lobes, the driven wheel `n2`, so that one period turns the driver by
+``2*pi/n1`` and the driven wheel by ``2*pi/n2``. A law is made from its *parameters*, a frozen
+dataclass with the method ``build(lobes, tolerances)``; `register` hangs it in the registry
+together with its claims, which one parametrised test proves for all laws.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Lobes:
-    """How often the ratio repeats: n1 times a turn of the driver, n2 times a turn of the driven wheel.
+    """How often the ratio repeats in a turn: n1 times of the driver, n2 of the driven wheel.
 
     Parameters
     ----------
@@ -243,8 +243,8 @@ def make_law(
             value=math.degrees(law.motion.last),
             limit=math.degrees(lobes.advance),
             unit="deg",
-            nearest=f"over {math.degrees(lobes.period):.10g} deg of the driver the driven wheel turns "
-            f"{math.degrees(law.motion.last):.10g} deg and must turn "
+            nearest=f"over {math.degrees(lobes.period):.10g} deg of the driver the other wheel "
+            f"turns {math.degrees(law.motion.last):.10g} deg and must turn "
             f"{math.degrees(lobes.advance):.10g} deg",
         )
     return law

@@ -1,4 +1,4 @@
-"""Constant ratio: circular wheels, the limit that every formula of the non-circular ones must meet."""
+"""Constant ratio: circular wheels, the limit that every formula of the others must meet."""
 
 from __future__ import annotations
 

@@ -18,8 +18,8 @@ class Ellipse:
     """The driver's near vertex lies at phi1 = 0; the centre distance is the major axis 2a.
 
     With ``r1 = a*(1 - e^2)/(1 + e*cos(phi1))`` and ``r2 = 2*a - r1`` the ratio is
-    ``(1 - e^2)/(1 + e^2 + 2*e*cos(phi1))``, and ``tan(phi2/2) = (1-e)/(1+e)*tan(phi1/2)``, here in the
-    equal form without a pole, ``phi2 = phi1 - 2*atan(e*sin(phi1)/(1 + e*cos(phi1)))``.
+    ``(1 - e^2)/(1 + e^2 + 2*e*cos(phi1))``, and ``tan(phi2/2) = (1-e)/(1+e)*tan(phi1/2)``, here in
+    the equal form without a pole, ``phi2 = phi1 - 2*atan(e*sin(phi1)/(1 + e*cos(phi1)))``.
     """
 
     eccentricity: float = param(NUMBER, ge=0, lt=1, doc="eccentricity of the ellipse")

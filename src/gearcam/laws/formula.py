@@ -23,7 +23,7 @@ _NAMES = ("phi2", "ratio", "r1")
 
 @dataclass(frozen=True, kw_only=True)
 class Formula:
-    """Exactly one of three formulas; derivatives are exact (Taylor arithmetic), never differences."""
+    """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic."""
 
     phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
     ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
@@ -39,7 +39,12 @@ class Formula:
             try:
                 parse(getattr(self, name))
             except FormulaError as error:
-                yield name, None, str(error), "+ - * / **, phi1, pi, numbers, " + ", ".join(FUNCTIONS)
+                yield (
+                    name,
+                    None,
+                    str(error),
+                    "+ - * / **, phi1, pi, numbers, " + ", ".join(FUNCTIONS),
+                )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law.
@@ -106,29 +111,33 @@ def _from_motion(motion: Callable[[Jet], Jet], lobes: Lobes, tolerances: Toleran
             nearest=f"the ratio there is {slopes[place]:.6g} and must be positive",
         )
     try:
-        expand(lambda t: ratio(Jet.variable(t, 0)).derivatives()[0], [0.0, lobes.period], tolerances.expansion)
+        expand(
+            lambda t: ratio(Jet.variable(t, 0)).derivatives()[0],
+            [0.0, lobes.period],
+            tolerances.expansion,
+        )
     except NotSmoothError as error:
         raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
     return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances)
 
 
 def _from_ratio(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-    """The ratio is given up to a factor, which closure decides."""
+    """Make a law from a ratio up to a factor, which closure decides."""
     total = expand(
-        lambda t: shape(Jet.variable(t, 0)).derivatives()[0], [0.0, lobes.period], tolerances.expansion
+        lambda t: shape(Jet.variable(t, 0)).derivatives()[0],
+        [0.0, lobes.period],
+        tolerances.expansion,
     ).antiderivative()
     factor = lobes.advance / total.last
     piece = Piece(lambda x: factor * shape(x))
-    return make_law(
-        lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor}
-    )
+    return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})
 
 
 def _from_driver(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-    """The driver centrode is given: i = r/(c - r), with c the centre distance over the scale of r.
+    """Make a law from the driver centrode: i = r/(c - r), c the centre distance over r's scale.
 
-    The driven angle over a lobe falls as c grows, from infinity at the largest r, so that there is one
-    root, between the largest r and the c that would close a wheel of that radius all around.
+    The driven angle over a lobe falls as c grows, from infinity at the largest r, so that there is
+    one root, between the largest r and the c that would close a wheel of that radius all around.
     """
     ends = np.array([0.0, lobes.period])
 

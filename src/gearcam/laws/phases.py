@@ -1,4 +1,4 @@
-"""Ratio in phases: given values at knots, joined by cosine or cubic arcs with zero slope at each knot."""
+"""Ratio in phases: values at knots, joined by cosine or cubic arcs with zero slope at each."""
 
 from __future__ import annotations
 
@@ -51,9 +51,7 @@ _SHAPES = {"cosine": _cosine, "cubic": _cubic}
 class Phases:
     """Knots over one turn (or one lobe), a ratio at each; one ratio may be left to closure."""
 
-    shape: str = param(
-        TEXT, default="cosine", choices=tuple(_SHAPES), doc="arc between the knots"
-    )
+    shape: str = param(TEXT, default="cosine", choices=tuple(_SHAPES), doc="arc between the knots")
     knots: tuple[float, ...] = param(
         ANGLE, ge=0, le=360, min_length=2, doc="driver angles, from 0 to 360 or one lobe"
     )
@@ -90,8 +88,8 @@ class Phases:
         Raises
         ------
         InfeasibleError
-            If the knots span neither a turn nor a lobe, or the law does not close (naming the closing
-            value of each ratio), or no positive ratio closes it.
+            If the knots span neither a turn nor a lobe, or the law does not close (naming the
+            closing value of each ratio), or no positive ratio closes it.
         """
         knots, ratios = self._one_lobe(lobes)
         values, solved = self._close(knots, ratios, lobes, tolerances)
@@ -114,7 +112,9 @@ class Phases:
                 lobe = list(self.ratios[: count + 1])
                 if lobe[:-1] * repeats == list(self.ratios[:-1]) and lobe[0] == lobe[-1]:
                     return np.append(knots[:count], lobes.period), lobe
-        spans = "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {360 / lobes.n1:g}"
+        spans = (
+            "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {360 / lobes.n1:g}"
+        )
         raise InfeasibleError(
             f"the knots must span {spans} deg for these tooth counts",
             where="law.knots_deg",

@@ -1,9 +1,8 @@
-"""Chains of circular arcs: biarcs fitted to curves, and exact distances to them.
+"""Biarcs: chains of circular arcs fitted to curves.
 
-A *bulge polyline* is what a DXF polyline holds: vertices, and for each piece its *bulge*, the
-tangent of a quarter of the arc's angle, positive where the piece turns left, 0 where it is
-straight. A *biarc* is a pair of arcs with a common tangent at the joint, through two points with
-given tangents.
+A *biarc* is a pair of arcs with a common tangent at the joint, through two points with given
+tangents. A run becomes a bulge polyline (see `bulges`) of biarcs, each as long as the tolerance
+allows.
 
 Points are complex numbers inside this room: turning and scaling a vector is one product.
 Curvature, not radius, describes an arc, so that a nearly straight piece loses no digits.
@@ -21,10 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.numeric.bulges import Array, Complex, as_complex, as_pairs, off_circle
 from gearcam.numeric.contour import Run
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Piece = list[tuple[complex, float]]
 """End point and bulge of each arc of a piece."""
 
@@ -45,25 +43,29 @@ AIM = 0.97
 NEAR = 0.02
 """The search stops where the longest fitting piece is known to this part of its length."""
 
-BLOCK = 24
-"""Points whose distances are computed together."""
+CHECK_PART = 0.02
+"""Part of the tolerance by which the arcs may leave the curve unseen between two checks."""
+
+REACH = 3
+"""Steps beside a bend over which an arc may carry on its curvature."""
+
+MOST_CHECKS = 50
+"""Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Curve:
-    """A run as complex points and tangents, with the angle turned so far."""
+    """A run as complex points and tangents, with the angle turned so far.
+
+    Distances are taken at the `checks`: the points, and more between them where points are sparse
+    beside a sharper bend; `place` is where each point stands among the checks.
+    """
 
     points: Complex
     tangents: Complex
     turned: Array
-
-
-def _complex(values: Array) -> Complex:
-    return np.ascontiguousarray(values, dtype=np.float64).view(np.complex128).ravel()
-
-
-def _pairs(values: Complex) -> Array:
-    return np.ascontiguousarray(values).view(np.float64).reshape(-1, 2)
+    checks: Complex
+    place: NDArray[np.int64]
 
 
 def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
@@ -97,10 +99,8 @@ def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
     """
     if not tolerance > 0:
         raise ValueError(f"the tolerance must be positive, not {tolerance}")
-    curve = _curve(run)
+    curve = _curve(run, tolerance)
     last = len(curve.points) - 1
-    if last < 1:
-        raise ValueError("a run needs at least two different points")
     knots, bulges = [complex(curve.points[0])], []
     start, guess = 0, last
     while start < last:
@@ -109,7 +109,7 @@ def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
             knots.append(point)
             bulges.append(bulge)
         start, guess = end, end - start
-    return _pairs(np.array(knots)), np.array(bulges)
+    return as_pairs(np.array(knots)), np.array(bulges)
 
 
 def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
@@ -145,14 +145,45 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
     return np.vstack(vertices), np.concatenate(bulges)
 
 
-def _curve(run: Run) -> _Curve:
-    points, tangents = _complex(run.points), _complex(run.tangents)
+def _curve(run: Run, tolerance: float) -> _Curve:
+    points, tangents = as_complex(run.points), as_complex(run.tangents)
     if not (np.isfinite(points).all() and np.isfinite(tangents).all()):
         raise ValueError("points and tangents of a run must be finite")
     kept = np.concatenate([[True], np.diff(points) != 0])
     points, tangents = points[kept], tangents[kept]
+    if len(points) < 2:
+        raise ValueError("a run needs at least two different points")
     steps = np.angle(tangents[1:] * np.conj(tangents[:-1]))
-    return _Curve(points, tangents, np.concatenate([[0.0], np.cumsum(steps)]))
+    turned = np.concatenate([[0.0], np.cumsum(steps)])
+    length = np.abs(np.diff(points))
+    checks, place = _between(points, tangents, _checks(length, steps, tolerance))
+    return _Curve(points, tangents, turned, checks, place)
+
+
+def _checks(length: Array, turn: Array, tolerance: float) -> NDArray[np.int64]:
+    """Return into how many parts each step of a run is cut for checking.
+
+    Next to a sharp bend an arc may carry on the bend's curvature over a long, flat step and leave
+    the curve between its ends: such a step is cut as finely as the bend asks for.
+    """
+    bend = np.abs(turn) / length
+    padded = np.pad(bend, REACH, mode="edge")
+    sharpest = np.max([padded[k : k + len(bend)] for k in range(2 * REACH + 1)], axis=0)
+    parts = np.ceil(length * np.sqrt(sharpest / (8 * CHECK_PART * tolerance)))
+    return np.clip(parts, 1, MOST_CHECKS).astype(np.int64)
+
+
+def _between(
+    points: Complex, tangents: Complex, parts: NDArray[np.int64]
+) -> tuple[Complex, NDArray[np.int64]]:
+    """Return points with others between them (cubic Hermite), and where the points stand."""
+    place = np.concatenate([[0], np.cumsum(parts)])
+    index = np.repeat(np.arange(len(parts)), parts)
+    part = (np.arange(len(index)) - place[index]) / parts[index]
+    chord = np.diff(points)[index]
+    first, second = (np.abs(chord) * tangents[index + k] - chord for k in (0, 1))
+    bow = part * (1 - part) * (first * (1 - part) - second * part)
+    return np.append(points[index] + part * chord + bow, points[-1]), place
 
 
 def _longest(curve: _Curve, start: int, guess: int, tolerance: float) -> tuple[int, Piece]:
@@ -186,7 +217,7 @@ def _piece(curve: _Curve, start: int, end: int, tolerance: float) -> tuple[float
     t, u = complex(curve.tangents[start]), complex(curve.tangents[end])
     chord = q - p
     first, second = cmath.phase(chord / t), cmath.phase(u / chord)
-    inner = curve.points[start + 1 : end]
+    inner = curve.checks[curve.place[start] + 1 : curve.place[end]]
     if abs(first - second) < SAME_ARC and abs(first) < 1:
         half = 0.5 * (first + second)
         return _largest(_to_arc(inner, p, t, q)), [(q, _bulge(half, chord, tolerance))]
@@ -231,150 +262,4 @@ def _to_arc(points: Complex, start: complex, tangent: complex, end: complex) -> 
     chord = end - start
     bend = 2 * (chord / tangent).imag / abs(chord) ** 2
     local = (points - start) * tangent.conjugate()
-    return _off_circle(local, bend)
-
-
-def _off_circle(local: Complex, bend: float | Array) -> Array:
-    """Return distances to the circle through 0 along +x of signed curvature `bend` (or line)."""
-    power = bend * (local.real**2 + local.imag**2) - 2 * local.imag
-    return np.abs(power) / (1 + np.sqrt(np.maximum(1 + bend * power, 0.0)))
-
-
-def flatten_bulges(
-    vertices: Array, bulges: Array, sagitta: float, closed: bool = True, least: int = 1
-) -> Array:
-    """Replace the arcs of a bulge polyline by chords.
-
-    Parameters
-    ----------
-    vertices : (k, 2) array, mm
-        Vertices of the polyline.
-    bulges : (k,) or (k - 1,) array
-        Bulges; one more for the piece from the last vertex to the first where `closed`.
-    sagitta : float, mm
-        Largest distance between an arc and its chords.
-    closed : bool
-        Whether the polyline is closed; the first point is not repeated.
-    least : int
-        Fewest chords of each piece, straight ones too.
-
-    Returns
-    -------
-    (n, 2) array, mm
-        Points on the arcs, the vertices among them.
-    """
-    start, chord, bends = _pieces(vertices, bulges, closed)
-    half = 2 * np.arctan(bends)
-    bent = half != 0
-    radius = 0.5 * np.abs(chord[bent] / np.sin(half[bent]))
-    # Sagitta of a chord over the angle w: r*(1 - cos(w/2)) = 2*r*sin(w/4)^2.
-    widest = 4 * np.arcsin(np.minimum(np.sqrt(sagitta / (2 * radius)), 1.0))
-    count = np.ones(len(start), dtype=int)
-    count[bent] = np.ceil(2 * np.abs(half[bent]) / widest).astype(int)
-    count = np.maximum(count, least)
-    index = np.repeat(np.arange(len(start)), count)
-    part = (np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)) / count[index]
-    points = start[index] + chord[index] * _along(half[index], part)
-    if not closed:
-        points = np.append(points, _complex(vertices)[-1])
-    return _pairs(points)
-
-
-def _along(half: Array, part: Array) -> Complex:
-    """Return the place on an arc over the chord from 0 to 1 that turns by ``2 * half``."""
-    safe = np.where(half == 0, 1.0, half)
-    reach = np.where(half == 0, part, np.sin(part * safe) / np.sin(safe))
-    return reach * np.exp(1j * half * (part - 1))
-
-
-def _pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Complex, Complex, Array]:
-    """Return start, chord and bulge of each piece."""
-    points = _complex(vertices)
-    bends = np.asarray(bulges, dtype=np.float64)
-    expected = len(points) if closed else len(points) - 1
-    if len(bends) != expected:
-        raise ValueError(f"{len(points)} vertices need {expected} bulges, not {len(bends)}")
-    ends = np.roll(points, -1)
-    return points[:expected], (ends - points)[:expected], bends
-
-
-def distances(points: Array, vertices: Array, bulges: Array, closed: bool = True) -> Array:
-    """Return the exact distance of each point to the nearest place of a bulge polyline.
-
-    Parameters
-    ----------
-    points : (n, 2) array, mm
-        Any points; fast where neighbours in the array are neighbours in the plane.
-    vertices, bulges, closed
-        The polyline, as for `flatten_bulges`.
-
-    Returns
-    -------
-    (n,) array, mm
-        Never negative.
-
-    Notes
-    -----
-    Points are taken by blocks. A disc around a block and a disc around each piece bound their
-    distance from both sides; only pieces that can be the nearest are computed.
-    """
-    start, chord, bends = _pieces(vertices, bulges, closed)
-    real = chord != 0
-    if real.any():
-        start, chord, bends = start[real], chord[real], bends[real]
-    middle, reach = start + 0.5 * chord, 0.5 * np.abs(chord) * np.maximum(1.0, np.abs(bends))
-    targets = _complex(points)
-    result = np.empty(len(targets))
-    for first in range(0, len(targets), BLOCK):
-        block = targets[first : first + BLOCK]
-        centre = 0.5 * (block.real.min() + block.real.max()) + 0.5j * (
-            block.imag.min() + block.imag.max()
-        )
-        spread = np.abs(block - centre).max()
-        away = np.abs(middle - centre)
-        near = away - reach - spread <= (away + reach).min() + spread
-        result[first : first + BLOCK] = _nearest(block, start[near], chord[near], bends[near])
-    return result
-
-
-def _nearest(points: Complex, start: Complex, chord: Complex, bends: Array) -> Array:
-    """Return the distance of points (n,) to the nearest of the pieces (k,)."""
-    half = 2 * np.arctan(bends)
-    length = np.abs(chord)
-    unit = np.divide(chord, length, out=np.ones_like(chord), where=length > 0)
-    into, out = unit * np.exp(-1j * half), unit * np.exp(1j * half)
-    bend = np.divide(2 * np.sin(half), length, out=np.zeros_like(length), where=length > 0)
-    from_start = points[:, None] - start
-    from_end = from_start - chord
-    local = from_start * np.conj(into)
-    ahead, behind = local.real >= 0, (from_end * np.conj(out)).real <= 0
-    # Inside the arc's sector the circle is nearest, elsewhere one of the two ends.
-    beside = np.where(np.abs(bends) <= 1, ahead & behind, ahead | behind)
-    ends = np.minimum(np.abs(from_start), np.abs(from_end))
-    return np.where(beside, _off_circle(local, bend), ends).min(axis=1)
-
-
-def deviation(vertices: Array, bulges: Array, dense: Array, samples: int = 8) -> float:
-    """Measure how far a closed bulge polyline and a closed dense polygon are from each other.
-
-    Parameters
-    ----------
-    vertices : (k, 2) array, mm
-        The polyline.
-    bulges : (k,) array
-        Its bulges.
-    dense : (n, 2) array, mm
-        Points on the true curve, in order, first not repeated.
-    samples : int
-        Places on each piece of the polyline whose distance to the dense polygon is taken.
-
-    Returns
-    -------
-    float, mm
-        The larger of both ways: dense points to the polyline (exact), places on the polyline to the
-        dense polygon. The second way holds the dense polygon's own chord error.
-    """
-    there = distances(dense, vertices, bulges).max()
-    places = flatten_bulges(vertices, bulges, math.inf, least=samples)
-    back = distances(places, dense, np.zeros(len(dense))).max()
-    return float(max(there, back))
+    return off_circle(local, bend)

@@ -1,8 +1,8 @@
 """Chebyshev expansions per interval: values and integrals of smooth functions to rounding.
 
-The axis is cut into intervals until an expansion of fixed degree carries the function on each. Nothing is
-fitted across a corner: the caller gives the corners as breaks. A function that is not smooth inside an
-interval is found by the cutting itself and refused with its place.
+The axis is cut into intervals until an expansion of fixed degree carries the function on each.
+Nothing is fitted across a corner: the caller gives the corners as breaks. A function that is not
+smooth inside an interval is found by the cutting itself and refused with its place.
 """
 
 from __future__ import annotations
@@ -19,9 +19,7 @@ Array = NDArray[np.float64]
 
 _DEGREE = 20
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
-_TO_COEFFICIENTS = (
-    np.cos(np.outer(np.arange(_DEGREE + 1), np.arccos(_NODES))) * 2.0 / (_DEGREE + 1)
-)
+_TO_COEFFICIENTS = np.cos(np.outer(np.arange(_DEGREE + 1), np.arccos(_NODES))) * 2.0 / (_DEGREE + 1)
 _TO_COEFFICIENTS[0] *= 0.5
 _HALVINGS = 22
 """A turn cut 22 times leaves 0.3 arc seconds: what is not smooth there is not smooth."""
@@ -92,9 +90,7 @@ class Expansion:
         return float(self.coefficients[:, -1].sum())
 
 
-def expand(
-    function: Callable[[Array], Array], breaks: ArrayLike, tolerance: float
-) -> Expansion:
+def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: float) -> Expansion:
     """Expand a piecewise smooth function to a tolerance.
 
     Parameters
@@ -104,8 +100,9 @@ def expand(
     breaks : (n,) array
         Rising; the first and last are the ends, the others are places where it may have corners.
     tolerance : float
-        Truncation error allowed, relative to the largest value, on an interval as wide as the whole;
-        narrower intervals may have more in proportion, since they count for less in the integral.
+        Truncation error allowed, relative to the largest value, on an interval as wide as the
+        whole; narrower intervals may have more in proportion, since they count for less in the
+        integral.
 
     Returns
     -------

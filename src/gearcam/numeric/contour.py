@@ -59,9 +59,8 @@ class Contour:
 
     @cached_property
     def area(self) -> float:
-        """Area of the polygon, mm^2 (shoelace about the first vertex)."""
-        x, y = (self.vertices - self.vertices[0]).T
-        return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+        """Area of the polygon, mm^2."""
+        return polygon_area(self.vertices)
 
     @cached_property
     def polygon(self) -> Polygon:
@@ -69,3 +68,20 @@ class Contour:
         from shapely import Polygon
 
         return Polygon(self.vertices)
+
+
+def polygon_area(vertices: Array) -> float:
+    """Return the signed area of a polygon, counter-clockwise positive.
+
+    Parameters
+    ----------
+    vertices : (n, 2) array, mm
+        First point not repeated.
+
+    Returns
+    -------
+    float, mm^2
+        By the shoelace formula about the first vertex.
+    """
+    x, y = (vertices - vertices[0]).T
+    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))

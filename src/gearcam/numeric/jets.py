@@ -1,8 +1,8 @@
 """Jets: truncated Taylor series, so that a formula written once also gives its exact derivatives.
 
-A *jet* of order n holds the Taylor coefficients ``c[k] = f^(k)/k!`` of a function at every sample point.
-Arithmetic on jets is the arithmetic of power series; no difference quotient, no symbolic algebra.
-Outside a function's domain the values are nan or inf, for the caller to find and name.
+A *jet* of order n holds the Taylor coefficients ``c[k] = f^(k)/k!`` of a function at every sample
+point. Arithmetic on jets is the arithmetic of power series; no difference quotient, no symbolic
+algebra. Outside a function's domain the values are nan or inf, for the caller to find and name.
 """
 
 from __future__ import annotations
@@ -104,7 +104,9 @@ class Jet:
             return self._integer_power(int(exponent))
         power: list[Array | float] = [self.c[0] ** exponent]
         for k in range(1, len(self.c)):
-            total = sum((exponent * j - (k - j)) * self.c[j] * power[k - j] for j in range(1, k + 1))
+            total = sum(
+                (exponent * j - (k - j)) * self.c[j] * power[k - j] for j in range(1, k + 1)
+            )
             power.append(total / (k * self.c[0]))
         return Jet(power)
 
@@ -139,7 +141,9 @@ def _chain(jet: Jet, value: Array | float, slope: Callable[[Jet], Jet]) -> Jet:
     if jet.order:
         inner = slope(Jet(jet.c[:-1]))
         for k in range(1, jet.order + 1):
-            terms = (j * jet.c[j] * inner.c[k - j] for j in range(1, k + 1) if not _is_zero(jet.c[j]))
+            terms = (
+                j * jet.c[j] * inner.c[k - j] for j in range(1, k + 1) if not _is_zero(jet.c[j])
+            )
             result.append(sum(terms) / k)
     return Jet(result)
 

@@ -1,8 +1,8 @@
 """Piecewise analytic functions: closed-form pieces between knots, with exact derivatives.
 
-A *piece* is a function written for jets, so that its derivatives are exact; it may bring its integral in
-closed form. Between knots a piece is smooth; at a knot any derivative may jump, and `continuity` says
-which is the first to do so.
+A *piece* is a function written for jets, so that its derivatives are exact; it may bring its
+integral in closed form. Between knots a piece is smooth; at a knot any derivative may jump, and
+`continuity` says which is the first to do so.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class Piecewise:
 
     @cached_property
     def continuity(self) -> tuple[int, ...]:
-        """Order of continuity at each inner knot and, last, across the ends (-1: a jump, at most 3)."""
+        """Order of continuity (-1 to 3) at each inner knot and, last, across the ends."""
         last = len(self.knots) - 1
         pairs = [(k, k) for k in range(1, last)] + [(last, 0)]
         result = []
@@ -139,7 +139,7 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
         return expand(piecewise(grid, pieces), grid, tolerance).antiderivative()
     offsets, total = [], 0.0
     for low, high, integral in zip(grid[:-1], grid[1:], closed, strict=True):
-        start, end = integral(Jet.variable([low, high], 0)).c[0]
+        start, end = integral(Jet.variable([low, high], 0)).derivatives()[0]
         offsets.append(total - start)
         total += end - start
     return Piecewise(knots=grid, pieces=closed, offsets=np.array(offsets))
@@ -148,7 +148,7 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
 def extremes(
     function: Callable[[Array], tuple[Array, Array]], knots: ArrayLike, samples: int = 256
 ) -> tuple[Array, Array]:
-    """Find all extremes of a piecewise smooth function: roots of its slope, and both sides of knots.
+    """Find all extremes of a function: roots of its slope, and both sides of its knots.
 
     Parameters
     ----------

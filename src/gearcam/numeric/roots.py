@@ -1,7 +1,7 @@
 """Bracketed root searches, vectorised: every search keeps an interval that holds its root.
 
-Newton steps are taken while they stay inside the bracket and are replaced by bisection otherwise, so that
-no start value, however bad, can lead out of it.
+Newton steps are taken while they stay inside the bracket and are replaced by bisection otherwise,
+so that no start value, however bad, can lead out of it.
 """
 
 from __future__ import annotations
@@ -64,7 +64,8 @@ def bracketed_root(
 ) -> Array:
     """Find where a function changes sign between `low` and `high`, jumps included.
 
-    Chandrupatla's method: inverse quadratic steps where the last three points allow them, else halving.
+    Chandrupatla's method: inverse quadratic steps where the last three points allow them, else
+    halving.
 
     Parameters
     ----------

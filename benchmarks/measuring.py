@@ -1,0 +1,115 @@
+"""Time and memory, measured plainly: every sample is kept, medians decide."""
+
+from __future__ import annotations
+
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGES = ("gearcam", "numpy", "shapely", "ncgears", "scipy", "sympy")
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Samples of one thing, in seconds."""
+
+    name: str
+    samples: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        """The middle sample."""
+        return statistics.median(self.samples)
+
+    def line(self) -> str:
+        """One row of a table: name, median, all samples."""
+        raw = ", ".join(show(sample) for sample in self.samples)
+        return f"| {self.name} | {show(self.median)} | {raw} |"
+
+
+@dataclass(frozen=True)
+class Result:
+    """One target: what was asked, what was found, and the text that shows it."""
+
+    title: str
+    asked: str
+    found: str
+    passed: bool
+    body: list[str] = field(default_factory=list)
+
+
+def show(seconds: float) -> str:
+    """Seconds in a unit that fits."""
+    if seconds < 1e-3:
+        return f"{1e6 * seconds:.0f} us"
+    return f"{1e3 * seconds:.2f} ms" if seconds < 1 else f"{seconds:.2f} s"
+
+
+def measure(name: str, function: Callable[[], object], count: int, *, warm: bool = True) -> Timing:
+    """Call a function `count` times, after one call that does not count."""
+    if warm:
+        function()
+    samples = []
+    for _ in range(count):
+        start = time.perf_counter()
+        function()
+        samples.append(time.perf_counter() - start)
+    return Timing(name, tuple(samples))
+
+
+def commands(cases: dict[str, Sequence[str]], count: int) -> list[Timing]:
+    """Whole processes, in turns: a busy moment hits them alike. The first round does not count."""
+    samples: dict[str, list[float]] = {name: [] for name in cases}
+    for round_number in range(count + 1):
+        for name, command in cases.items():
+            start = time.perf_counter()
+            subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+            if round_number:
+                samples[name].append(time.perf_counter() - start)
+    return [Timing(name, tuple(values)) for name, values in samples.items()]
+
+
+def table(timings: Sequence[Timing]) -> list[str]:
+    """A table of timings with every sample."""
+    return ["| what | median | samples |", "|---|---|---|", *(timing.line() for timing in timings)]
+
+
+def environment() -> list[str]:
+    """What a reader needs to judge the numbers: machine, versions, commit, date."""
+    packages = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
+    system = f"{platform.system()} {platform.machine()}"
+    return [
+        f"- machine: {_processor()}, {os.cpu_count()} cores, {system}",
+        f"- Python {sys.version.split()[0]}; {packages}",
+        f"- commit {_commit()}",
+        f"- {datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
+    ]
+
+
+def _processor() -> str:
+    information = Path("/proc/cpuinfo")
+    if information.exists():
+        for line in information.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
+
+
+def _commit() -> str:
+    def git(*arguments: str) -> str:
+        done = subprocess.run(
+            ["git", *arguments], cwd=ROOT, check=False, capture_output=True, text=True
+        )
+        return done.stdout.strip() if done.returncode == 0 else ""
+
+    changed = " with changes not yet committed" if git("status", "--porcelain", "src") else ""
+    return (git("rev-parse", "--short=12", "HEAD") or "none yet") + changed

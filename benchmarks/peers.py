@@ -1,0 +1,120 @@
+"""The peer from PyPI: ncgears on the nail machine's law, and on a law that it can build.
+
+Its engine is called on samples of the law taken beforehand, so that neither the evaluation of the
+formula nor the drawing of pictures counts against it.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from ncgears.engine import generate_geometry, load_engine_config
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+SAMPLES = 8192
+"""Its own default for laws given as formulas."""
+SAMPLES_PER_RADIAN = 110
+"""Its own default."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """phi2 and its first three derivatives over one turn, from `start` (where they are smooth)."""
+
+    name: str
+    start: float
+    derivatives: Callable[[Array], tuple[Array, Array, Array, Array]]
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """How one call ended: seconds, and what it said or made."""
+
+    seconds: float
+    built: bool
+    outcome: str
+
+
+def nail_machine(start: float) -> Law:
+    """Two cosine phases: ratio 1.6, 0.4, 1.6 at 0, 160, 360 degrees."""
+    first, turn = math.radians(160), 2 * math.pi
+
+    def derivatives(phi: Array) -> tuple[Array, Array, Array, Array]:
+        whole = np.floor(phi / turn)
+        x = phi - turn * whole
+        falling = x < first
+        width = np.where(falling, first, turn - first)
+        origin = np.where(falling, 0.0, first)
+        w = math.pi / width
+        half = np.where(falling, 0.6, -0.6)
+        angle = w * (x - origin)
+        return (
+            turn * whole + x + half / w * np.sin(angle),
+            1.0 + half * np.cos(angle),
+            -half * w * np.sin(angle),
+            -half * w * w * np.cos(angle),
+        )
+
+    return Law("nail machine, two phases", start, derivatives)
+
+
+def even_swing() -> Law:
+    """The same swing of the ratio, 0.4 to 1.6, without knots: phi2 = phi1 - 0.6*sin(phi1)."""
+
+    def derivatives(phi: Array) -> tuple[Array, Array, Array, Array]:
+        sine, cosine = 0.6 * np.sin(phi), 0.6 * np.cos(phi)
+        return phi - sine, 1.0 - cosine, sine, cosine
+
+    return Law("phi1 - 0.6*sin(phi1)", 0.0, derivatives)
+
+
+def attempt(law: Law, module: float, teeth: int) -> Attempt:
+    """Generate both outlines with ncgears, by the same rack as gearcam's default."""
+    phi = law.start + 2 * math.pi * np.arange(SAMPLES) / SAMPLES
+    angle, *rates = law.derivatives(phi)
+    columns = np.column_stack([phi, angle - angle[0], *rates])
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "transmission.csv"
+        np.savetxt(
+            path, columns, delimiter=",", header="phi,psi,psi1,psi2,psi3", comments="", fmt="%.17g"
+        )
+        start = time.perf_counter()
+        try:
+            result = generate_geometry(_config(path, law, module, teeth), SAMPLES_PER_RADIAN)
+        except (ValueError, RuntimeError) as error:
+            return Attempt(time.perf_counter() - start, built=False, outcome=str(error))
+        seconds = time.perf_counter() - start
+    made = f"{len(result.drive_outline)} and {len(result.driven_outline)} points"
+    return Attempt(seconds, built=True, outcome=made)
+
+
+def _config(path: Path, law: Law, module: float, teeth: int) -> object:
+    return load_engine_config(
+        input_flag="--transmission-csv",
+        input_path=path,
+        name="peer",
+        description=law.name,
+        teeth=teeth,
+        module=module,
+        pressure_angle_deg=20.0,
+        addendum_factor=1.0,
+        dedendum_factor=1.25,
+        fillet_factor=0.38,
+        clearance=0.0,
+        max_backlash_deg=None,
+        domain_start=law.start,
+        domain_end=law.start + 2 * math.pi,
+        active_start=law.start,
+        active_end=law.start + 2 * math.pi,
+        period=2 * math.pi,
+        cycle_delta=2 * math.pi,
+        open_=False,
+        extra_arguments=(),
+    )

@@ -1,0 +1,46 @@
+"""Measure everything and write docs/performance.md. Nothing there is written by hand."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+# the sweep is the witness of the tests
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+
+import cases
+from measuring import ROOT, Result, environment
+
+PAGE = ROOT / "docs" / "performance.md"
+HEAD = """# Performance
+
+Written by `make bench`; medians decide, and every sample is shown.
+"""
+
+
+def page(results: list[Result]) -> str:
+    """The page as text."""
+    lines = [HEAD, *environment(), "", "| target | asked | found | |", "|---|---|---|---|"]
+    for result in results:
+        verdict = "pass" if result.passed else "**fail**"
+        lines.append(f"| {result.title} | {result.asked} | {result.found} | {verdict} |")
+    for result in results:
+        lines += ["", f"## {result.title}", "", *result.body]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    results = []
+    for case in (cases.whole_process, cases.growth, cases.against_sweep, cases.against_ncgears):
+        result = case()
+        results.append(result)
+        print(f"{'pass' if result.passed else 'FAIL'}  {result.title}: {result.found}", flush=True)
+    results.sort(key=lambda result: result.title)
+    PAGE.parent.mkdir(exist_ok=True)
+    PAGE.write_text(page(results), encoding="utf-8")
+    print(f"wrote {PAGE.relative_to(ROOT)}")
+    return 0 if all(result.passed for result in results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

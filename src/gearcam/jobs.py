@@ -1,0 +1,250 @@
+"""Jobs: what one kind of design computes, stage by stage, on demand.
+
+A `GearPairJob` computes nothing until it is asked: the law, the centrodes, each wheel, the checks,
+each file. Every stage is timed once. Nothing is imported that the asked-for files do not need.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.design import GearPairDesign
+from gearcam.errors import InfeasibleError
+from gearcam.findings import Finding, run_checks
+from gearcam.gears.checks import KIND, Subject
+from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
+from gearcam.gears.rolling import Wheel
+from gearcam.laws.base import RatioLaw
+from gearcam.parts import Part, timing_mark
+from gearcam.tolerances import DEFAULT, Tolerances
+
+Progress = Callable[[str, int, int], None]
+
+FORMAT = 1
+"""Version of the summary's layout."""
+
+CENTRODE_POINTS = 720
+"""Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Written:
+    """What a build has done to its folder."""
+
+    directory: Path
+    files: tuple[str, ...]
+    removed: tuple[str, ...]
+    summary: dict[str, Any]
+
+
+class GearPairJob:
+    """A gear pair, computed on demand.
+
+    Parameters
+    ----------
+    design : GearPairDesign
+        What is asked for.
+    tolerances : Tolerances
+        Inner accuracy.
+    """
+
+    def __init__(self, design: GearPairDesign, tolerances: Tolerances = DEFAULT) -> None:
+        self.design = design
+        self.tolerances = tolerances
+        self.timings: dict[str, float] = {}
+
+    @contextmanager
+    def _stage(self, name: str) -> Iterator[None]:
+        start = time.perf_counter()
+        yield
+        self.timings[name] = self.timings.get(name, 0.0) + time.perf_counter() - start
+
+    @cached_property
+    def law(self) -> RatioLaw:
+        """The ratio law."""
+        with self._stage("law"):
+            return self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
+
+    @cached_property
+    def pair(self) -> GearPair:
+        """The centrodes with their cutters."""
+        law = self.law
+        with self._stage("centrodes"):
+            return make_pair(law, self.design.pair, self.design.rack, self.tolerances)
+
+    @cached_property
+    def gear1(self) -> Gear:
+        """The driver."""
+        return self._gear(1)
+
+    @cached_property
+    def gear2(self) -> Gear:
+        """The driven wheel."""
+        return self._gear(2)
+
+    def _gear(self, wheel: Wheel) -> Gear:
+        pair = self.pair
+        with self._stage(f"gear{wheel}"):
+            tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
+            gear = make_gear(pair, wheel, tolerance, self.tolerances)
+            bore = self.bores[wheel - 1]
+            if bore is not None and 0.5 * bore >= gear.least_radius:
+                largest = 2.0 * gear.least_radius
+                raise InfeasibleError(
+                    "the bore reaches the root of the teeth",
+                    where=f"wheel {wheel}, blank.bore_diameter_mm[{wheel - 1}]",
+                    value=bore,
+                    limit=largest,
+                    unit="mm",
+                    nearest=f"a bore below {largest:.6g} mm",
+                )
+            return gear
+
+    @property
+    def gears(self) -> tuple[Gear, Gear]:
+        """Both wheels, driver first."""
+        return self.gear1, self.gear2
+
+    @property
+    def bores(self) -> tuple[float | None, float | None]:
+        """Bore diameters, mm."""
+        return self.design.blank.bore_diameter or (None, None)
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the checks found: errors first."""
+        subject = Subject(pair=self.pair, gears=self.gears, bores=self.bores, backlash=0.0)
+        with self._stage("checks"):
+            return run_checks(KIND, subject, self.design.limits)
+
+    @cached_property
+    def parts(self) -> tuple[Part, Part]:
+        """Both wheels as parts, with bores and timing marks."""
+        first, second = (self._part(gear) for gear in self.gears)
+        return first, second
+
+    def _part(self, gear: Gear) -> Part:
+        frames = self.pair.rolling.frames(gear.wheel, np.zeros(1))
+        radius = complex(frames.p[0])
+        normal = complex(frames.t[0]) * gear.toothing.turn
+        bore, width = self.bores[gear.wheel - 1], self.design.pair.face_width
+        mark = timing_mark(
+            abs(radius),
+            0.0 if gear.wheel == 1 else math.pi,
+            self.pair.module,
+            gear.toothing.cutter.dedendum,
+            width,
+            bore_diameter=bore,
+            tilt=abs(float(np.angle(normal / radius))),
+        )
+        return Part(
+            name=gear.name,
+            contour=gear.profile.contour,
+            bore_diameter=bore,
+            width=width,
+            marks=(mark,),
+        )
+
+    def centrode_angles(self) -> NDArray[np.float64]:
+        """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
+        lobes = self.law.lobes
+        turns = lobes.n1 * lobes.n2 / math.gcd(lobes.n1, lobes.n2)
+        count = CENTRODE_POINTS * max(1, round(turns / lobes.n1))
+        return np.linspace(0.0, turns * lobes.period, count + 1)
+
+    def summary(
+        self, files: Sequence[str] = (), extras: dict[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """Return the summary of the build, for JSON: what does not exist is left out.
+
+        Parameters
+        ----------
+        files : sequence of str
+            Names of the files written beside it.
+        extras : dict, optional
+            What the exporters measured.
+
+        Returns
+        -------
+        dict
+            As described in docs/conventions.md.
+        """
+        from gearcam.summaries import summarize
+
+        return summarize(self, files, extras or {})
+
+    def check(self, directory: str | Path = "output") -> Written:
+        """Run the checks and write the summary only (see `write`)."""
+        return self.write(directory, files=())
+
+    def write(
+        self,
+        directory: str | Path = "output",
+        files: Sequence[str] | None = None,
+        progress: Progress | None = None,
+    ) -> Written:
+        """Write the files of the design into ``directory/<name>/``, all or none.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+        files : sequence of str, optional
+            Kinds of files, instead of those the design lists.
+        progress : callable, optional
+            Called with a stage's name, the stages done and their number.
+
+        Returns
+        -------
+        Written
+            With the files written and the stale ones removed.
+
+        Raises
+        ------
+        InfeasibleError
+            If the design cannot be made; nothing is written or removed then.
+        WriteError
+            If the disk refuses.
+        """
+        import json
+
+        from gearcam.export.write import SUMMARY, write_all
+        from gearcam.exporting import export
+
+        kinds = tuple(self.design.output.files if files is None else files)
+        steps = ["law", "centrodes", "gear 1", "gear 2", "checks", *kinds, "writing"]
+
+        def tell(step: str) -> None:
+            if progress is not None:
+                progress(step, steps.index(step), len(steps))
+
+        for step, attribute in zip(
+            steps, ("law", "pair", "gear1", "gear2", "findings"), strict=False
+        ):
+            tell(step)
+            getattr(self, attribute)
+        contents: dict[str, bytes] = {}
+        extras: dict[str, Any] = {}
+        for kind in kinds:
+            tell(kind)
+            with self._stage(kind):
+                contents |= export(self, kind, extras)
+        tell("writing")
+        summary = self.summary(tuple(contents), extras)
+        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+        contents[SUMMARY] = (text + "\n").encode()
+        folder = Path(directory) / self.design.name
+        removed = write_all(folder, contents)
+        return Written(
+            directory=folder, files=tuple(contents), removed=tuple(removed), summary=summary
+        )

@@ -1,0 +1,126 @@
+"""The summary of a build: one JSON document that says what was made and how exact it is."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from gearcam.gears.pair import Gear
+    from gearcam.jobs import GearPairJob
+
+
+def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) -> dict[str, Any]:
+    """Return the summary of a job.
+
+    Parameters
+    ----------
+    job : GearPairJob
+        A built design.
+    files : sequence of str
+        Files written beside the summary.
+    extras : dict
+        What exporters measured: ``dxf``, ``solids``.
+
+    Returns
+    -------
+    dict
+        For JSON; what does not exist is left out.
+    """
+    from gearcam.jobs import FORMAT
+
+    findings = [finding.as_dict() for finding in job.findings]
+    pair = job.pair
+    given = job.design.pair.center_distance
+    solved: dict[str, float] = dict(pair.law.solved)
+    if given is None:
+        solved["center_distance_mm"] = pair.center_distance
+    else:
+        solved["module_mm"] = pair.module
+    return {
+        "format": FORMAT,
+        "name": job.design.name,
+        "kind": job.design.kind,
+        "pair": {
+            "center_distance_mm": pair.center_distance,
+            "module_mm": pair.module,
+            "teeth": list(pair.teeth),
+            "face_width_mm": job.design.pair.face_width,
+            "ratio": {"min": pair.law.ratio_range[0][1], "max": pair.law.ratio_range[1][1]},
+            "solved": solved,
+        },
+        "gears": [_gear(job, gear) for gear in job.gears],
+        "files": list(files),
+        "findings": findings,
+        "accuracy": _accuracy(job, extras),
+        **{name: extras[name] for name in ("solids",) if name in extras},
+        "timings_s": {name: round(value, 6) for name, value in job.timings.items()},
+        "versions": _versions(),
+    }
+
+
+def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
+    cutter = gear.toothing.cutter
+    bore = job.bores[gear.wheel - 1]
+    pinion = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
+    return {
+        "name": gear.name,
+        "teeth": gear.toothing.teeth,
+        "centrode": {
+            "length_mm": gear.pair.rolling.length(gear.wheel),
+            "min_convex_radius_mm": gear.convex_radius,
+            "max_concave_curvature_per_mm": gear.concave_curvature,
+            "closed": True,
+        },
+        "cutter": cutter.kind,
+        **pinion,
+        "undercut_teeth": list(gear.profile.undercut_teeth),
+        "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
+        "root_radius_min_mm": gear.least_radius,
+        **({} if bore is None else {"bore_diameter_mm": bore}),
+        "outline": {
+            "vertices": len(gear.outline),
+            "least_vertices": gear.profile.sampler.least,
+            "area_mm2": gear.profile.area,
+            "chord_error_mm": gear.profile.chord_error,
+        },
+    }
+
+
+def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
+    """Error estimates, and how each was made."""
+    rolling, law = job.pair.rolling, job.law
+    reach = max(float(np.hypot(*gear.outline.T).max()) for gear in job.gears)
+    dxf = extras.get("dxf")
+    values: dict[str, Any] = {
+        "law": law.error,
+        "closure_rad": abs(law.closure_error),
+        "arc_length_mm": rolling.arc_error,
+        "flank_mm": rolling.arc_error + reach * law.error + 8.0 * np.finfo(float).eps * reach,
+        "chord_mm": max(gear.profile.chord_error for gear in job.gears),
+    }
+    how = {
+        "law": "rad of the driven angle: against Gauss-Legendre quadrature of the ratio",
+        "closure_rad": "miss of the driven angle over a lobe",
+        "arc_length_mm": "last Chebyshev coefficients over all intervals, and rounding",
+        "flank_mm": "arc length, and the law's error and rounding at the largest radius",
+        "chord_mm": "largest distance of the curve from a chord, at three places in every chord",
+    }
+    if dxf is not None:
+        values["dxf_mm"] = dxf["error_mm"]
+        how["dxf_mm"] = f"files read back ({dxf['curves']}), against the curve, both ways"
+    return {**values, "how": how}
+
+
+def _versions() -> dict[str, str]:
+    found = {"python": platform.python_version()}
+    for name in ("gearcam", "numpy", "shapely"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found

@@ -1,0 +1,96 @@
+"""A design made in Python meets the same rules as one that is read."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gearcam.design import GearPairDesign, OutputSpec, document_of, loads
+from gearcam.errors import DesignError
+from gearcam.gears.spec import PairSpec
+from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.phases import Phases
+
+GOOD = """\
+kind = "gear-pair"
+name = "good"
+
+[law]
+type = "phases"
+knots_deg = [0, 160, 360]
+ratios = [1.6, 0.4, 1.6]
+
+[pair]
+center_distance_mm = 180
+teeth = [36, 36]
+
+[output]
+files = ["csv"]
+"""
+
+
+def test_a_design_made_in_python_equals_the_one_read() -> None:
+    read = loads(GOOD)
+    made = GearPairDesign(
+        name="good",
+        law_type="phases",
+        law=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
+        pair=PairSpec(center_distance=180.0, teeth=(36, 36)),
+        output=OutputSpec(files=("csv",)),
+    )
+    assert (made.law, made.pair, made.rack, made.output) == (
+        read.law,
+        read.pair,
+        read.rack,
+        read.output,
+    )
+    assert made.source == ""
+    assert document_of(made) == document_of(read)
+
+
+def test_a_design_made_in_python_meets_the_same_rules() -> None:
+    good: dict[str, Any] = {
+        "name": "e",
+        "law_type": "ellipse",
+        "law": Ellipse(eccentricity=0.3),
+        "pair": PairSpec(module=1.0, teeth=(41, 41)),
+    }
+
+    def refused(words: str, **changes: Any) -> DesignError:
+        with pytest.raises(DesignError, match=words) as caught:
+            GearPairDesign(**{**good, **changes})
+        return caught.value
+
+    assert GearPairDesign(**good).kind == "gear-pair"
+    both = PairSpec(module=1.0, center_distance=1.0, teeth=(41, 41))
+    assert refused("exactly one", pair=both).problems[0].line is None
+    refused("out of range", law=Ellipse(eccentricity=1.0))
+    refused("not a law", law_type="elipse")
+    refused("instance of Phases", law_type="phases")
+    refused("instance of PairSpec", pair=3)
+    refused(r"limits\.no_such", limits={"no_such": 1.0})
+    refused(r"limits\.tip_thickness", limits={"tip_thickness": -1.0})
+    assert GearPairDesign(**good, limits={"backlash": 0.1}).limits == {"backlash": 0.1}
+
+
+def test_numbers_from_numpy_serve_in_python() -> None:
+    knots = tuple(np.radians([0.0, 160.0, 360.0]))
+    design = GearPairDesign(
+        name="n",
+        law_type="phases",
+        law=Phases(knots=knots, ratios=tuple(np.array([1.6, 0.4, 1.6]))),
+        pair=PairSpec(center_distance=np.float64(180), teeth=tuple(np.array([36, 36]))),  # pyright: ignore
+    )
+    assert document_of(design)["law"]["knots_deg"] == [0.0, 160.0, 360.0]
+
+
+@given(st.floats(min_value=5, max_value=35))
+def test_degrees_keep_their_range_through_radians(angle: float) -> None:
+    rack = f"\n[rack]\npressure_angle_deg = {angle!r}\n"
+    design = loads(GOOD.replace("[output]", rack + "[output]"))
+    assert document_of(design)["rack"]["pressure_angle_deg"] == pytest.approx(angle, rel=1e-12)
