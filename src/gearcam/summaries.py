@@ -66,7 +66,8 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
 def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
     cutter = gear.toothing.cutter
     bore = job.bores[gear.wheel - 1]
-    pinion = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
+    tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
+    tool["cutter_tip_radius_mm"] = cutter.tip_radius
     return {
         "name": gear.name,
         "teeth": gear.toothing.teeth,
@@ -77,7 +78,7 @@ def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
             "closed": True,
         },
         "cutter": cutter.kind,
-        **pinion,
+        **tool,
         "undercut_teeth": list(gear.profile.undercut_teeth),
         "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
         "root_radius_min_mm": gear.least_radius,

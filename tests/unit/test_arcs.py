@@ -129,25 +129,36 @@ def test_a_wheel_takes_far_fewer_arcs_than_chords() -> None:
     assert 0.8 * TOLERANCE < deviation(vertices, bulges, dense) <= TOLERANCE
 
 
-def test_a_flat_step_beside_a_sharp_bend_is_checked_within() -> None:
+@pytest.mark.parametrize("flat_radius", [60.0, 250.0])
+def test_a_flat_step_beside_a_sharp_bend_is_checked_within(flat_radius: float) -> None:
     """A sharp arc runs smoothly into a flat one whose points lie far apart, as a fillet does.
 
-    An arc that carries on the bend's curvature leaves the curve most between two points of the flat
-    part; measured against the true curve, not its points.
+    An arc that carries on the bend's curvature leaves the curve most between two points of the
+    flat part; so it is measured against the true curve, not its points.
     """
+    x = np.linspace(0.0, 2.5, 4000)
+    true = np.column_stack([x, np.sqrt(flat_radius**2 - x**2) - flat_radius])
+    flat, _ = sample(
+        arc(-1j * flat_radius, flat_radius, np.pi / 2, np.pi / 2 - 3 / flat_radius), TOLERANCE / 50
+    )
     worst = 0.0
-    for sharp in np.linspace(1.5, 3.0, 12):
-        bend, _ = sample(arc(sharp * 1j, sharp, -np.pi / 2 - 1.0, -np.pi / 2), TOLERANCE / 50)
-        flat, _ = sample(arc(-100j, 100, np.pi / 2, np.pi / 2 - 0.05), TOLERANCE / 50)
+    for angle in np.linspace(0.3, 1.5, 60)[50:]:
+        bend, _ = sample(arc(3j, 3.0, -np.pi / 2 - angle, -np.pi / 2), TOLERANCE / 50)
         run = Run(
             points=np.vstack([bend.points, flat.points[1:]]),
             tangents=np.vstack([bend.tangents, flat.tangents[1:]]),
         )
         vertices, bulges = fit_arcs(run, TOLERANCE)
-        x = np.linspace(0.0, 3.0, 5000)
-        true = np.column_stack([x, np.sqrt(100**2 - x**2) - 100])
         worst = max(worst, distances(true, vertices, bulges, closed=False).max())
-    assert 0.8 * TOLERANCE < worst < 1.03 * TOLERANCE
+    assert 0.4 * TOLERANCE < worst < 1.02 * TOLERANCE
+
+
+def test_between_coarse_points_the_tangents_tell_the_curve() -> None:
+    angle = np.linspace(0.0, np.pi / 2, 7)
+    spokes = np.column_stack([np.cos(angle), np.sin(angle)])
+    run = Run(points=10 * spokes, tangents=np.column_stack([-spokes[:, 1], spokes[:, 0]]))
+    _, bulges = fit_arcs(run, TOLERANCE)
+    assert bulges == pytest.approx([np.tan(np.pi / 8)], abs=1e-9)
 
 
 @pytest.mark.parametrize("fault", ["sign", "dropped", "scaled", "shifted"])

@@ -297,6 +297,20 @@ def test_new_writes_a_design_that_reads_and_overwrites_nothing(
     assert load("printed.toml")
 
 
+def test_the_new_design_builds_and_only_a_note_is_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "gear-pair", "mine.toml"]) == 0
+    assert main(["build", "mine.toml", "--only", "csv"]) == 0
+    out = capsys.readouterr().out
+    assert "warning" not in out
+    summary = json.loads((tmp_path / "output" / "mine" / "summary.json").read_text("utf-8"))
+    assert {finding["severity"] for finding in summary["findings"]} <= {"note"}
+    for name in summary["files"]:
+        assert name in out
+
+
 def test_new_tells_what_comes_later_and_what_was_meant(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "cam"]) == 2
     assert "cams are not built by this version yet" in capsys.readouterr().err

@@ -238,6 +238,12 @@ def test_what_a_law_finds_wrong_gets_its_place(old: str, new: str, key: str, wor
     assert problem.line == (6 if "knots" in key else 7)
 
 
+def test_a_unit_where_none_belongs_is_noticed_even_on_a_short_key() -> None:
+    law = GOOD[GOOD.index("type") : GOOD.index("[pair]")]
+    found = problems(GOOD.replace(law, 'type = "formula"\nr1_mm = "1"\n\n'))
+    assert {problem.key: problem.hint for problem in found}["law.r1_mm"] == "did you mean r1?"
+
+
 def test_a_formula_that_cannot_be_read_tells_the_column() -> None:
     law = GOOD[GOOD.index("type") : GOOD.index("[pair]")]
     problem = only(GOOD.replace(law, 'type = "formula"\nphi2 = "phi1 - sine(phi1)"\n\n'))

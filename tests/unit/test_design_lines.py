@@ -143,6 +143,11 @@ def test_quotes_at_the_end_of_a_long_text_do_not_mislead() -> None:
     assert lines_of(text) == {(): 1, ("a",): 1, ("b",): 3, ("b", 0): 3, ("b", 1): 5, ("c",): 6}
 
 
+def test_a_table_that_its_own_part_came_before_has_the_line_of_its_header() -> None:
+    assert lines_of("[a.b]\nx = 1\n[a]\ny = 2\n")["a",] == 3
+    assert lines_of("a.b = 1\na.c = 2\n")["a",] == 1
+
+
 def test_a_place_that_is_not_there_falls_back_to_its_parent() -> None:
     lines = lines_of(GOOD)
     assert line_at(lines, ("pair", "module_mm")) == 9

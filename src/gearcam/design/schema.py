@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from gearcam.design.models import model_of
+from gearcam.design.models import description, model_of
 from gearcam.design.tables import KIND, TABLES, Table, law_table, table
 from gearcam.laws.base import LAWS
 
@@ -84,11 +84,16 @@ def _titled(title: str) -> dict[str, Any]:
 
 
 def _table_schema(known: Table) -> dict[str, Any]:
-    made = model_of(known).model_json_schema()
-    made.pop("title", None)
-    made.setdefault("properties", {})
-    for properties in made["properties"].values():
-        properties.pop("title", None)
-        if properties.get("default", ...) is None:
-            del properties["default"]
+    from pydantic.json_schema import GenerateJsonSchema
+
+    made = GenerateJsonSchema().generate(model_of(known))
+    properties = made.setdefault("properties", {})
+    for key, entry in known.entries.items():
+        rule = properties[key]
+        rule.pop("title", None)
+        rule["description"] = description(entry)
+        if not entry.required and entry.default is not None:
+            rule["default"] = entry.outward(entry.default)
+        counts = {"minItems": entry.length or entry.param.min_length, "maxItems": entry.length}
+        rule |= {name: count for name, count in counts.items() if count}
     return made

@@ -125,24 +125,38 @@ def choose_cutter(rack: Rack, module: float, concave_curvature: float, where: st
         half_space=0.25 * math.pi * module,
     )
     if kc > 0.0 and cutter.offset > cutter.half_space:
+        cutter = _blunt(cutter)
+    if cutter.offset > cutter.half_space * (1.0 + 1e-9):
+        smallest = _smallest_concave_radius(cutter)
         raise InfeasibleError(
-            "a concave part of the centrode is too tight for a pinion cutter with this tip radius",
+            "a concave part of the centrode is too tight: a pinion cutter that fits into it has "
+            "pointed teeth",
             where=where,
             value=1.0 / concave_curvature,
-            limit=_smallest_concave_radius(cutter),
+            limit=smallest,
             unit="mm",
             nearest=f"the smallest concave radius is {1.0 / concave_curvature:.6g} mm and must be "
-            f"at least {_smallest_concave_radius(cutter):.6g} mm: lower the ratio's swing, take a "
-            "smaller module (more teeth) or a smaller rack.tip_radius",
+            f"at least {smallest:.6g} mm: lower the ratio's swing, take a smaller module (more "
+            "teeth) or a smaller rack.dedendum",
         )
     return cutter
 
 
+def _blunt(cutter: Cutter) -> Cutter:
+    """Round the tip less, so that the pinion's narrower tooth keeps a land; 0 at the least."""
+    low, high = 0.0, cutter.tip_radius
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        fits = replace(cutter, tip_radius=middle).offset <= cutter.half_space
+        low, high = (middle, high) if fits else (low, middle)
+    return replace(cutter, tip_radius=low)
+
+
 def _smallest_concave_radius(cutter: Cutter) -> float:
-    """Smallest concave radius that leaves the pinion's tooth tip a land, by bisection on kc."""
+    """Smallest concave radius that leaves a sharp-cornered pinion's tooth a land, by bisection."""
     low, high = 0.0, cutter.kc
     for _ in range(60):
         middle = 0.5 * (low + high)
-        trial = replace(cutter, kc=middle)
-        low, high = (middle, high) if trial.offset <= trial.half_space else (low, middle)
+        fits = replace(cutter, kc=middle).offset <= cutter.half_space
+        low, high = (middle, high) if fits else (low, middle)
     return _CONCAVE_MARGIN / low if low > 0.0 else math.inf

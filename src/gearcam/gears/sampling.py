@@ -27,6 +27,9 @@ _PROBES = 24
 _FILL = 0.97
 """Share of the tolerance's chord that is used: the density is known to a few percent only."""
 
+_FEW = 0.03
+"""Share of chords that may be halved; with more of them the vertices are spread anew."""
+
 _ROUNDS = 6
 """Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
 
@@ -92,29 +95,43 @@ class Sampler:
     @cached_property
     def chords(self) -> tuple[Array, Plane, float]:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
-        ends = np.append(self.corners, self.least)
-        counts = np.maximum(np.ceil(np.diff(ends) / _FILL).astype(int), 1)
-        first = np.repeat(ends[:-1], counts)
-        step = np.repeat(np.diff(ends) / counts, counts)
-        number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-        vertices = np.append(first + number * step, self.least)
-        points = self.at(vertices[:-1])[0]
-        points = np.append(points, points[0])
-        errors = np.full(len(vertices) - 1, np.inf)
-        worst = 0.0
+        vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
         for _ in range(_ROUNDS):
-            todo = np.flatnonzero(np.isinf(errors))
-            errors[todo] = self._errors(vertices, points, todo)
-            worst = float(errors.max())
+            points, errors = self._measure(vertices)
+            if np.mean(errors > self.tolerance) <= _FEW:
+                break
+            # The error that a chord has, not the one that its J promised, says how long it may be.
+            effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + 1e-9)])
+            at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
+            vertices = self._spread(at_corners, effort, vertices)
+        points, errors = self._measure(vertices)
+        for _ in range(_ROUNDS):
             bad = np.flatnonzero(errors > self.tolerance)
             if bad.size == 0:
                 break
             middle = 0.5 * (vertices[bad] + vertices[bad + 1])
-            errors[bad] = np.inf
             vertices = np.insert(vertices, bad + 1, middle)
             points = np.insert(points, bad + 1, self.at(middle)[0])
-            errors = np.insert(errors, bad + 1, np.inf)
-        return vertices, points[:-1], worst
+            errors = np.insert(errors, bad + 1, 0.0)
+            halves = np.flatnonzero(np.isin(vertices[1:], middle) | np.isin(vertices[:-1], middle))
+            errors[halves] = self._errors(vertices, points, halves)
+        return vertices, points[:-1], float(errors.max())
+
+    def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
+        """Spread vertices evenly over `effort` (known at `places`) between `ends`: their J."""
+        counts = np.maximum(np.ceil(np.diff(ends) / _FILL).astype(int), 1)
+        first = np.repeat(ends[:-1], counts)
+        step = np.repeat(np.diff(ends) / counts, counts)
+        number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        vertices = np.interp(np.append(first + number * step, ends[-1]), effort, places)
+        vertices[np.cumsum(counts)[:-1]] = self.corners[1:]
+        return vertices
+
+    def _measure(self, vertices: Array) -> tuple[Plane, Array]:
+        """Points of a closed polygon (the first repeated) and the errors of its chords."""
+        points = self.at(vertices[:-1])[0]
+        points = np.append(points, points[0])
+        return points, self._errors(vertices, points, np.arange(len(vertices) - 1))
 
     def _errors(self, vertices: Array, points: Plane, todo: NDArray[np.int64]) -> Array:
         """Largest distance of three curve points from each chord."""
