@@ -36,7 +36,7 @@ CROSS_SIZE: Final = 0.04
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Circle:
-    """A full circle: centre (2,), mm, and diameter, mm."""
+    """A full circle: its `center` (2,), mm, and its `diameter`, mm."""
 
     center: Array
     diameter: float
@@ -52,7 +52,7 @@ class Path:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Cross:
-    """An upright cross: centre (2,), mm, and its whole size, mm."""
+    """An upright cross: its `center` (2,), mm, and its whole `size`, mm."""
 
     center: Array
     size: float
@@ -76,7 +76,7 @@ class Feature:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Drawing:
-    """Features in drawing order, under a name."""
+    """A `name` and its `features`, in drawing order."""
 
     name: str
     features: tuple[Feature, ...]
@@ -132,7 +132,7 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
 def place(
     features: Iterable[Feature], angle: float, offset: tuple[float, float], prefix: str = ""
 ) -> tuple[Feature, ...]:
-    """Place features (see `placed`) and put a prefix before their layers."""
+    """Return features placed (see `placed`), a prefix before their layers."""
     return tuple(
         Feature(layer=prefix + feature.layer, shape=placed(feature.shape, angle, offset))
         for feature in features

@@ -148,7 +148,20 @@ def _frozen(values: object) -> Array:
 
 
 def circle_segments(diameter: float, sagitta: float) -> int:
-    """Return how many chords a circle needs to stay within the sagitta (mm), at least 12, even."""
+    """Return how many chords a circle needs.
+
+    Parameters
+    ----------
+    diameter : float, mm
+        Diameter of the circle.
+    sagitta : float, mm
+        Largest distance of a chord from the circle.
+
+    Returns
+    -------
+    int
+        Even, at least 12.
+    """
     ratio = min(sagitta / diameter, 0.5)
     # Sagitta of n chords: (d/2)*(1 - cos(pi/n)) = d*sin(pi/(2n))^2.
     return max(12, 2 * math.ceil(math.pi / (4 * math.asin(math.sqrt(ratio)))))

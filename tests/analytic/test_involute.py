@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import mp
 
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
@@ -16,6 +15,7 @@ from gearcam.laws.base import Lobes
 from gearcam.laws.constant import Constant
 from gearcam.tolerances import DEFAULT
 from witness import oracle
+from witness.oracle import mp
 
 TEETH, MODULE = 20, 3.0
 ALPHA = mp.pi / 9

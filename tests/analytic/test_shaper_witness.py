@@ -6,6 +6,8 @@ where the tips are shortened to the mate's reach; flanks, fillets and root lands
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,7 @@ ALLOWED = 1e-4
 STEPS = 8000
 
 
-def cut_and_points(name: str, k: int) -> tuple[object, np.ndarray]:
+def cut_and_points(name: str, k: int) -> tuple[Any, np.ndarray]:
     rolling, basic = kinematics(name)
     curvature = toothings(name)[0].cutter.kc
     cut = shaper.cut_space(rolling, 1, k, basic, STEPS, curvature=curvature, flank_points=600)

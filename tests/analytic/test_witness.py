@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import shapely
-from mpmath import mp
 from numpy.typing import NDArray
 
 from witness import laws, oracle, shaper, sweep
 from witness.kinematics import Basic, Rolling
+from witness.oracle import mp
 
 UNDERCUT = mp.sin(mp.pi / 9) ** 2
 """Largest module over smallest radius without undercut, 20 degrees, addendum 1."""
@@ -202,6 +204,6 @@ def _turn(angle: float) -> NDArray[np.float64]:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def _angles(pair: oracle.Pair, s: float) -> tuple[object, object]:
+def _angles(pair: oracle.Pair, s: float) -> tuple[Any, Any]:
     phi = mp.findroot(lambda x: pair.arc_length(x) - s, s / pair.length * 2 * mp.pi)
     return phi, pair.driven_angle(phi)

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from mpmath import mp
 
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
@@ -23,6 +22,7 @@ from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
 from gearcam.tolerances import DEFAULT
 from witness import laws, oracle
+from witness.oracle import mp
 
 COUNT = 20
 ALLOWED = 1e-9

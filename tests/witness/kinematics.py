@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from witness.laws import Law
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 

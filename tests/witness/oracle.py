@@ -13,10 +13,12 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
-from mpmath import mp
+import mpmath
 
 from witness.laws import Derivatives, Law, Piece, from_driver
 
+mp: Any = mpmath.mp
+"""Untyped: the context makes its functions at run time."""
 DIGITS = 34
 mp.dps = DIGITS
 Number = Any

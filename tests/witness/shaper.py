@@ -8,6 +8,8 @@ on the true curves, so it is too thin by its own chord error, given by `cutter_e
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -15,7 +17,9 @@ from numpy.typing import NDArray
 from witness.kinematics import Basic, Rolling
 from witness.sweep import REACH, positions
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
+Region = Any
+"""A shapely geometry; the stubs cannot tell one from an array of them."""
 
 
 def pinion_tooth(basic: Basic, curvature: float, flank_points: int, arc_points: int) -> Array:
@@ -61,7 +65,7 @@ def cut_space(
     curvature: float,
     flank_points: int = 400,
     arc_points: int = 200,
-) -> shapely.Geometry:
+) -> Region:
     """What the pinion's tooth takes out of the plane around the space that follows tooth k."""
     tooth = pinion_tooth(basic, curvature, flank_points, arc_points)
     middle = basic.space(wheel, k)

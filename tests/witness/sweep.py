@@ -8,13 +8,17 @@ Only the neighbourhood of one tooth space is swept.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from witness.kinematics import Basic, Frames, Rolling
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
+Region = Any
+"""A shapely geometry; the stubs cannot tell one from an array of them."""
 REACH = 4.6
 """How far from a space, in modules, its cutter tooth still touches it."""
 
@@ -48,14 +52,14 @@ def positions(length: float, middle: float, reach: float, steps: int) -> Array:
 
 def cut_space(
     rolling: Rolling, wheel: int, k: int, basic: Basic, steps: int, *, arc_points: int = 800
-) -> shapely.Geometry:
+) -> Region:
     """What the rack's tooth takes out of the plane around the space that follows tooth k."""
     middle = basic.space(wheel, k)
     s = positions(rolling.length, middle, REACH * basic.module, steps)
     return cut_at(rolling.frames(wheel, s), middle - s, rack_tooth(basic, arc_points))
 
 
-def cut_at(at: Frames, ahead: Array, tooth: Array) -> shapely.Geometry:
+def cut_at(at: Frames, ahead: Array, tooth: Array) -> Region:
     """The union of one tooth at positions: their frames, and how far ahead its middle is."""
     along = ahead[:, None] + tooth[None, :, 0]
     rings = (
@@ -68,7 +72,7 @@ def cut_at(at: Frames, ahead: Array, tooth: Array) -> shapely.Geometry:
 
 def whole_wheel(
     rolling: Rolling, wheel: int, teeth: int, basic: Basic, steps: int, arc_points: int
-) -> shapely.Geometry:
+) -> Region:
     """The whole wheel: one union of all cutter teeth at all positions, one difference."""
     s = rolling.length / steps * np.arange(steps)
     at = rolling.frames(wheel, s)
@@ -90,7 +94,7 @@ def blank(
     basic: Basic,
     height: float | None = None,
     depth: float | None = None,
-) -> shapely.Geometry:
+) -> Region:
     """The strip of the blank around a space: up to the tip curve, down to below the root.
 
     `height` and `depth` in modules replace these. Convex centrodes only: there the parallel of the
@@ -107,7 +111,7 @@ def blank(
     return shapely.polygons(np.concatenate([outer, inner[::-1]]))
 
 
-def swept(rolling: Rolling, wheel: int, k: int, basic: Basic, steps: int) -> shapely.Geometry:
+def swept(rolling: Rolling, wheel: int, k: int, basic: Basic, steps: int) -> Region:
     """The wheel's material around one space, after the sweep."""
     return shapely.difference(
         blank(rolling, wheel, k, basic), cut_space(rolling, wheel, k, basic, steps)
@@ -120,7 +124,7 @@ def inside(points: Array, rolling: Rolling, wheel: int, k: int, basic: Basic) ->
     return points[shapely.contains_xy(strip, points)]
 
 
-def farthest(points: Array, region: shapely.Geometry) -> float:
+def farthest(points: Array, region: Region) -> float:
     """Largest distance of points from the boundary of a region, mm."""
     boundary = shapely.boundary(region)
     shapely.prepare(boundary)

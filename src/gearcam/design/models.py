@@ -1,8 +1,8 @@
 """Models of the tables, strict and closed, made from the parameters only when a file asks.
 
 A model says where a table is wrong and gives the JSON schema; the words come from `wording`. Models
-are pydantic's core schemas, the form to which it brings every model class: the same validator checks
-them, and the time to load the machinery of classes, most of that of reading a file, is saved.
+are core schemas of pydantic, the form to which it brings every model class: the same validator
+checks them, and the time to load the machinery of classes is saved.
 """
 
 from __future__ import annotations

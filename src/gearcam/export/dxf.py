@@ -220,7 +220,7 @@ def measure_dxf(data: bytes, contours: Sequence[Contour]) -> float:
 
 
 def read_dxf(data: bytes) -> Document:
-    """Read a DXF file from bytes.
+    """Return the document in the bytes of a DXF file.
 
     Raises
     ------

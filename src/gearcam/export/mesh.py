@@ -63,7 +63,7 @@ def stl_bytes(mesh: Mesh, name: str) -> bytes:
 
 
 def threemf_bytes(mesh: Mesh, name: str) -> bytes:
-    """Write a 3MF in millimetres; the name is that of the object (see `stl_bytes`)."""
+    """Return a 3MF in millimetres; the name is that of the object (see `stl_bytes`)."""
     from trimesh.exchange.threemf import export_3MF
 
     _require(mesh, name)
@@ -71,7 +71,7 @@ def threemf_bytes(mesh: Mesh, name: str) -> bytes:
 
 
 def glb_bytes(mesh: Mesh, name: str) -> bytes:
-    """Write a GLB in millimetres; the name is that of node and mesh (see `stl_bytes`)."""
+    """Return a GLB in millimetres; the name is that of node and mesh (see `stl_bytes`)."""
     from trimesh.exchange.gltf import export_glb
 
     scene = _scene(_single(mesh, name), name)

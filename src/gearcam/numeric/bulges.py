@@ -32,7 +32,20 @@ def as_pairs(values: Complex) -> Array:
 
 
 def off_circle(local: Complex, bend: float | Array) -> Array:
-    """Return distances to the circle through 0 along +x of signed curvature `bend` (or line)."""
+    """Return distances to the circle that passes 0 along +x, or to the line.
+
+    Parameters
+    ----------
+    local : complex array, mm
+        Points in the frame whose origin is on the circle and whose x-axis is its tangent.
+    bend : float or array, 1/mm
+        Signed curvature, positive to the left, 0 for a line.
+
+    Returns
+    -------
+    array, mm
+        Never negative; no digits are lost where the curvature is small.
+    """
     power = bend * (local.real**2 + local.imag**2) - 2 * local.imag
     return np.abs(power) / (1 + np.sqrt(np.maximum(1 + bend * power, 0.0)))
 

@@ -21,8 +21,8 @@ _DEGREE = 20
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
 _TO_COEFFICIENTS = np.cos(np.outer(np.arange(_DEGREE + 1), np.arccos(_NODES))) * 2.0 / (_DEGREE + 1)
 _TO_COEFFICIENTS[0] *= 0.5
-_HALVINGS = 22
-"""A turn cut 22 times leaves 0.3 arc seconds: what is not smooth there is not smooth."""
+_HALVINGS = 18
+"""A turn cut 18 times leaves 5 arc seconds: what is not smooth there is not smooth."""
 
 
 class NotSmoothError(GearcamError, ValueError):
@@ -101,8 +101,7 @@ def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: flo
         Rising; the first and last are the ends, the others are places where it may have corners.
     tolerance : float
         Truncation error allowed, relative to the largest value, on an interval as wide as the
-        whole; narrower intervals may have more in proportion, since they count for less in the
-        integral.
+        whole; narrower ones may have more, since they count for less in the integral.
 
     Returns
     -------
@@ -127,7 +126,7 @@ def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: flo
         scale = max(scale, float(np.abs(values).max()))
         coefficients = _TO_COEFFICIENTS @ values
         ends = np.abs(coefficients[-2:]).max(axis=0)
-        good = ends <= max(tolerance, 4.0 * np.finfo(float).eps) * scale * 2.0**halving
+        good = ends <= max(tolerance, 4.0 * np.finfo(float).eps) * scale * 2.0 ** (0.5 * halving)
         if good.any():
             error += float(ends[good] @ (high - low)[good])
             done.append((low[good], high[good], coefficients[:, good]))

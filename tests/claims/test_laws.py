@@ -1,0 +1,98 @@
+"""Every law of the registry keeps every claim it makes."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+import gearcam.laws  # noqa: F401  (fills the registry)
+from gearcam.laws.base import LAWS, Claim, RatioLaw
+from gearcam.tolerances import DEFAULT
+
+CLAIMS = [
+    pytest.param(claim, id=f"{entry.name}-{number}")
+    for entry in LAWS.values()
+    for number, claim in enumerate(entry.claims())
+]
+
+
+def built(claim: Claim) -> RatioLaw:
+    return claim.parameters.build(claim.lobes, DEFAULT)
+
+
+def test_the_registry_holds_exactly_the_laws_that_are_documented() -> None:
+    assert set(LAWS) == {"phases", "constant", "ellipse", "formula"}
+    for entry in LAWS.values():
+        assert len(entry.claims()) >= 1
+        assert entry.source and entry.doc and entry.continuity
+        assert dataclasses.is_dataclass(entry.parameters)
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_values_are_those_of_the_closed_form(claim: Claim) -> None:
+    law = built(claim)
+    for phi, ratio in claim.ratio.items():
+        assert law.derivatives(np.array([phi]), 0)[0][0] == pytest.approx(ratio, abs=1e-14)
+    for phi, driven in claim.motion.items():
+        assert float(law.phi2(phi)) == pytest.approx(driven, abs=2e-14)
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_it_closes_and_repeats(claim: Claim) -> None:
+    law = built(claim)
+    assert abs(law.closure_error) < 1e-13
+    assert law.motion.last == pytest.approx(2 * math.pi / claim.lobes.n2, abs=1e-13)
+    phi = np.linspace(0.01, law.lobes.period - 0.01, 7)
+    shifted = phi + 3 * law.lobes.period
+    np.testing.assert_allclose(law.phi2(shifted), law.phi2(phi) + 3 * law.lobes.advance, atol=1e-13)
+    np.testing.assert_allclose(law.derivatives(shifted, 2), law.derivatives(phi, 2), atol=1e-10)
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_derivatives_are_those_of_high_precision_differences(claim: Claim) -> None:
+    """Orders 1 to 3 against Richardson-extrapolated differences of the order below, piece by piece."""
+    law = built(claim)
+    for low, high in zip(law.knots[:-1], law.knots[1:], strict=True):
+        x = low + (high - low) * np.array([0.13, 0.37, 0.52, 0.81])
+        exact = law.derivatives(x, 3)
+        for order in (1, 2, 3):
+            h = 2e-4 * (high - low)
+            stencil = [law.derivatives(x + k * h, order - 1)[order - 1] for k in (-2, -1, 1, 2)]
+            slope = (stencil[0] - 8 * stencil[1] + 8 * stencil[2] - stencil[3]) / (12 * h)
+            scale = max(1.0, float(np.abs(exact[order]).max()))
+            np.testing.assert_allclose(exact[order], slope, atol=2e-8 * scale)
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_the_driven_angle_is_the_integral_of_the_ratio(claim: Claim) -> None:
+    """An adaptive high-order quadrature that knows only the ratio."""
+    law = built(claim)
+
+    def ratio(x: mpmath.mpf) -> float:
+        return float(law.derivatives(np.array([float(x)]), 0)[0][0])
+
+    for phi in (0.3 * law.lobes.period, 0.9 * law.lobes.period):
+        inner = np.append(np.linspace(0.0, phi, 9), [k for k in law.knots if k < phi])
+        breaks = sorted(set(inner.tolist()))
+        integral = float(mpmath.quad(ratio, breaks))
+        assert float(law.phi2(phi)) == pytest.approx(integral, abs=1e-13)
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_continuity_is_as_claimed_and_seen_from_both_sides(claim: Claim) -> None:
+    law = built(claim)
+    assert min(law.ratio.continuity) == claim.continuity
+    h = 1e-7
+    for knot in law.knots[1:]:
+        before, after = law.derivatives(np.array([knot - h, knot + h]), 1)[1]
+        scale = max(1.0, float(np.abs(law.derivatives(law.knots[:-1] + 0.1, 2)[2]).max()))
+        assert abs(after - before) < 50 * h * scale
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_the_error_estimate_is_small_and_not_zero(claim: Claim) -> None:
+    assert 0.0 < built(claim).error < 1e-13

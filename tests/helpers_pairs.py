@@ -1,0 +1,96 @@
+"""Pairs built through the public way, and the assembled pair in the plane."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import shapely
+
+import gearcam
+from gearcam.design import GearPairDesign, OutputSpec
+from gearcam.gears.spec import PairSpec, Rack
+from gearcam.jobs import GearPairJob
+from gearcam.laws.base import LAWS
+from gearcam.parts import Blank
+
+PROFILES = Path(__file__).parent.parent / "profiles"
+
+
+def job(
+    law: Any,
+    teeth: tuple[int, int],
+    *,
+    module: float | None = None,
+    distance: float | None = None,
+    tolerance: float | None = None,
+    rack: Rack | None = None,
+    bores: tuple[float, float] | None = None,
+    limits: dict[str, float] | None = None,
+    files: tuple[str, ...] = ("csv",),
+) -> GearPairJob:
+    """Return the job of a design made in Python; lengths in mm, limits in inner units."""
+    name = next(name for name, entry in LAWS.items() if entry.parameters is type(law))
+    if module is None and distance is None:
+        module = 1.0
+    return gearcam.build(
+        GearPairDesign(
+            name="sample",
+            law_type=name,
+            law=law,
+            pair=PairSpec(center_distance=distance, module=module, teeth=teeth),
+            rack=rack or Rack(),
+            blank=Blank(bore_diameter=bores),
+            limits=limits or {},
+            output=OutputSpec(files=files, chord_tolerance=tolerance),
+        )
+    )
+
+
+@cache
+def profile(name: str, tolerance: float | None = None) -> GearPairJob:
+    """Return the job of a file in ``profiles/``, at a tolerance of its own where one is given."""
+    design = gearcam.load(PROFILES / f"{name}.toml")
+    if tolerance is None:
+        return gearcam.build(design)
+    return job(
+        design.law,
+        design.pair.teeth,
+        module=design.pair.module,
+        distance=design.pair.center_distance,
+        tolerance=tolerance,
+        rack=design.rack,
+    )
+
+
+class Assembly:
+    """Two outlines on their shafts, turned to any phase and clipped to the zone of mesh."""
+
+    def __init__(self, made: GearPairJob, outlines: tuple[np.ndarray, np.ndarray] | None = None):
+        self.law = made.law
+        self.distance = made.pair.center_distance
+        first, second = outlines or (made.gear1.outline, made.gear2.outline)
+        self.one, self.two = first @ [1, 1j], second @ [1, 1j]
+        self.reach = 4.0 * made.pair.module
+        self.rolling = made.pair.rolling
+
+    def at(self, phi: float, lead: float = 0.0) -> tuple[shapely.Polygon, shapely.Polygon]:
+        """Both wheels near the pitch point at a driver angle, the driven one ahead by `lead`, rad."""
+        pitch = float(abs(self.rolling.frames(1, np.array([phi])).p[0]))
+        zone = (pitch - self.reach, -4 * self.reach, pitch + self.reach, 4 * self.reach)
+        turned = (
+            self.one * np.exp(-1j * phi),
+            self.two * np.exp(1j * (float(self.law.phi2(phi)) + lead)) + self.distance,
+        )
+        polygons = [shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in turned]
+        return shapely.clip_by_rect(polygons[0], *zone), shapely.clip_by_rect(polygons[1], *zone)
+
+    def overlap(self, phi: float, lead: float = 0.0) -> float:
+        """Area that both wheels cover, mm^2."""
+        return float(shapely.intersection(*self.at(phi, lead)).area)
+
+
+PHASES = np.arange(0.0, 360.0, 1.0) * math.pi / 180.0

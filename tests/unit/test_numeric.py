@@ -1,0 +1,159 @@
+"""Jets, expansions, piecewise functions and root searches against independent mathematics."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+from gearcam.numeric import jets
+from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.jets import FUNCTIONS, Jet
+from gearcam.numeric.piecewise import Piece, extremes, integrate, piecewise
+from gearcam.numeric.roots import bracketed_root, newton_in_bracket
+
+POINTS = np.array([0.21, 0.47, 0.83])
+
+
+@pytest.mark.parametrize("name", sorted(FUNCTIONS))
+def test_jets_of_every_function_are_the_taylor_series_of_mpmath(name: str) -> None:
+    def inner(x):  # type: ignore[no-untyped-def]
+        return 0.4 + 0.3 * x * x
+
+    jet = FUNCTIONS[name](inner(Jet.variable(POINTS, 4)))
+    reference = getattr(mpmath, {"asin": "asin", "acos": "acos", "atan": "atan"}.get(name, name))
+    for k, x in enumerate(POINTS):
+        series = mpmath.taylor(lambda t: reference(inner(t)), x, 4)
+        for order, value in enumerate(series):
+            assert float(jet.derivatives()[order][k]) == pytest.approx(
+                float(value) * math.factorial(order), rel=1e-9, abs=1e-9
+            )
+
+
+@pytest.mark.parametrize(
+    ("build", "reference"),
+    [
+        (lambda x: x**3, lambda t: t**3),
+        (lambda x: x**-2, lambda t: t**-2),
+        (lambda x: x**2.5, lambda t: t**2.5),
+        (lambda x: 2.0**x, lambda t: mpmath.mpf(2) ** t),
+        (lambda x: x**x, lambda t: t**t),
+        (lambda x: (1 - 2 * x) / (x + 1) - 3 / x, lambda t: (1 - 2 * t) / (t + 1) - 3 / t),
+        (lambda x: -(+x) * x + 1, lambda t: -t * t + 1),
+    ],
+)
+def test_jet_arithmetic_is_that_of_power_series(build, reference) -> None:  # type: ignore[no-untyped-def]
+    jet = build(Jet.variable(POINTS, 3))
+    for k, x in enumerate(POINTS):
+        for order, value in enumerate(mpmath.taylor(reference, x, 3)):
+            expected = float(value) * math.factorial(order)
+            assert float(jet.derivatives()[order][k]) == pytest.approx(expected, rel=1e-10, abs=1e-10)
+
+
+def test_a_square_has_derivatives_at_zero() -> None:
+    values = (Jet.variable([0.0], 3) ** 2.0).derivatives()
+    assert [float(v[0]) for v in values] == [0.0, 0.0, 2.0, 0.0]
+
+
+@pytest.mark.parametrize("eccentricity", [0.1, 0.9, 0.999])
+def test_an_expansion_reaches_rounding_however_sharp_the_function(eccentricity: float) -> None:
+    e = eccentricity
+
+    def speed(x: np.ndarray) -> np.ndarray:
+        return np.sqrt(1.0 - e * e * np.sin(x) ** 2)
+
+    total = expand(speed, [0.0, math.pi], 1e-15).antiderivative()
+    assert total.last == pytest.approx(float(2 * mpmath.ellipe(e * e)), rel=4e-15)
+    middle = float(total(0.5 * math.pi))
+    assert middle == pytest.approx(float(mpmath.ellipe(e * e)), rel=4e-15)
+
+
+def test_an_expansion_reports_an_error_that_holds() -> None:
+    made = expand(lambda x: 1.0 / (1.01 + np.cos(x)), [0.0, 2 * math.pi], 1e-15)
+    exact = 2 * math.pi / math.sqrt(1.01**2 - 1.0)
+    assert abs(made.antiderivative().last - exact) <= max(10 * made.error, 1e-13 * exact)
+
+
+@pytest.mark.parametrize("place", [0.3, math.pi / 3])
+def test_a_hidden_corner_is_found_where_it_is(place: float) -> None:
+    with pytest.raises(NotSmoothError) as caught:
+        expand(lambda x: np.abs(x - place) + np.cos(x), [0.0, 2.0], 1e-15)
+    assert caught.value.place == pytest.approx(place, abs=1e-4)
+    assert caught.value.finite
+
+
+def test_a_pole_is_found_where_it_is() -> None:
+    with pytest.raises(NotSmoothError) as caught:
+        expand(lambda x: np.where(x > 1.3, np.nan, x), [0.0, 2.0], 1e-15)
+    assert not caught.value.finite and caught.value.place > 1.3
+
+
+def test_a_corner_at_a_break_is_allowed() -> None:
+    made = expand(lambda x: np.abs(x - 0.3), [0.0, 0.3, 1.0], 1e-15)
+    assert len(made.knots) <= 4
+    assert made.antiderivative().last == pytest.approx(0.5 * (0.3**2 + 0.7**2), rel=1e-15)
+
+
+def test_continuity_tells_the_first_derivative_that_jumps() -> None:
+    def ramp(x: Jet) -> Jet:
+        return 1.0 * x
+
+    for power, order in ((0.0, -1), (1.0, 0), (2.0, 1), (3.0, 2)):
+
+        def bent(x: Jet, power: float = power) -> Jet:
+            return ramp(x) + (x - 1.0) ** power
+
+        joined = piecewise([0.0, 1.0, 2.0], [Piece(ramp), Piece(bent)])
+        assert joined.continuity[0] == order
+
+
+def test_an_integral_without_closed_form_agrees_with_one_that_has() -> None:
+    closed = Piece(lambda x: jets.cos(x), lambda x: jets.sin(x))
+    numeric = Piece(lambda x: jets.cos(x))
+    grid = [0.0, 1.0, 4.0]
+    a = integrate(grid, [closed, closed], 1e-15)
+    b = integrate(grid, [closed, numeric], 1e-15)
+    x = np.linspace(0.0, 4.0, 31)
+    np.testing.assert_allclose(a(x), np.sin(x), atol=1e-15)
+    np.testing.assert_allclose(b(x), np.sin(x), atol=1e-14)
+
+
+def test_extremes_are_roots_of_the_slope_and_sides_of_knots() -> None:
+    def saw(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        up = x < 1.0
+        return np.where(up, x * x, 5.0 - x), np.where(up, 2.0 * x, -1.0)
+
+    _, values = extremes(saw, [-1.0, 1.0, 3.0])
+    assert values.min() == pytest.approx(0.0, abs=1e-15)
+    assert values.max() == pytest.approx(4.0, abs=1e-11)
+    assert any(abs(v - 1.0) < 1e-11 for v in values)
+
+
+def test_newton_in_a_bracket_survives_a_start_where_newton_alone_leaves() -> None:
+    target = np.array([0.2, 0.99, 1.0 - 1e-9])
+
+    def steep(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return np.arctan(200 * (x - target)), 200 / (1 + (200 * (x - target)) ** 2)
+
+    found = newton_in_bracket(steep, np.zeros(3), np.ones(3), np.full(3, 0.5), 1e-15)
+    np.testing.assert_allclose(found, target, atol=1e-14)
+
+
+def test_a_root_at_a_jump_is_found() -> None:
+    found = bracketed_root(lambda x: np.where(x < 0.3, -1.0, 2.0), [0.0], [1.0], 1e-13)
+    assert found[0] == pytest.approx(0.3, abs=1e-12)
+
+
+def test_bracketed_roots_reach_rounding_in_few_steps() -> None:
+    calls = 0
+
+    def cubic(x: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        return np.cos(x) - x**3
+
+    found = bracketed_root(cubic, [0.0], [1.0], 1e-15)
+    assert found[0] == pytest.approx(float(mpmath.findroot(lambda t: mpmath.cos(t) - t**3, 0.8)))
+    assert calls < 16
