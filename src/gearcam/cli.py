@@ -25,7 +25,7 @@ from gearcam.errors import DesignError, InfeasibleError, Problem, WriteError
 
 if TYPE_CHECKING:
     from gearcam.findings import Finding
-    from gearcam.jobs import GearPairJob, Progress, Written
+    from gearcam.jobs import GearPairJob, Written
 
 GOOD: Final = 0
 FINDINGS: Final = 1
@@ -87,9 +87,13 @@ def _root(
     version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
 ) -> None:
     if version:
+        from importlib.metadata import PackageNotFoundError
         from importlib.metadata import version as installed
 
-        _say(f"gearcam {installed('gearcam')}")
+        with contextlib.suppress(PackageNotFoundError):
+            _say(f"gearcam {installed('gearcam')}")
+            raise typer.Exit(GOOD)
+        _say("gearcam, not installed: its version is not known")
         raise typer.Exit(GOOD)
 
 
@@ -211,7 +215,8 @@ def _refuse(problems: Sequence[Problem]) -> None:
     raise typer.Exit(WRONG)
 
 
-Action = Callable[["GearPairJob", "Progress | None"], "Written"]
+Progress = Callable[[str, int, int], None]
+Action = Callable[["GearPairJob", Progress | None], "Written"]
 
 
 def _each(files: Sequence[str], done: str, action: Action, *, debug: bool) -> None:

@@ -14,6 +14,7 @@ from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
 from gearcam.tolerances import DEFAULT
+from witness import laws, oracle
 
 UNDERCUT = math.sin(math.radians(20)) ** 2
 
@@ -105,6 +106,15 @@ def test_eccentric_circle(offset: float, over_radius: str, distance: str | None)
     assert printed(rolling.center_distance / radius, over_radius)
     if distance is not None:
         assert printed(rolling.center_distance, distance)
+
+
+@pytest.mark.parametrize("wheel", [1, 2])
+@pytest.mark.parametrize("phases", NAIL)
+def test_curvature_at_every_place_is_that_of_the_oracle(phases: int, wheel: Any) -> None:
+    exact = oracle.Pair({2: laws.NAIL_TWO, 3: laws.NAIL_THREE}[phases], oracle.mp.mpf(180))
+    phi = 0.05 + 2 * math.pi * np.arange(24) / 24
+    expected = [float(exact.curvature(wheel, oracle.mp.mpf(float(x)))) for x in phi]
+    assert nail(phases).frames(wheel, phi).kappa == pytest.approx(expected, rel=1e-11, abs=1e-15)
 
 
 def test_printed_counts_the_digits() -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.gears.flank import trace
 from helpers_wheels import cut_points, kinematics, outline, toothings
 from witness import shaper, sweep
 
@@ -60,6 +61,19 @@ def test_a_rack_would_not_do() -> None:
         cut = sweep.cut_space(rolling, 1, k, basic, 2000)
         worst = max(worst, sweep.farthest(points, cut))
     assert worst > 0.1
+
+
+@pytest.mark.parametrize("name", ["ellipse", "two phases", "three phases"])
+@pytest.mark.parametrize("wheel", [1, 2])
+def test_curves_meet_where_they_join(name: str, wheel: Any) -> None:
+    """Where no corner is drawn, each curve begins where the one before ends, in its direction."""
+    made = outline(name, wheel)
+    after = np.flatnonzero(~made.rows.corner)
+    assert len(after) > 100
+    first, to_first = trace(made.toothing, made.rows, after - 1, made.rows.end[after - 1])
+    second, to_second = trace(made.toothing, made.rows, after, made.rows.start[after])
+    assert np.abs(first - second).max() < 1e-10
+    assert np.abs(to_first - to_second).max() < 1e-7
 
 
 def test_the_outlines_are_the_ones_that_are_built() -> None:

@@ -120,8 +120,8 @@ def docstring_faults(path: Path, promised: frozenset[str] = frozenset()) -> list
     "Return ..." or "Yield ..."; what it raises itself is named. Every field of a dataclass is named
     in the docstring of its class, or carries its own `doc=`. Private names, magic methods and
     overloads are free; properties, and functions of one parameter that state in one line what they
-    are, need that line; so do commands (their options carry help) and methods that a protocol
-    has promised.
+    are, need that line; so do commands (their options carry help), registered checks (all are
+    called alike) and methods that a protocol has promised.
     """
     tree = parse(path)
     faults = [] if ast.get_docstring(tree) else ["the module has no docstring"]
@@ -170,7 +170,8 @@ def _function_faults(node: Function, name: str, *, method: bool, brief: bool) ->
     doc = ast.get_docstring(node)
     if not doc:
         return [f"{name} has no docstring"]
-    if brief or any(mark.endswith("property") or ".command(" in mark for mark in marks):
+    registered = any(".command(" in mark or mark.startswith("check(") for mark in marks)
+    if brief or registered or any(mark.endswith("property") for mark in marks):
         return []
     static = any(mark.endswith("staticmethod") for mark in marks)
     parameters = _parameters(node, skip_first=method and not static)

@@ -32,7 +32,9 @@ TEMPORARY: Final = ".gearcam-"
 """Beginning of temporary names."""
 
 
-def write_all(directory: str | os.PathLike[str], files: Mapping[str, bytes]) -> tuple[str, ...]:
+def write_all(
+    directory: str | os.PathLike[str], files: Mapping[str, bytes], *, keep: bool = False
+) -> tuple[str, ...]:
     """Write files into a folder, whole or not at all, and remove stale ones.
 
     Parameters
@@ -42,6 +44,8 @@ def write_all(directory: str | os.PathLike[str], files: Mapping[str, bytes]) -> 
     files : mapping of str to bytes
         Plain file names and contents. ``summary.json`` among them lists the others under
         ``"files"``.
+    keep : bool
+        Keep the stale files: what is written is no build, only a summary.
 
     Returns
     -------
@@ -61,17 +65,18 @@ def write_all(directory: str | os.PathLike[str], files: Mapping[str, bytes]) -> 
     if wrong:
         raise ValueError(f"not plain file names: {wrong}")
     try:
-        return _write(folder, files)
+        return _write(folder, files, keep)
     except OSError as error:
         place = error.filename2 or error.filename or folder
         raise WriteError(f"cannot write to {place}: {error.strerror or error}") from error
 
 
-def _write(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
+def _write(folder: Path, files: Mapping[str, bytes], keep: bool) -> tuple[str, ...]:
     made = _make(folder)
     change = _Change(folder)
     try:
-        stale = [name for name in previous_files(folder) if name not in files]
+        before = () if keep else previous_files(folder)
+        stale = [name for name in before if name not in files]
         for name, content in files.items():
             change.stage(name, content)
         for name in sorted(files, key=lambda name: name == SUMMARY):

@@ -20,6 +20,9 @@ from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
 KIND = "gear-pair"
 
+CLOSURE = math.radians(1e-7)
+"""Default closure error: 0.006 micrometres at 200 mm."""
+
 _ANY_RADIUS = 1e6
 """Default of the concave radius: every concave part is reported, mm."""
 
@@ -71,7 +74,7 @@ def _teeth(numbers: tuple[int, ...] | list[int]) -> str:
     "closure",
     kind=KIND,
     doc="miss of the driven angle over a lobe",
-    limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), 1e-9),
+    limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE),
 )
 def closure(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn if the law closes only roughly: ratios typed with too few digits."""

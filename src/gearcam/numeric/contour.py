@@ -27,7 +27,7 @@ class Run:
     Parameters
     ----------
     points : (n, 2) array, mm
-        Points on the true curve, dense: chord error at most 1/50 of the contour's tolerance.
+        Points on the true curve, dense: chord error at most 1/32 of the contour's tolerance.
     tangents : (n, 2) array
         Unit tangents, forward along the contour.
     """

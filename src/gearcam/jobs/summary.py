@@ -11,7 +11,11 @@ import numpy as np
 
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
-    from gearcam.jobs import GearPairJob
+    from gearcam.jobs.gear_pair import GearPairJob
+
+
+FORMAT = 1
+"""Version of the summary's layout."""
 
 
 def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) -> dict[str, Any]:
@@ -31,8 +35,6 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
     dict
         For JSON; what does not exist is left out.
     """
-    from gearcam.jobs import FORMAT
-
     findings = [finding.as_dict() for finding in job.findings]
     pair = job.pair
     given = job.design.pair.center_distance

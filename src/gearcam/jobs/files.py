@@ -8,7 +8,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing
-    from gearcam.jobs import GearPairJob
+    from gearcam.jobs.gear_pair import GearPairJob
 
 
 def export(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:

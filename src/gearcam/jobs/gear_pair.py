@@ -1,4 +1,4 @@
-"""Jobs: what one kind of design computes, stage by stage, on demand.
+"""The job of a gear pair.
 
 A `GearPairJob` computes nothing until it is asked: the law, the centrodes, each wheel, the checks,
 each file. Every stage is timed once. Nothing is imported that the asked-for files do not need.
@@ -29,9 +29,6 @@ from gearcam.parts import Part, timing_mark
 from gearcam.tolerances import DEFAULT, Tolerances
 
 Progress = Callable[[str, int, int], None]
-
-FORMAT = 1
-"""Version of the summary's layout."""
 
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
@@ -179,13 +176,27 @@ class GearPairJob:
         dict
             As described in docs/conventions.md.
         """
-        from gearcam.summaries import summarize
+        from gearcam.jobs.summary import summarize
 
         return summarize(self, files, extras or {})
 
     def check(self, directory: str | Path = "output") -> Written:
-        """Run the checks and write the summary only (see `write`)."""
-        return self.write(directory, files=())
+        """Run the checks and write the summary only; files of an earlier build stay listed in it.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+
+        Returns
+        -------
+        Written
+            With the summary as its only file.
+        """
+        from gearcam.export.write import previous_files
+
+        folder = Path(directory) / self.design.name
+        return self._finish(folder, {}, self.summary(previous_files(folder)), keep=True)
 
     def write(
         self,
@@ -216,21 +227,23 @@ class GearPairJob:
         WriteError
             If the disk refuses.
         """
-        import json
-
-        from gearcam.export.write import SUMMARY, write_all
-        from gearcam.exporting import export
+        from gearcam.jobs.files import export
 
         kinds = tuple(self.design.output.files if files is None else files)
-        steps = ["law", "centrodes", "gear 1", "gear 2", "checks", *kinds, "writing"]
+        stages = {
+            "law": "law",
+            "centrodes": "pair",
+            "gear 1": "gear1",
+            "gear 2": "gear2",
+            "checks": "findings",
+        }
+        steps = [*stages, *kinds, "writing"]
 
         def tell(step: str) -> None:
             if progress is not None:
                 progress(step, steps.index(step), len(steps))
 
-        for step, attribute in zip(
-            steps, ("law", "pair", "gear1", "gear2", "findings"), strict=False
-        ):
+        for step, attribute in stages.items():
             tell(step)
             getattr(self, attribute)
         contents: dict[str, bytes] = {}
@@ -240,11 +253,19 @@ class GearPairJob:
             with self._stage(kind):
                 contents |= export(self, kind, extras)
         tell("writing")
-        summary = self.summary(tuple(contents), extras)
-        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-        contents[SUMMARY] = (text + "\n").encode()
         folder = Path(directory) / self.design.name
-        removed = write_all(folder, contents)
+        return self._finish(folder, contents, self.summary(tuple(contents), extras))
+
+    def _finish(
+        self, folder: Path, contents: dict[str, bytes], summary: dict[str, Any], keep: bool = False
+    ) -> Written:
+        import json
+
+        from gearcam.export.write import SUMMARY, write_all
+
+        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+        everything = {**contents, SUMMARY: (text + "\n").encode()}
+        removed = write_all(folder, everything, keep=keep)
         return Written(
-            directory=folder, files=tuple(contents), removed=tuple(removed), summary=summary
+            directory=folder, files=tuple(everything), removed=tuple(removed), summary=summary
         )

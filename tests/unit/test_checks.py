@@ -1,0 +1,224 @@
+"""Every check speaks just beyond its limit and is silent just within it, in a real build."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from gearcam.findings import CHECKS, Finding
+from gearcam.gears.checks import KIND, Subject, remote_cutter, undercut
+from gearcam.gears.spec import Rack
+from gearcam.jobs import GearPairJob
+from gearcam.laws.constant import Constant
+from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.formula import Formula
+from gearcam.laws.phases import Phases
+from helpers_pairs import job, profile
+
+HALF = (0.0, math.pi, 2 * math.pi)
+UNEVEN = (0.0, math.radians(160), 2 * math.pi)
+
+
+def codes(made: GearPairJob) -> dict[str, Finding]:
+    return {finding.code: finding for finding in made.findings}
+
+
+def nearly_closed(miss: float) -> GearPairJob:
+    return job(Phases(knots=HALF, ratios=(1.2, 0.8 + miss / math.pi, 1.2)), (30, 30))
+
+
+def swing(smallest: float) -> GearPairJob:
+    e = (1 - smallest) / (1 + smallest)
+    return job(Ellipse(eccentricity=e), (200, 200))
+
+
+def bending(radius_in_modules: float) -> GearPairJob:
+    """An ellipse's smallest radius is a(1 - e^2); the module follows from the perimeter."""
+    made = job(Ellipse(eccentricity=0.8), (30, 30))
+    current = made.gear1.convex_radius / made.pair.module
+    return job(
+        Ellipse(eccentricity=0.8),
+        (30, 30),
+        limits={"convex_radius": 2.5 * current / radius_in_modules},
+    )
+
+
+def concave(limit: float) -> GearPairJob:
+    return job(Formula(r1="1 + 0.25*cos(2*phi1)"), (40, 40), limits={"concave_radius": limit})
+
+
+def tips(addendum: float) -> GearPairJob:
+    return job(Constant(), (12, 60), rack=Rack(addendum=addendum))
+
+
+def rim(extra: float) -> GearPairJob:
+    """Root radius of z = 40, m = 1 is 18.75 mm; a rim of 2.7 modules is left by a bore of 32.1 mm."""
+    return job(Constant(), (40, 40), bores=(2 * (18.75 - 2.7) + extra, 10.0))
+
+
+def heights(limit: float) -> GearPairJob:
+    return job(Formula(r1="1 + 0.25*cos(2*phi1)"), (60, 60), limits={"tip_height": limit})
+
+
+class Case(NamedTuple):
+    code: str
+    severity: str
+    beyond: Callable[[], GearPairJob]
+    within: Callable[[], GearPairJob]
+
+
+CASES = [
+    Case("closure", "warning", lambda: nearly_closed(1.8e-9), lambda: nearly_closed(1.7e-9)),
+    Case("ratio-positive", "warning", lambda: swing(0.0999), lambda: swing(0.1001)),
+    Case(
+        "ratio-continuity",
+        "warning",
+        lambda: job(
+            Phases(knots=UNEVEN, ratios=(1.2, 0.8, 1.2), shape="cubic"),
+            (30, 30),
+            limits={"ratio_continuity": 2},
+        ),
+        lambda: job(
+            Phases(knots=UNEVEN, ratios=(1.2, 0.8, 1.2), shape="cubic"),
+            (30, 30),
+            limits={"ratio_continuity": 1},
+        ),
+    ),
+    Case("sharp", "warning", lambda: bending(2.499), lambda: bending(2.501)),
+    Case(
+        "undercut", "warning", lambda: job(Constant(), (17, 60)), lambda: job(Constant(), (18, 60))
+    ),
+    Case("thin-rim", "warning", lambda: rim(0.002), lambda: rim(-0.002)),
+    Case(
+        "no-backlash",
+        "note",
+        lambda: job(Constant(), (20, 20), limits={"backlash": 1e-6}),
+        lambda: job(Constant(), (20, 20), limits={"backlash": 0.0}),
+    ),
+]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.code)
+def test_a_check_speaks_beyond_its_limit_only(case: Case) -> None:
+    found = codes(case.beyond()).get(case.code)
+    assert found is not None
+    assert found.severity == case.severity
+    assert found.message.endswith(".") and found.where and found.value is not None
+    assert case.code not in codes(case.within())
+
+
+def test_concave_parts_are_noted_with_their_radius() -> None:
+    found = codes(concave(1e6))["concave"]
+    assert found.severity == "note" and found.value is not None
+    assert "concave" in codes(concave(found.value * 1.0001))
+    assert "concave" not in codes(concave(found.value * 0.9999))
+    assert "concave" not in codes(job(Ellipse(eccentricity=0.3), (40, 40)))
+
+
+def test_thin_and_pointed_tips() -> None:
+    """z = 12: the thickness falls with the addendum; the two sides of 0.2 modules, and a point."""
+    low, high = 1.0, 1.6
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        thick = tips(middle).gear1.profile.tip_thickness.min() >= 0.2
+        low, high = (middle, high) if thick else (low, middle)
+    assert "thin-tip" in codes(tips(low + 1e-6))
+    assert "thin-tip" not in codes(tips(low - 1e-6))
+    assert "thin" in codes(tips(low + 1e-6))["thin-tip"].message
+    pointed = tips(2.0)
+    assert codes(pointed)["thin-tip"].value == pytest.approx(0.0, abs=1e-9)
+    assert "pointed" in codes(pointed)["thin-tip"].message
+
+
+def test_short_flanks_are_noted() -> None:
+    made = heights(1.0)
+    tip = [
+        gear.profile.flanks.tips.height.min() / gear.toothing.cutter.addendum for gear in made.gears
+    ]
+    least = min(tip)
+    assert least < 0.9999
+    assert "short-flank" in codes(heights(least + 1e-6))
+    assert "short-flank" not in codes(heights(least - 1e-6))
+
+
+def test_a_pinion_cutter_that_reaches_a_remote_tooth_names_both() -> None:
+    """A cutter four times as large as the one chosen touches both ends of a wheel with a waist.
+
+    The cutter that a build chooses fits into the sharpest hollow, and hollows of a polar curve widen
+    outwards, so that no build was found in which it reaches a remote tooth.
+    """
+    made = job(Formula(r1="1 + 0.5*cos(2*phi1)"), (60, 60))
+    assert "remote-cutter" not in codes(made)
+    gear = made.gear1
+    large = replace(
+        gear.toothing, cutter=replace(gear.toothing.cutter, kc=gear.toothing.cutter.kc / 4)
+    )
+    pair = replace(made.pair, toothings=(large, made.pair.toothings[1]))
+    gears = (replace(gear, pair=pair), made.gear2)
+    subject = Subject(pair=pair, gears=gears, bores=(None, None), backlash=0.0)
+    (found,) = remote_cutter(subject, math.nan)
+    assert found.severity == "warning"
+    numbers = [int(word) for word in found.where.replace(",", "").split() if word.isdigit()]
+    assert numbers[0] == 1
+    assert abs(numbers[1] - numbers[2]) >= 3
+
+
+def test_every_check_of_the_registry_is_tested_here() -> None:
+    named = {case.code for case in CASES} | {
+        "concave",
+        "thin-tip",
+        "short-flank",
+        "remote-cutter",
+    }
+    assert named == {check.code for check in CHECKS.values() if check.kind == KIND}
+    assert len(named) == 11
+
+
+def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:
+    made = job(Constant(), (17, 60))
+    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None), backlash=0.0)
+    ratio = subject.contact_ratio
+    (warning,) = undercut(subject, ratio - 1e-6)
+    (error,) = undercut(subject, ratio + 1e-6)
+    assert (warning.severity, error.severity) == ("warning", "error")
+    cut = codes(job(Constant(), (5, 5)))["undercut"]
+    assert cut.severity == "error"
+
+
+def test_the_largest_module_that_the_message_names_is_the_largest() -> None:
+    """Build at the named module: no undercut there, undercut 1 % beyond (z large, so teeth are dense)."""
+    law = Ellipse(eccentricity=0.5)
+    made = job(law, (18, 18))
+    named = codes(made)["undercut"].limit
+    assert named is not None
+    teeth = math.ceil(18 / named)
+    assert "undercut" not in codes(job(law, (teeth, teeth)))
+    assert f"{named:.4f} mm" in codes(made)["undercut"].message
+
+
+def test_contact_ratio_of_circular_wheels_is_the_textbooks() -> None:
+    """Contact ratio from tip and base circles; both sides, every flank."""
+    made = job(Constant(), (24, 36))
+    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None), backlash=0.0)
+    alpha, r1, r2 = math.radians(20), 12.0, 18.0
+
+    def tip(r: float) -> float:
+        return math.sqrt((r + 1) ** 2 - (r * math.cos(alpha)) ** 2)
+
+    path = tip(r1) + tip(r2) - (r1 + r2) * math.sin(alpha)
+    expected = path / (math.pi * math.cos(alpha))
+    for arcs in subject.arcs:
+        np.testing.assert_allclose(arcs.ratios, expected, rtol=1e-9)
+        assert arcs.gaps == ()
+
+
+def test_findings_come_worst_first() -> None:
+    order = ["error", "warning", "note"]
+    found = [finding.severity for finding in profile("nail_machine_three_phase").findings]
+    assert found == sorted(found, key=order.index)
+    assert "warning" in found and "error" not in found
