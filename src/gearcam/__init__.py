@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from gearcam.design import GearPairDesign
     from gearcam.jobs import GearPairJob
 
-__all__ = ["build", "load"]
+__all__ = ["__version__", "build", "load"]
+
+__version__ = "0.1.0"
 
 
 def load(path: str | os.PathLike[str]) -> GearPairDesign:

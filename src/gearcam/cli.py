@@ -1,4 +1,4 @@
-"""The command line: the one room that prints.
+"""The command line.
 
 Every command ends in an exit code: 0 good (warnings included), 1 built but with findings at error
 level, 2 wrong by reading the file or refused by the disk, 3 found impossible by computing, 4 a
@@ -8,23 +8,31 @@ What was done goes to stdout, what went wrong to stderr; progress is drawn on a 
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import os
 import sys
 import textwrap
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, TextIO
+from typing import TYPE_CHECKING, Any, Final
 
-import typer
-
+from gearcam.console import (
+    complain,
+    finding_lines,
+    infeasible_text,
+    pair_lines,
+    progress_bar,
+    say,
+    wrapped,
+    written_lines,
+)
 from gearcam.design import FORMATS, KIND, GearPairDesign, load
 from gearcam.errors import DesignError, InfeasibleError, Problem, WriteError
 
 if TYPE_CHECKING:
-    from gearcam.findings import Finding
     from gearcam.jobs import GearPairJob, Written
 
 GOOD: Final = 0
@@ -34,23 +42,13 @@ IMPOSSIBLE: Final = 3
 FAULT: Final = 4
 INTERRUPTED: Final = 130
 
-_WIDTH: Final = 96
 _DEBUG: Final = "GEARCAM_DEBUG"
 
-app = typer.Typer(
-    name="gearcam",
-    help="Non-circular gears from a description of the motion.",
-    epilog="Exit codes: 0 good, 1 findings at error level, 2 wrong by reading, 3 impossible, "
-    "4 a fault of the program, 130 interrupted.",
-    add_completion=False,
-    no_args_is_help=True,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
+_ABOUT: Final = "Non-circular gears from a description of the motion."
+_CODES: Final = (
+    "exit codes: 0 good, 1 findings at error level, 2 wrong by reading, 3 impossible, "
+    "4 a fault of the program, 130 interrupted"
 )
-
-Files = Annotated[list[str], typer.Argument(metavar="FILE...", help="Design files (TOML).")]
-Output = Annotated[str, typer.Option("--output", "-o", metavar="DIR", help="Where to write.")]
-Debug = Annotated[bool, typer.Option("--debug", help=f"Show tracebacks (or set {_DEBUG}).")]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -72,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="backslashreplace")  # pyright: ignore[reportAttributeAccessIssue]
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        typer.main.get_command(app).main(args=words, prog_name="gearcam", windows_expand_args=True)
+        _dispatch(words)
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else GOOD
     except KeyboardInterrupt:
@@ -82,31 +80,72 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return GOOD
 
 
-@app.callback(invoke_without_command=True)
-def _root(
-    version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
-) -> None:
-    if version:
-        from importlib.metadata import PackageNotFoundError
-        from importlib.metadata import version as installed
+def _dispatch(words: list[str]) -> None:
+    """Find the command of the first word and run it on the others."""
+    parsers = _parsers()
+    top = argparse.ArgumentParser(
+        prog="gearcam",
+        description=_ABOUT,
+        epilog=_command_help(parsers) + _CODES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    top.add_argument("--version", action="store_true", help="show the version")
+    top.add_argument("command", nargs="?", metavar="COMMAND", help="see below")
+    if words and words[0] in parsers:
+        parser, command = parsers[words[0]]
+        command(**vars(parser.parse_intermixed_args(words[1:])))
+        return
+    given = top.parse_args(words[:1])
+    if given.version:
+        say(f"gearcam {_version()}")
+    elif given.command is None:
+        top.print_help(sys.stderr)
+        raise SystemExit(WRONG)
+    else:
+        from gearcam.design.wording import did_you_mean
 
-        with contextlib.suppress(PackageNotFoundError):
-            _say(f"gearcam {installed('gearcam')}")
-            raise typer.Exit(GOOD)
-        _say("gearcam, not installed: its version is not known")
-        raise typer.Exit(GOOD)
+        hint = did_you_mean(given.command, parsers)
+        _refuse(
+            [Problem(f'"{given.command}" is not a command', allowed=", ".join(parsers), hint=hint)]
+        )
 
 
-@app.command()
-def build(
-    files: Files,
-    output: Output = "output",
-    only: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KINDS", help=f"Write only these: {','.join(FORMATS)}."),
-    ] = None,
-    debug: Debug = False,
-) -> None:
+def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]:
+    """Return a parser and a function for each command; its help is the function's docstring."""
+    parsers = {}
+    for command in (build, check, laws, new, schema):
+        name = command.__name__
+        parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
+        if command in (build, check):
+            parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
+            parser.add_argument(
+                "-o", "--output", metavar="DIR", default="output", help="where to write"
+            )
+            parser.add_argument(
+                "--debug", action="store_true", help=f"show tracebacks (or set {_DEBUG})"
+            )
+        if command is build:
+            words = f"write only these: {','.join(FORMATS)}"
+            parser.add_argument("--only", action="append", metavar="KINDS", help=words)
+        if command is new:
+            parser.add_argument("kind", metavar="KIND", help=f"the kind of design: {KIND}")
+            parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
+        parsers[name] = (parser, command)
+    return parsers
+
+
+def _command_help(parsers: Mapping[str, tuple[Any, Callable[..., None]]]) -> str:
+    rows = (f"  {name:<8}{command.__doc__}\n" for name, (_, command) in parsers.items())
+    return "commands:\n" + "".join(rows) + "\n"
+
+
+def _version() -> str:
+    from gearcam import __version__
+
+    return __version__
+
+
+def build(files: list[str], output: str, only: list[str] | None, debug: bool) -> None:
     """Build designs into DIR/<name>/."""
     kinds = _kinds(only)
 
@@ -116,8 +155,7 @@ def build(
     _each(files, "built", action, debug=debug)
 
 
-@app.command()
-def check(files: Files, output: Output = "output", debug: Debug = False) -> None:
+def check(files: list[str], output: str, debug: bool) -> None:
     """Check designs and write nothing but DIR/<name>/summary.json."""
 
     def action(job: GearPairJob, progress: Progress | None) -> Written:  # noqa: ARG001
@@ -126,7 +164,6 @@ def check(files: Files, output: Output = "output", debug: Debug = False) -> None
     _each(files, "checked", action, debug=debug)
 
 
-@app.command()
 def laws() -> None:
     """Show every law: parameters, continuity, source."""
     from gearcam.design.models import description
@@ -134,21 +171,15 @@ def laws() -> None:
     from gearcam.laws.base import LAWS
 
     for name, law in LAWS.items():
-        _say(f'{name}\n{_wrapped(law.doc)}\n    law.type = "{name}"')
+        say(f'{name}\n{wrapped(law.doc)}\n    law.type = "{name}"')
         rows = [(entry.key, description(entry)) for entry in law_table(name).entries.values()]
         for key, words in rows:
-            _say(_wrapped(words, first=f"    {key:<16}", rest=" " * 20))
-        _say(_wrapped(law.continuity, first=f"    {'continuity':<16}", rest=" " * 20))
-        _say(_wrapped(law.source, first=f"    {'source':<16}", rest=" " * 20) + "\n")
+            say(wrapped(words, first=f"    {key:<16}", rest=" " * 20))
+        say(wrapped(law.continuity, first=f"    {'continuity':<16}", rest=" " * 20))
+        say(wrapped(law.source, first=f"    {'source':<16}", rest=" " * 20) + "\n")
 
 
-@app.command()
-def new(
-    kind: Annotated[str, typer.Argument(metavar="KIND", help=f"The kind of design: {KIND}.")],
-    file: Annotated[
-        str | None, typer.Argument(metavar="[FILE]", help="Printed when left out.")
-    ] = None,
-) -> None:
+def new(kind: str, file: str | None) -> None:
     """Write a commented design file to start from; an existing file is never overwritten."""
     from gearcam.design.examine import LATER_KINDS
     from gearcam.design.template import template
@@ -160,7 +191,7 @@ def new(
         hint = "" if later else did_you_mean(kind, [KIND])
         _refuse([Problem(f"{show(kind)}: {what}", key="KIND", allowed=KIND, hint=hint)])
     if file is None:
-        _say(template().rstrip("\n"))
+        say(template().rstrip("\n"))
         return
     try:
         with Path(file).open("x", encoding="utf-8", newline="\n") as stream:
@@ -170,17 +201,16 @@ def new(
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         _refuse([Problem(f"cannot be written: {reason}", file=file)])
-    _say(f"{file}: written; build it with: gearcam build {file}")
+    say(f"{file}: written; build it with: gearcam build {file}")
 
 
-@app.command()
 def schema() -> None:
     """Print the JSON schema of design files, for editors."""
     import json
 
     from gearcam.design.schema import schema as made
 
-    _say(json.dumps(made(), indent=2))
+    say(json.dumps(made(), indent=2))
 
 
 def _stem(file: str) -> str:
@@ -211,8 +241,8 @@ def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
 
 def _refuse(problems: Sequence[Problem]) -> None:
     for problem in problems:
-        _complain(str(problem))
-    raise typer.Exit(WRONG)
+        complain(str(problem))
+    raise SystemExit(WRONG)
 
 
 Progress = Callable[[str, int, int], None]
@@ -227,24 +257,24 @@ def _each(files: Sequence[str], done: str, action: Action, *, debug: bool) -> No
         try:
             codes.append(_one(file, names, done, action))
         except KeyboardInterrupt:
-            raise typer.Exit(_interrupted()) from None
+            raise SystemExit(_interrupted()) from None
         except DesignError as error:
             count = len(error.problems)
-            _complain(f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}")
-            _complain(textwrap.indent(str(error), "  "))
+            complain(f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}")
+            complain(textwrap.indent(str(error), "  "))
             codes.append(WRONG)
         except InfeasibleError as error:
-            _complain(f"{file}: cannot be made, nothing was {done}\n{_infeasible(error)}")
+            complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
             codes.append(IMPOSSIBLE)
         except WriteError as error:
-            _complain(f"{file}: {error}")
+            complain(f"{file}: {error}")
             codes.append(WRONG)
         except Exception as error:
             codes.append(_fault(error, file=file, debug=debug))
     if len(files) > 1:
         good = sum(code in (GOOD, FINDINGS) for code in codes)
-        _say(f"{len(files)} files: {good} {done}, {len(files) - good} refused")
-    raise typer.Exit(max(codes, default=GOOD))
+        say(f"{len(files)} files: {good} {done}, {len(files) - good} refused")
+    raise SystemExit(max(codes, default=GOOD))
 
 
 def _one(file: str, names: dict[str, str], done: str, action: Action) -> int:
@@ -255,12 +285,12 @@ def _one(file: str, names: dict[str, str], done: str, action: Action) -> int:
     from gearcam.jobs import GearPairJob  # a file that is refused needs none of it
 
     job = GearPairJob(design)
-    with _progress(file) as progress:
+    with progress_bar(file) as progress:
         written = action(job, progress)
-    _say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
+    say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
     findings = job.findings
-    told = [_pair_lines(written.summary), _finding_lines(findings), _written_lines(written)]
-    _say(textwrap.indent("\n".join(line for lines in told for line in lines), "  "))
+    told = [pair_lines(written.summary), finding_lines(findings), written_lines(written)]
+    say(textwrap.indent("\n".join(line for lines in told for line in lines), "  "))
     return FINDINGS if any(finding.severity == "error" for finding in findings) else GOOD
 
 
@@ -272,102 +302,12 @@ def _demand_new_name(design: GearPairDesign, file: str, names: dict[str, str]) -
         raise DesignError([Problem(message, file=file, key="name", value=design.name)])
 
 
-def _pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
-    pair = summary.get("pair", {})
-    teeth = " : ".join(str(count) for count in pair.get("teeth", ()))
-    distance, module = pair.get("center_distance_mm"), pair.get("module_mm")
-    if distance is not None and module is not None:
-        yield f"centre distance {distance:.6g} mm, module {module:.6g} mm, teeth {teeth}"
-
-
-def _finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
-    """Lay out findings as a table, each with its message below."""
-    if not findings:
-        yield "findings: none"
-        return
-    yield "findings"
-    rows = []
-    for finding in findings:
-        limit = f"limit {_number(finding.limit, finding.unit)}" if finding.limit is not None else ""
-        value = _number(finding.value, finding.unit)
-        rows.append((finding.severity, finding.code, finding.where, value, limit))
-    widths = [max(len(row[k]) for row in rows) for k in range(5)]
-    for row, finding in zip(rows, findings, strict=True):
-        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True) if width)
-        yield "  " + "  ".join(cells).rstrip()
-        yield _wrapped(finding.message, first="      ", rest="      ")
-
-
-def _written_lines(written: Written) -> Iterator[str]:
-    folder = written.directory
-    yield f"written to {folder}"
-    width = max(map(len, (*written.files, *written.removed)), default=0)
-    for name in written.files:
-        yield f"  {name:<{width}}  {_size(folder / name):>9}"
-    for name in written.removed:
-        yield f"  {name:<{width}}  removed: no longer part of the design"
-
-
-def _number(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{value:.6g} {unit}".rstrip()
-
-
-def _size(path: Path) -> str:
-    try:
-        count = path.stat().st_size
-    except OSError:
-        return ""
-    if count < 1000:
-        return f"{count} B"
-    return f"{count / 1e3:.1f} kB" if count < 1e6 else f"{count / 1e6:.1f} MB"
-
-
-def _infeasible(error: InfeasibleError) -> str:
-    lines = [f"{error.what}, at {error.where}" if error.where else error.what]
-    numbers = (("value", error.value), ("limit", error.limit))
-    shown = [
-        f"{name} {_number(number, error.unit)}" for name, number in numbers if number is not None
-    ]
-    lines += [", ".join(shown)] if shown else []
-    lines += error.nearest.split("; ") if error.nearest else []
-    return "\n".join(_wrapped(line, first="  ", rest="      ") for line in lines)
-
-
-def _wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:
-    return textwrap.fill(
-        text,
-        _WIDTH,
-        initial_indent=first,
-        subsequent_indent=rest,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-
-
-@contextlib.contextmanager
-def _progress(file: str) -> Iterator[Progress | None]:
-    """Draw a bar while long work runs, on a terminal; elsewhere there is nothing to call."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(file, total=None)
-
-        def advance(stage: str, done: int, total: int) -> None:
-            bar.update(task, description=f"{file}: {stage}", completed=done, total=total)
-
-        yield advance
-
-
 def _fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
     """Say that the program is at fault; the traceback only where it is asked for."""
     place = f"{file}: " if file else ""
     if debug or os.environ.get(_DEBUG):
-        _complain("".join(traceback.format_exception(error)).rstrip())
-    _complain(
+        complain("".join(traceback.format_exception(error)).rstrip())
+    complain(
         f"{place}this is a fault of gearcam, not of your design: {type(error).__name__}: {error}\n"
         f"  please report it with the design file; {_DEBUG}=1 or --debug shows where it happened"
     )
@@ -375,22 +315,5 @@ def _fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
 
 
 def _interrupted() -> int:
-    _complain("interrupted: no file was left half-written")
+    complain("interrupted: no file was left half-written")
     return INTERRUPTED
-
-
-def _say(text: str) -> None:
-    _write(text, sys.stdout)
-
-
-def _complain(text: str) -> None:
-    _write(text, sys.stderr)
-
-
-def _write(text: str, stream: TextIO) -> None:
-    """Print; a reader that has gone (such as ``head``) is no reason to stop building."""
-    try:
-        print(text, file=stream, flush=True)
-    except BrokenPipeError:
-        # what is still buffered goes nowhere, and the flush at the end finds nothing broken
-        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -85,7 +85,9 @@ def test_a_trimmed_involute_starts_where_the_trochoid_crosses_it() -> None:
         (Formula(r1="1 + 0.2*cos(2*phi1)"), (30, 30)),
     ],
 )
-def test_the_cusps_found_are_those_of_a_fine_scan(law: LawParameters, teeth: tuple[int, int]) -> None:
+def test_the_cusps_found_are_those_of_a_fine_scan(
+    law: LawParameters, teeth: tuple[int, int]
+) -> None:
     made = job(law, teeth)
     for gear in made.gears:
         flanks, toothing = gear.profile.flanks, gear.toothing

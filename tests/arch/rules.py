@@ -62,7 +62,7 @@ def manner_faults(path: Path) -> list[str]:
             faults.append(f"{path.name}:{node.lineno} star import")
         if isinstance(node, ast.Assert):
             faults.append(f"{path.name}:{node.lineno} assert")
-        if isinstance(node, ast.Call) and path.name != "cli.py":
+        if isinstance(node, ast.Call) and path.name != "console.py":
             name = ast.unparse(node.func)
             if name in {"print", "exit", "quit", "sys.exit"} and path.name != "__main__.py":
                 faults.append(f"{path.name}:{node.lineno} {name}()")

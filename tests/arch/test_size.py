@@ -60,6 +60,6 @@ def test_bad_manners_are_caught(tmp_path: Path, code: str, fault: str) -> None:
 
 
 def test_the_command_line_may_print(tmp_path: Path) -> None:
-    sample = tmp_path / "cli.py"
+    sample = tmp_path / "console.py"
     sample.write_text("print('done')\n")
     assert rules.manner_faults(sample) == []

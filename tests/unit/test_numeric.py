@@ -49,7 +49,9 @@ def test_jet_arithmetic_is_that_of_power_series(build, reference) -> None:  # ty
     for k, x in enumerate(POINTS):
         for order, value in enumerate(mpmath.taylor(reference, x, 3)):
             expected = float(value) * math.factorial(order)
-            assert float(jet.derivatives()[order][k]) == pytest.approx(expected, rel=1e-10, abs=1e-10)
+            assert float(jet.derivatives()[order][k]) == pytest.approx(
+                expected, rel=1e-10, abs=1e-10
+            )
 
 
 def test_a_square_has_derivatives_at_zero() -> None:
@@ -123,9 +125,11 @@ def test_an_integral_without_closed_form_agrees_with_one_that_has() -> None:
 def test_extremes_are_roots_of_the_slope_and_sides_of_knots() -> None:
     def saw(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         up = x < 1.0
-        return np.where(up, x * x, 5.0 - x), np.where(up, 2.0 * x, -1.0)
+        values, slopes = np.where(up, x * x, 5.0 - x), np.where(up, 2.0 * x, -1.0)
+        return np.stack([values, -values]), np.stack([slopes, -slopes])
 
-    _, values = extremes(saw, [-1.0, 1.0, 3.0])
+    (_, values), (_, negative) = extremes(saw, [-1.0, 1.0, 3.0])
+    np.testing.assert_allclose(negative, -values, atol=1e-15)
     assert values.min() == pytest.approx(0.0, abs=1e-15)
     assert values.max() == pytest.approx(4.0, abs=1e-11)
     assert any(abs(v - 1.0) < 1e-11 for v in values)

@@ -343,11 +343,12 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa:
         cutter = gear.toothing.cutter
         if cutter.kc == 0.0:
             continue
-        length, count = gear.pair.rolling.length(gear.wheel), 360
+        length, count = gear.pair.rolling.length(gear.wheel), 180
         s = length * np.arange(count) / count
         frames = gear.toothing.frames(gear.pair.rolling.angle(s))
         center = frames.p + gear.toothing.turn * frames.t / cutter.kc
-        ahead = np.stack([np.roll(frames.p, -k) for k in range(count)], axis=1)
+        steps = np.arange(count)
+        ahead = frames.p[(steps[:, None] + steps) % count]
         clear = np.abs(ahead - center[:, None]) - (1.0 / cutter.kc + cutter.dedendum)
         # Once the centrode has left the cutter on either way round it must not come back to it.
         half = count // 2

@@ -105,10 +105,16 @@ class Rolling:
         unit = np.asarray(s, dtype=float) / self.center_distance
         turns = np.floor(unit / lobe)
         rest = unit - turns * lobe
-        angles, arcs = self._table
+        angles, arcs, slopes = self._table
         index = np.clip(np.searchsorted(arcs, rest, side="right") - 1, 0, len(arcs) - 2)
         low, high = angles[index], angles[index + 1]
-        start = low + (high - low) * (rest - arcs[index]) / (arcs[index + 1] - arcs[index])
+        width = arcs[index + 1] - arcs[index]
+        t = (rest - arcs[index]) / width
+        # Hermite's cubic on the inverse: Newton then has little left to do.
+        bend = (1.0 - t) * (slopes[index] * width - (high - low)) + t * (
+            (high - low) - slopes[index + 1] * width
+        )
+        start = np.clip(low + t * (high - low) + t * (1.0 - t) * bend, low, high)
 
         def miss(phi: Array) -> tuple[Array, Array]:
             return self.unit_arc(phi) - rest, self._unit_speed(phi)
@@ -118,9 +124,11 @@ class Rolling:
         return phi + turns * period
 
     @cached_property
-    def _table(self) -> tuple[Array, Array]:
+    def _table(self) -> tuple[Array, Array, Array]:
+        """Driver angles, unit arc lengths and dphi/ds over one lobe."""
         angles = np.linspace(0.0, self.law.lobes.period, 1025)
-        return angles, np.append(self.unit_arc(angles[:-1]), self.unit_arc.last)
+        arcs = np.append(self.unit_arc(angles[:-1]), self.unit_arc.last)
+        return angles, arcs, 1.0 / self._unit_speed(angles)
 
     def _unit_speed(self, phi: Array) -> Array:
         return unit_speed(self.law, phi)
@@ -151,13 +159,14 @@ class Rolling:
         r = self.center_distance * i * a
         dr = self.center_distance * a * a * di
         ddr = self.center_distance * a * a * (ddi - 2.0 * a * di * di)
-        speed = np.hypot(r, dr)
+        speed = np.sqrt(r * r + dr * dr)
+        cube = speed * speed * speed
         axis, pole = 0.0, np.exp(1j * phi if wheel == 1 else -1j * self.law.phi2(phi))
         if wheel == 1:
-            kappa = (r * r + 2.0 * dr * dr - r * ddr) / speed**3
+            kappa = (r * r + 2.0 * dr * dr - r * ddr) / cube
         else:
             axis = self.center_distance
-            kappa = (i * r * r + r * ddr + (i - 1.0) * dr * dr) / speed**3
+            kappa = (i * r * r + r * ddr + (i - 1.0) * dr * dr) / cube
         point, tangent = (r - axis) * pole, (dr + 1j * r) / speed * pole
         return Frames(point, tangent, kappa, speed, self.arc_length(phi))
 
@@ -167,26 +176,22 @@ class Rolling:
 
     @cached_property
     def _curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        return self._find_extremes(1), self._find_extremes(2)
+        """Both wheels at once; the driven one by Euler and Savary: kappa1 + kappa2 = (1 + i)/v."""
 
-    def _find_extremes(self, wheel: Wheel) -> tuple[Array, Array]:
-        def curvature(phi: Array) -> tuple[Array, Array]:
+        def curvatures(phi: Array) -> tuple[Array, Array]:
             i, di, ddi, dddi = self.law.ratio.derivatives(phi, 3)
             i0, i1, i2 = Jet([i, di]), Jet([di, ddi]), Jet([ddi, dddi])
             a = 1.0 / (1.0 + i0)
-            r, dr, ddr = i0 * a, a * a * i1, a * a * (i2 - 2.0 * (a * i1 * i1))
+            square = a * a
+            r, dr, ddr = i0 * a, square * i1, square * (i2 - 2.0 * (a * i1 * i1))
             speed = sqrt(r * r + dr * dr)
-            top = (
-                r * r + 2.0 * (dr * dr) - r * ddr
-                if wheel == 1
-                else i0 * r * r + r * ddr + (i0 - 1.0) * (dr * dr)
-            )
-            kappa = top / (speed * speed * speed)
-            value, slope = kappa.derivatives()
-            return value, slope
+            kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
+            both = [k.derivatives() for k in (kappa, (1.0 + i0) / speed - kappa)]
+            return np.stack([k[0] for k in both]), np.stack([k[1] for k in both])
 
-        places, values = extremes(curvature, self.law.knots)
-        return places, values / self.center_distance
+        found = extremes(curvatures, self.law.knots)
+        first, second = ((x, kappa / self.center_distance) for x, kappa in found)
+        return first, second
 
     @cached_property
     def arc_error(self) -> float:
@@ -213,7 +218,8 @@ def unit_speed(law: RatioLaw, phi: Array) -> Array:
     """
     i, di = law.ratio.derivatives(phi, 1)
     a = 1.0 / (1.0 + i)
-    return np.hypot(i * a, a * a * di)
+    r, dr = i * a, a * a * di
+    return np.sqrt(r * r + dr * dr)
 
 
 def roll(

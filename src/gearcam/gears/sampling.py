@@ -21,7 +21,7 @@ from gearcam.numeric.contour import Run
 
 Array = NDArray[np.float64]
 
-_PROBES = 24
+_PROBES = 16
 """Intervals per row on which the density of points is found."""
 
 _FILL = 0.97
@@ -32,9 +32,6 @@ _FEW = 0.03
 
 _ROUNDS = 6
 """Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
-
-_FRACTIONS = np.array([0.25, 0.5, 0.75])
-"""Places inside a chord at which its error is measured."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -96,15 +93,15 @@ class Sampler:
     def chords(self) -> tuple[Array, Plane, float]:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
         vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
+        points, errors = self._measure(vertices)
         for _ in range(_ROUNDS):
-            points, errors = self._measure(vertices)
             if np.mean(errors > self.tolerance) <= _FEW:
                 break
             # The error that a chord has, not the one that its J promised, says how long it may be.
             effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + 1e-9)])
             at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
             vertices = self._spread(at_corners, effort, vertices)
-        points, errors = self._measure(vertices)
+            points, errors = self._measure(vertices)
         for _ in range(_ROUNDS):
             bad = np.flatnonzero(errors > self.tolerance)
             if bad.size == 0:
@@ -134,13 +131,24 @@ class Sampler:
         return points, self._errors(vertices, points, np.arange(len(vertices) - 1))
 
     def _errors(self, vertices: Array, points: Plane, todo: NDArray[np.int64]) -> Array:
-        """Largest distance of three curve points from each chord."""
-        low, high = vertices[todo], vertices[todo + 1]
-        inner = low + (high - low) * _FRACTIONS[:, None]
-        curve = self.at(inner.ravel())[0].reshape(inner.shape)
-        start, chord = points[todo], points[todo + 1] - points[todo]
+        """Largest distance of the curve from chords: in the middle; where rows join, at quarters too."""
+        errors = self._distances(vertices, points, todo, 0.5)
+        place = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
+        joined = np.floor(place[todo]) != np.ceil(place[todo + 1]) - 1.0
+        for fraction in (0.25, 0.75):
+            there = self._distances(vertices, points, todo[joined], fraction)
+            errors[joined] = np.maximum(errors[joined], there)
+        return errors
+
+    def _distances(
+        self, vertices: Array, points: Plane, chords: NDArray[np.int64], fraction: float
+    ) -> Array:
+        """Distance of a place on the curve from each chord."""
+        low, high = vertices[chords], vertices[chords + 1]
+        curve = self.at(low + (high - low) * fraction)[0]
+        start, chord = points[chords], points[chords + 1] - points[chords]
         off = np.imag(np.conj(chord) * (curve - start))
-        return np.abs(off).max(axis=0) / np.maximum(np.abs(chord), np.finfo(float).tiny)
+        return np.abs(off) / np.maximum(np.abs(chord), np.finfo(float).tiny)
 
     def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
         """Return the dense runs between corners.

@@ -94,7 +94,7 @@ def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Arr
     law = toothing.rolling.law
     start, end = toothing.rolling.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
     span, period = end - start, law.lobes.period
-    columns = [np.broadcast_to(np.linspace(0.0, 1.0, 65), (len(sf), 65))]
+    columns = [np.broadcast_to(np.linspace(0.0, 1.0, 33), (len(sf), 33))]
     for knot in law.knots[:-1]:
         nearest = knot + period * np.round((0.5 * (start + end) - knot) / period)
         columns += [np.clip((nearest - start) / span + side, 0.0, 1.0) for side in (-1e-9, 1e-9)]

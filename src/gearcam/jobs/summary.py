@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import platform
+import sys
 from collections.abc import Sequence
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from gearcam import __version__
 
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
@@ -120,10 +122,10 @@ def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
 
 
 def _versions() -> dict[str, str]:
-    found = {"python": platform.python_version()}
-    for name in ("gearcam", "numpy", "shapely"):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = "not installed"
+    """Versions of what made the numbers: the program, Python, and the libraries loaded so far."""
+    found = {"gearcam": __version__, "python": platform.python_version()}
+    for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
+        module = sys.modules.get(name)
+        if module is not None and hasattr(module, "__version__"):
+            found[name] = str(module.__version__)
     return found

@@ -97,9 +97,9 @@ class RatioLaw:
 
         def slope(x: Array) -> tuple[Array, Array]:
             value, derivative = self.ratio.derivatives(x, 1)
-            return value, derivative
+            return value[None], derivative[None]
 
-        places, values = extremes(slope, self.knots)
+        ((places, values),) = extremes(slope, self.knots)
         low, high = int(np.argmin(values)), int(np.argmax(values))
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
 

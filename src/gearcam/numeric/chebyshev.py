@@ -17,7 +17,7 @@ from gearcam.errors import GearcamError
 
 Array = NDArray[np.float64]
 
-_DEGREE = 20
+_DEGREE = 10
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
 _TO_COEFFICIENTS = np.cos(np.outer(np.arange(_DEGREE + 1), np.arccos(_NODES))) * 2.0 / (_DEGREE + 1)
 _TO_COEFFICIENTS[0] *= 0.5

@@ -45,7 +45,7 @@ class Jet:
         """Return ``[f, f', f'', ...]`` at the points."""
         shape = np.shape(self.c[0])
         scaled = [v * math.factorial(k) if k > 1 else v for k, v in enumerate(self.c)]
-        return [np.broadcast_to(np.asarray(v, dtype=float), shape) for v in scaled]
+        return [v if isinstance(v, np.ndarray) else np.full(shape, v) for v in scaled]
 
     def _lift(self, other: Jet | float) -> Jet:
         if isinstance(other, Jet):
@@ -166,12 +166,20 @@ def sqrt(x: Jet) -> Jet:
 def _oscillate(x: Jet, sine: bool) -> Jet:
     """Return sin or cos of a jet, with its derivative g beside it: f' = g*x', g' = -f*x'."""
     f: list[Array | float] = [np.sin(x.c[0]) if sine else np.cos(x.c[0])]
-    if x.order:
-        g: list[Array | float] = [np.cos(x.c[0]) if sine else -np.sin(x.c[0])]
+    if not x.order:
+        return Jet(f)
+    g: list[Array | float] = [np.cos(x.c[0]) if sine else -np.sin(x.c[0])]
+    if all(_is_zero(value) for value in x.c[2:]):
+        # A straight inner function: the derivatives are f, g, -f, -g, f, ...
+        factor: Array | float = 1.0
         for k in range(1, x.order + 1):
-            weights = [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
-            f.append(sum(w * g[j] for w, j in weights))
-            g.append(-sum(w * f[j] for w, j in weights))
+            factor = factor * x.c[1] / k
+            f.append((g[0] if k % 2 else f[0]) * (factor if k % 4 < 2 else -factor))
+        return Jet(f)
+    for k in range(1, x.order + 1):
+        weights = [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
+        f.append(sum(w * g[j] for w, j in weights))
+        g.append(-sum(w * f[j] for w, j in weights))
     return Jet(f)
 
 

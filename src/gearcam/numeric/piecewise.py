@@ -146,32 +146,38 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
 
 
 def extremes(
-    function: Callable[[Array], tuple[Array, Array]], knots: ArrayLike, samples: int = 256
-) -> tuple[Array, Array]:
-    """Find all extremes of a function: roots of its slope, and both sides of its knots.
+    function: Callable[[Array], tuple[Array, Array]], knots: ArrayLike, samples: int = 192
+) -> list[tuple[Array, Array]]:
+    """Find all extremes of functions: roots of their slopes, and both sides of their knots.
 
     Parameters
     ----------
     function : callable
-        ``function(x) -> (value, slope)``, vectorised.
+        ``function(x) -> (values, slopes)``, both of shape (m, len(x)) for m functions.
     knots : (n + 1,) array
-        Between them the function is smooth.
+        Between them the functions are smooth.
     samples : int
-        Points per interval on which sign changes of the slope are sought.
+        Points per interval on which sign changes of the slopes are sought.
 
     Returns
     -------
-    places, values : arrays
+    list of m (places, values)
         Candidates for the largest and smallest value, in rising order of place.
     """
     grid = np.asarray(knots, dtype=float)
     width = np.diff(grid)
-    steps = np.linspace(1e-12, 1.0 - 1e-12, samples)[:, None]
-    x = grid[:-1] + width * steps
-    slopes = function(x.ravel())[1].reshape(x.shape)
-    change = slopes[:-1] * slopes[1:] < 0.0
-    # An extreme is flat: a place good to 1e-10 of an interval gives its value to rounding.
-    tolerance = 1e-10 * float(width.min())
-    roots = bracketed_root(lambda t: function(t)[1], x[:-1][change], x[1:][change], tolerance)
-    found = np.sort(np.concatenate([x[0], roots, x[-1]]))
-    return found, function(found)[0]
+    steps = np.linspace(1e-12, 1.0 - 1e-12, samples)
+    x = grid[:-1, None] + width[:, None] * steps
+    _, slopes = function(x.ravel())
+    slopes = slopes.reshape(-1, *x.shape)
+    owner, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
+    # An extreme is flat: a place good to 1e-8 of an interval gives its value to rounding.
+    roots = bracketed_root(
+        lambda t: function(t)[1][owner, np.arange(len(owner))],
+        x[piece, cell],
+        x[piece, cell + 1],
+        1e-8 * float(width.min()),
+    )
+    ends = x[:, [0, -1]].ravel()
+    found = [np.sort(np.append(ends, roots[owner == k])) for k in range(len(slopes))]
+    return [(places, function(places)[0][k]) for k, places in enumerate(found)]

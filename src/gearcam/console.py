@@ -1,0 +1,134 @@
+"""What the command line says: tables that line up, sizes, progress on a terminal.
+
+Results go to stdout, what went wrong to stderr; piped output is plain text.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import textwrap
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TextIO
+
+if TYPE_CHECKING:
+    from gearcam.errors import InfeasibleError
+    from gearcam.findings import Finding
+    from gearcam.jobs import Written
+
+_WIDTH: Final = 96
+
+
+def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the line on the pair of a summary."""
+    pair = summary.get("pair", {})
+    teeth = " : ".join(str(count) for count in pair.get("teeth", ()))
+    distance, module = pair.get("center_distance_mm"), pair.get("module_mm")
+    if distance is not None and module is not None:
+        yield f"centre distance {distance:.6g} mm, module {module:.6g} mm, teeth {teeth}"
+
+
+def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
+    """Lay out findings as a table, each with its message below."""
+    if not findings:
+        yield "findings: none"
+        return
+    yield "findings"
+    rows = []
+    for finding in findings:
+        limit = f"limit {_number(finding.limit, finding.unit)}" if finding.limit is not None else ""
+        value = _number(finding.value, finding.unit)
+        rows.append((finding.severity, finding.code, finding.where, value, limit))
+    widths = [max(len(row[k]) for row in rows) for k in range(5)]
+    for row, finding in zip(rows, findings, strict=True):
+        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True) if width)
+        yield "  " + "  ".join(cells).rstrip()
+        yield wrapped(finding.message, first="      ", rest="      ")
+
+
+def written_lines(written: Written) -> Iterator[str]:
+    """Yield the files that were written, with their sizes, and those that were removed."""
+    folder = written.directory
+    yield f"written to {folder}"
+    width = max(map(len, (*written.files, *written.removed)), default=0)
+    for name in written.files:
+        yield f"  {name:<{width}}  {_size(folder / name):>9}"
+    for name in written.removed:
+        yield f"  {name:<{width}}  removed: no longer part of the design"
+
+
+def _number(value: float | None, unit: str) -> str:
+    return "" if value is None else f"{value:.6g} {unit}".rstrip()
+
+
+def _size(path: Path) -> str:
+    try:
+        count = path.stat().st_size
+    except OSError:
+        return ""
+    if count < 1000:
+        return f"{count} B"
+    return f"{count / 1e3:.1f} kB" if count < 1e6 else f"{count / 1e6:.1f} MB"
+
+
+def infeasible_text(error: InfeasibleError) -> str:
+    """Return why a design cannot be made, with its numbers and the way out, indented."""
+    lines = [f"{error.what}, at {error.where}" if error.where else error.what]
+    numbers = (("value", error.value), ("limit", error.limit))
+    shown = [
+        f"{name} {_number(number, error.unit)}" for name, number in numbers if number is not None
+    ]
+    lines += [", ".join(shown)] if shown else []
+    lines += error.nearest.split("; ") if error.nearest else []
+    return "\n".join(wrapped(line, first="  ", rest="      ") for line in lines)
+
+
+def wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:
+    """Return `text` folded to the width of a page, `first` and `rest` before its lines."""
+    return textwrap.fill(
+        text,
+        _WIDTH,
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+@contextlib.contextmanager
+def progress_bar(file: str) -> Iterator[Callable[[str, int, int], None] | None]:
+    """Draw a bar while long work runs, on a terminal; elsewhere there is nothing to call."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(file, total=None)
+
+        def advance(stage: str, done: int, total: int) -> None:
+            bar.update(task, description=f"{file}: {stage}", completed=done, total=total)
+
+        yield advance
+
+
+def say(text: str) -> None:
+    """Print to stdout."""
+    _write(text, sys.stdout)
+
+
+def complain(text: str) -> None:
+    """Print to stderr."""
+    _write(text, sys.stderr)
+
+
+def _write(text: str, stream: TextIO) -> None:
+    """Print; a reader that has gone (such as ``head``) is no reason to stop building."""
+    try:
+        print(text, file=stream, flush=True)
+    except BrokenPipeError:
+        # what is still buffered goes nowhere, and the flush at the end finds nothing broken
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
