@@ -77,8 +77,8 @@ class Assembly:
         self.reach = 4.0 * made.pair.module
         self.rolling = made.pair.rolling
 
-    def at(self, phi: float, lead: float = 0.0) -> tuple[shapely.Polygon, shapely.Polygon]:
-        """Both wheels near the pitch point at a driver angle, the driven one ahead by `lead`, rad."""
+    def at(self, phi: float, lead: float = 0.0) -> tuple[Any, Any]:
+        """Both wheels near the pitch point at phi1 = `phi`, the driven one ahead by `lead`."""
         pitch = float(abs(self.rolling.frames(1, np.array([phi])).p[0]))
         zone = (pitch - self.reach, -4 * self.reach, pitch + self.reach, 4 * self.reach)
         turned = (

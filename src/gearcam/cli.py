@@ -113,10 +113,10 @@ def _dispatch(words: list[str]) -> None:
 def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]:
     """Return a parser and a function for each command; its help is the function's docstring."""
     parsers = {}
-    for command in (build, check, laws, new, schema):
-        name = command.__name__
+    for command in (_build, _check, _laws, _new, _schema):
+        name = command.__name__.lstrip("_")
         parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
-        if command in (build, check):
+        if command in (_build, _check):
             parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
             parser.add_argument(
                 "-o", "--output", metavar="DIR", default="output", help="where to write"
@@ -124,10 +124,10 @@ def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]
             parser.add_argument(
                 "--debug", action="store_true", help=f"show tracebacks (or set {_DEBUG})"
             )
-        if command is build:
+        if command is _build:
             words = f"write only these: {','.join(FORMATS)}"
             parser.add_argument("--only", action="append", metavar="KINDS", help=words)
-        if command is new:
+        if command is _new:
             parser.add_argument("kind", metavar="KIND", help=f"the kind of design: {KIND}")
             parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
         parsers[name] = (parser, command)
@@ -145,7 +145,7 @@ def _version() -> str:
     return __version__
 
 
-def build(files: list[str], output: str, only: list[str] | None, debug: bool) -> None:
+def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -> None:
     """Build designs into DIR/<name>/."""
     kinds = _kinds(only)
 
@@ -155,7 +155,7 @@ def build(files: list[str], output: str, only: list[str] | None, debug: bool) ->
     _each(files, "built", action, debug=debug)
 
 
-def check(files: list[str], output: str, debug: bool) -> None:
+def _check(files: list[str], output: str, debug: bool) -> None:
     """Check designs and write nothing but DIR/<name>/summary.json."""
 
     def action(job: GearPairJob, progress: Progress | None) -> Written:  # noqa: ARG001
@@ -164,7 +164,7 @@ def check(files: list[str], output: str, debug: bool) -> None:
     _each(files, "checked", action, debug=debug)
 
 
-def laws() -> None:
+def _laws() -> None:
     """Show every law: parameters, continuity, source."""
     from gearcam.design.models import description
     from gearcam.design.tables import law_table
@@ -179,7 +179,7 @@ def laws() -> None:
         say(wrapped(law.source, first=f"    {'source':<16}", rest=" " * 20) + "\n")
 
 
-def new(kind: str, file: str | None) -> None:
+def _new(kind: str, file: str | None) -> None:
     """Write a commented design file to start from; an existing file is never overwritten."""
     from gearcam.design.examine import LATER_KINDS
     from gearcam.design.template import template
@@ -204,7 +204,7 @@ def new(kind: str, file: str | None) -> None:
     say(f"{file}: written; build it with: gearcam build {file}")
 
 
-def schema() -> None:
+def _schema() -> None:
     """Print the JSON schema of design files, for editors."""
     import json
 

@@ -1,4 +1,4 @@
-"""Findings, error estimates, and the registry of checks.
+"""Findings, and the registry of checks.
 
 A *check* looks at one aspect of a built design and yields *findings*: poor but buildable. What
 cannot be built raises instead. Checks live beside what they check and register themselves with
@@ -54,14 +54,6 @@ class Finding:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Estimate:
-    """A number with the size of its error and how that was found."""
-
-    value: float
-    how: str
-
-
-@dataclass(frozen=True, kw_only=True)
 class Check:
     """An entry of the registry.
 
@@ -92,7 +84,7 @@ CHECKS: Final[dict[str, Check]] = {}
 def check(
     code: str, *, kind: str, doc: str, limit: tuple[str, Param, float] | None = None
 ) -> Callable[[Callable[[Any, float], Iterable[Finding]]], Callable[..., Iterable[Finding]]]:
-    """Register the decorated function as a check (see `Check`).
+    """Return a decorator that registers a function as a check (see `Check`).
 
     Raises
     ------

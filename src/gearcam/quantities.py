@@ -80,7 +80,7 @@ def param(
     min_length: int | None = None,
     doc: str = "",
 ) -> Any:
-    """Make a dataclass field that knows its quantity, bounds and meaning (see `Param`)."""
+    """Return a dataclass field that knows its quantity, bounds and meaning (see `Param`)."""
     made = Param(quantity, gt, ge, lt, le, choices, min_length, doc)
     return dataclasses.field(default=default, metadata={"param": made})
 

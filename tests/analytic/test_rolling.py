@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from gearcam.gears.rolling import Rolling, roll
+from gearcam.gears.rolling import Rolling, Wheel, roll
 from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -60,7 +60,7 @@ def test_the_centrodes_touch_and_share_their_tangent(rolling: Rolling) -> None:
 
 
 @pytest.mark.parametrize("wheel", [1, 2])
-def test_points_move_along_the_tangent_by_the_arc_length(rolling: Rolling, wheel: int) -> None:
+def test_points_move_along_the_tangent_by_the_arc_length(rolling: Rolling, wheel: Wheel) -> None:
     h = 1e-5
     low, high = rolling.frames(wheel, PHI - h), rolling.frames(wheel, PHI + h)
     here = rolling.frames(wheel, PHI)

@@ -57,7 +57,7 @@ def tips(addendum: float) -> GearPairJob:
 
 
 def rim(extra: float) -> GearPairJob:
-    """Root radius of z = 40, m = 1 is 18.75 mm; a rim of 2.7 modules is left by a bore of 32.1 mm."""
+    """Root radius of z = 40, m = 1 is 18.75 mm; a bore of 32.1 mm leaves a rim of 2.7 modules."""
     return job(Constant(), (40, 40), bores=(2 * (18.75 - 2.7) + extra, 10.0))
 
 
@@ -108,13 +108,16 @@ def test_a_check_speaks_beyond_its_limit_only(case: Case) -> None:
     found = codes(case.beyond()).get(case.code)
     assert found is not None
     assert found.severity == case.severity
-    assert found.message.endswith(".") and found.where and found.value is not None
+    assert found.message.endswith(".")
+    assert found.where
+    assert found.value is not None
     assert case.code not in codes(case.within())
 
 
 def test_concave_parts_are_noted_with_their_radius() -> None:
     found = codes(concave(1e6))["concave"]
-    assert found.severity == "note" and found.value is not None
+    assert found.severity == "note"
+    assert found.value is not None
     assert "concave" in codes(concave(found.value * 1.0001))
     assert "concave" not in codes(concave(found.value * 0.9999))
     assert "concave" not in codes(job(Ellipse(eccentricity=0.3), (40, 40)))
@@ -149,8 +152,8 @@ def test_short_flanks_are_noted() -> None:
 def test_a_pinion_cutter_that_reaches_a_remote_tooth_names_both() -> None:
     """A cutter four times as large as the one chosen touches both ends of a wheel with a waist.
 
-    The cutter that a build chooses fits into the sharpest hollow, and hollows of a polar curve widen
-    outwards, so that no build was found in which it reaches a remote tooth.
+    The cutter that a build chooses fits into the sharpest hollow, and hollows of a polar curve
+    widen outwards, so that no build was found in which it reaches a remote tooth.
     """
     made = job(Formula(r1="1 + 0.5*cos(2*phi1)"), (60, 60))
     assert "remote-cutter" not in codes(made)
@@ -191,7 +194,7 @@ def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:
 
 
 def test_the_largest_module_that_the_message_names_is_the_largest() -> None:
-    """Build at the named module: no undercut there, undercut 1 % beyond (z large, so teeth are dense)."""
+    """Tooth counts on either side of the named module: undercut above it only."""
     law = Ellipse(eccentricity=0.5)
     made = job(law, (18, 18))
     named = codes(made)["undercut"].limit
@@ -221,4 +224,5 @@ def test_findings_come_worst_first() -> None:
     order = ["error", "warning", "note"]
     found = [finding.severity for finding in profile("nail_machine_three_phase").findings]
     assert found == sorted(found, key=order.index)
-    assert "warning" in found and "error" not in found
+    assert "warning" in found
+    assert "error" not in found

@@ -74,13 +74,13 @@ class Toothing:
         return self.rolling.frames(self.wheel, phi)
 
     def flank_points(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
-        """Return the flank's points at the frames: feet of perpendiculars from the pitch point."""
+        """Return points of flanks (`sf`, `sigma`) at `frames`: feet from the pitch point."""
         cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)
         normal = frames.t * (cosine + sigma * sine * self.turn)
         return frames.p + (sf - frames.s) * cosine * normal
 
     def regularity(self, frames: Frames, sf: Array, sigma: Array) -> Array:
-        """Return sigma*g: the flank turns back on itself where this is not positive."""
+        """Return sigma*g of flanks (`sf`, `sigma`) at `frames`: not positive where undercut."""
         cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)
         return sine + sigma * (sf - frames.s) * frames.kappa * cosine
 

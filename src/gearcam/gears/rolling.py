@@ -161,7 +161,8 @@ class Rolling:
         ddr = self.center_distance * a * a * (ddi - 2.0 * a * di * di)
         speed = np.sqrt(r * r + dr * dr)
         cube = speed * speed * speed
-        axis, pole = 0.0, np.exp(1j * phi if wheel == 1 else -1j * self.law.phi2(phi))
+        turned = phi if wheel == 1 else -self.law.phi2(phi)
+        axis, pole = 0.0, np.asarray(np.exp(1j * turned), dtype=np.complex128)
         if wheel == 1:
             kappa = (r * r + 2.0 * dr * dr - r * ddr) / cube
         else:

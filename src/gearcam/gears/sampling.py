@@ -131,7 +131,7 @@ class Sampler:
         return points, self._errors(vertices, points, np.arange(len(vertices) - 1))
 
     def _errors(self, vertices: Array, points: Plane, todo: NDArray[np.int64]) -> Array:
-        """Largest distance of the curve from chords: in the middle; where rows join, at quarters too."""
+        """Distance of the curve from chords: in the middle; where rows join, at quarters too."""
         errors = self._distances(vertices, points, todo, 0.5)
         place = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
         joined = np.floor(place[todo]) != np.ceil(place[todo + 1]) - 1.0

@@ -31,7 +31,15 @@ _LEVELS = 8
 
 @dataclass(frozen=True, kw_only=True)
 class Crossing:
-    """Two curves that cross: numbers of their rows, and the driver angle on each, rad."""
+    """Two curves that cross.
+
+    Parameters
+    ----------
+    before, after : int
+        Rows that are left and entered.
+    leaves, enters : float, rad
+        Driver angle of the crossing on each.
+    """
 
     before: int
     leaves: float

@@ -142,7 +142,22 @@ def _search(
 
 
 def feet(toothing: Toothing, points: Plane, low: Array, high: Array, start: Array) -> Array:
-    """Driver angles of the feet of points on the centrode, between `low` and `high`."""
+    """Return the feet of points on the centrode.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    points : (n,) complex array, mm
+        Points near its centrode.
+    low, high, start : (n,) arrays, rad
+        Driver angles between which the feet lie, and a first guess.
+
+    Returns
+    -------
+    (n,) array, rad
+        Driver angles of the feet.
+    """
 
     def miss(phi: Array) -> tuple[Array, Array]:
         frames = toothing.frames(phi)

@@ -36,7 +36,17 @@ CENTRODE_POINTS = 720
 
 @dataclass(frozen=True, kw_only=True)
 class Written:
-    """What a build has done to its folder."""
+    """What a build has done to its folder.
+
+    Parameters
+    ----------
+    directory : Path
+        The folder.
+    files, removed : tuple of str
+        Names of the files written, and of the stale ones removed.
+    summary : dict
+        As in ``summary.json``.
+    """
 
     directory: Path
     files: tuple[str, ...]

@@ -77,7 +77,7 @@ class RatioLaw:
         return self.ratio.knots
 
     def derivatives(self, phi1: ArrayLike, order: int) -> list[Array]:
-        """Return ``[i, i', ..., i^(order)]`` at any driver angles, rad."""
+        """Return ``[i, i', ..., i^(order)]`` at any driver angles `phi1`, rad."""
         return self.ratio.derivatives(np.mod(phi1, self.lobes.period), order)
 
     def phi2(self, phi1: ArrayLike) -> Array:
@@ -125,7 +125,7 @@ class LawParameters(Protocol):
     """What the parameters of a law can do."""
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return the law for given lobes, or raise `InfeasibleError`."""
+        """Return the law for `lobes`, to `tolerances`, or raise `InfeasibleError`."""
         ...
 
 
@@ -156,7 +156,19 @@ class Claim:
 
 @dataclass(frozen=True, kw_only=True)
 class LawEntry:
-    """A law in the registry: its name, parameters, and what it promises."""
+    """A law in the registry.
+
+    Parameters
+    ----------
+    name : str
+        As in ``law.type``.
+    parameters : type
+        Dataclass with a ``build`` method.
+    doc, continuity, source : str
+        One line each, for people.
+    claims : callable
+        Returns examples with what they must give.
+    """
 
     name: str
     parameters: type[Any]

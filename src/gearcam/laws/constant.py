@@ -15,7 +15,7 @@ class Constant:
     """No parameters: the tooth counts give the ratio."""
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return i21 = z1/z2."""
+        """Return i21 = z1/z2 for `lobes`, to `tolerances`."""
         ratio = lobes.advance / lobes.period
         piece = Piece(lambda x: 0.0 * x + ratio, lambda x: ratio * x)
         return make_law(lobes, [0.0, lobes.period], [piece], tolerances)

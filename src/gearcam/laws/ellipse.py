@@ -25,7 +25,7 @@ class Ellipse:
     eccentricity: float = param(NUMBER, ge=0, lt=1, doc="eccentricity of the ellipse")
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return the law.
+        """Return the law for `lobes`, to `tolerances`.
 
         Raises
         ------

@@ -47,7 +47,7 @@ class Formula:
                 )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return the law.
+        """Return the law for `lobes`, to `tolerances`.
 
         Raises
         ------

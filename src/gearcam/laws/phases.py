@@ -83,7 +83,7 @@ class Phases:
             yield "ratios", second, 'more than one "solve"', 'one "solve"'
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return the law.
+        """Return the law for `lobes`, to `tolerances`.
 
         Raises
         ------

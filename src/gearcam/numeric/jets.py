@@ -33,7 +33,7 @@ class Jet:
 
     @classmethod
     def variable(cls, x: ArrayLike, order: int) -> Jet:
-        """Return the jet of the variable itself at the points `x`."""
+        """Return the jet of the variable itself at the points `x`, up to `order`."""
         return cls([np.asarray(x, dtype=float), 1.0, *[0.0] * (order - 1)][: order + 1])
 
     @property

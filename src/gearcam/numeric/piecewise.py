@@ -82,7 +82,7 @@ class Piecewise:
         return float(self.side(len(self.knots) - 1, -1, 0)[0])
 
     def side(self, knot: int, side: int, order: int) -> list[float]:
-        """Return the derivatives at a knot by the piece on its left (-1) or right (+1)."""
+        """Return derivatives up to `order` at a knot by the piece on one `side` (-1 or +1)."""
         number = knot - 1 if side < 0 else knot
         jet = self.pieces[number](Jet.variable(self.knots[knot : knot + 1], order))
         return [float(v[0]) for v in (jet + self.offsets[number]).derivatives()]

@@ -1,0 +1,237 @@
+"""What the README and docs/ say is true: the example runs, links lead on, tables are whole."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import math
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from gearcam.cli import main
+from gearcam.design import FORMATS, loads
+from gearcam.design.tables import TABLES, law_table, register_checks, table
+from gearcam.findings import CHECKS
+from gearcam.laws.base import LAWS
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+CONVENTIONS = (ROOT / "docs" / "conventions.md").read_text(encoding="utf-8")
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+PROFILE = ROOT / "profiles" / "nail_machine_two_phase.toml"
+PICTURE = ROOT / "docs" / "nail_machine_two_phase.svg"
+WRITTEN_LATER = {"docs/performance.md"}
+
+
+def block(language: str) -> str:
+    """The README's one code block in a language."""
+    (found,) = re.findall(rf"^```{language}\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+    return found
+
+
+def section(title: str) -> str:
+    return README.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
+
+
+def rows(text: str) -> list[list[str]]:
+    """Cells of a section's tables, without heads."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    rules = [k for k, row in enumerate(cells) if set("".join(row)) <= set("-:")]
+    heads = {k - 1 for k in rules} | set(rules)
+    return [row for k, row in enumerate(cells) if k not in heads]
+
+
+def quoted(text: str) -> list[str]:
+    return re.findall(r"`([^`]+)`", text)
+
+
+def dead_links(page: Path, text: str) -> list[str]:
+    """Relative links and pictures that lead nowhere."""
+    targets = re.findall(r"\]\(([^)\s]+)\)", text)
+    local = [target.partition("#")[0] for target in targets if "://" not in target]
+    return [target for target in local if target and not (page.parent / target).exists()]
+
+
+class Run(NamedTuple):
+    """What the Python example printed, left behind as names, and wrote."""
+
+    printed: str
+    names: dict[str, Any]
+    folder: Path
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Run the example as printed, in an empty folder from which the profiles can be reached."""
+    place = tmp_path_factory.mktemp("reader")
+    (place / "profiles").symlink_to(ROOT / "profiles")
+    stream, names = io.StringIO(), {}
+    with contextlib.chdir(place), contextlib.redirect_stdout(stream):
+        exec(compile(block("python"), "README.md", "exec"), names)
+    return Run(stream.getvalue(), names, place / "output" / "nail_machine_two_phase")
+
+
+def test_the_python_example_prints_what_is_shown(example: Run) -> None:
+    assert example.printed == block("text")
+    names = example.printed.splitlines()[-1].split(", ")
+    assert "gear1.dxf" in names
+    assert all((example.folder / name).stat().st_size > 1000 for name in names)
+
+
+def test_the_module_shown_is_the_length_over_the_teeth() -> None:
+    """L = 556.7768355399 mm, from the law in high precision."""
+    module = float(block("text").split()[1])
+    assert module == pytest.approx(556.7768355399 / (36 * math.pi), abs=5e-7)
+
+
+def test_the_accuracy_is_as_told(example: Run) -> None:
+    accuracy = example.names["written"].summary["accuracy"]
+    assert 0 < accuracy["law"] < 1e-14
+    assert 0 < accuracy["flank_mm"] < 1e-11
+    assert 0 < max(accuracy["chord_mm"], *accuracy["dxf_mm"].values()) < 1e-3
+
+
+def test_the_example_is_about_ten_lines() -> None:
+    assert 8 <= len(block("python").strip().splitlines()) <= 14
+
+
+def test_the_design_file_shown_is_the_profile() -> None:
+    shown = tomllib.loads(block("toml"))
+    assert shown == tomllib.loads(PROFILE.read_text(encoding="utf-8"))
+    assert loads(block("toml")).name == "nail_machine_two_phase"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    assert dead_links(page, page.read_text(encoding="utf-8")) == []
+
+
+def test_a_dead_link_is_seen() -> None:
+    assert dead_links(PAGES[0], "[x](docs/conventions.md#units) [y](docs/none.md)") == [
+        "docs/none.md"
+    ]
+
+
+def test_files_named_are_there() -> None:
+    for page in PAGES:
+        names = re.findall(
+            r"`((?:docs|tests|profiles|laws|gears)/[\w./]+)`", page.read_text("utf-8")
+        )
+        for name in set(names) - WRITTEN_LATER:
+            assert any((base / name).exists() for base in (ROOT, ROOT / "src" / "gearcam")), name
+
+
+def test_the_laws_are_those_of_the_registry() -> None:
+    law_rows = rows(section("Laws"))
+    assert {quoted(row[0])[0] for row in law_rows} == set(LAWS)
+    for row in law_rows:
+        name = quoted(row[0])[0]
+        assert set(law_table(name).entries) <= set(quoted(row[1]))
+        assert row[2] == LAWS[name].continuity
+    (status,) = [row for row in rows(section("Status")) if row[0].startswith("laws ")]
+    assert set(quoted(status[0])) == set(LAWS)
+    assert status[1] == "works"
+
+
+def test_the_checks_are_those_of_the_registry() -> None:
+    register_checks()
+    shown = {quoted(row[0])[0]: row for row in rows(section("Checks"))}
+    assert set(shown) == set(CHECKS)
+    for code, check in CHECKS.items():
+        limit = shown[code][2]
+        if check.limit is None:
+            assert limit == "none"
+            continue
+        name, made, default = check.limit
+        key, value = re.fullmatch(r"`(\w+)` = ([\d.e-]+)(?: \w+)?", limit).groups()  # type: ignore[union-attr]
+        assert key == made.key(name)
+        assert float(value) * made.quantity.factor == pytest.approx(default, rel=1e-12)
+
+
+def test_severities_are_as_they_come(example: Run) -> None:
+    shown = {quoted(row[0])[0]: row[1] for row in rows(section("Checks"))}
+    found = example.names["result"].findings
+    assert {finding.severity for finding in found} == {"warning", "note"}
+    for finding in found:
+        assert finding.severity in shown[finding.code].split(", or ")
+
+
+def test_every_kind_of_file_is_described() -> None:
+    assert {name for row in rows(section("Files")) for name in quoted(row[0])} == set(FORMATS)
+
+
+def test_every_command_and_option_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    main(["--help"])
+    listed = capsys.readouterr().out.partition("commands:\n")[2].partition("\n\n")[0]
+    commands = [line.split()[0] for line in listed.splitlines()]
+    assert {"build", "check", "laws", "new", "schema"} <= set(commands)
+    start = section("Start")
+    for command in commands:
+        assert f"`gearcam {command}" in start
+        main([command, "--help"])
+        options = set(re.findall(r"--[a-z]+", capsys.readouterr().out)) - {"--help", "--output"}
+        assert options <= set(re.findall(r"--[a-z]+", start)), command
+
+
+def test_the_makefile_has_the_targets() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    named = {
+        name
+        for page in PAGES
+        for name in re.findall(r"make (\w+)  |`make (\w+)`", page.read_text("utf-8"))
+    }
+    targets = {first or second for first, second in named}
+    assert {"demo", "test", "bench"} <= targets
+    for target in targets:
+        assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
+
+
+def keys(document: Any) -> Iterator[str]:
+    """Every key of a document, lists of entries included."""
+    if isinstance(document, dict):
+        for key, value in document.items():
+            yield key
+            yield from keys(value)
+    elif isinstance(document, list):
+        for value in document:
+            yield from keys(value)
+
+
+def test_every_key_of_the_summary_is_described(example: Run, tmp_path: Path) -> None:
+    solids = example.names["result"].write(tmp_path, files=["stl"]).summary
+    summary = {**solids, **example.names["written"].summary}
+    told = CONVENTIONS.partition("\n## summary.json\n")[2].partition("\n## ")[0]
+    values = ("timings_s", "versions", "solved")  # their keys are names, not fields
+    fields = {key: value for key, value in summary.items() if key not in values}
+    fields["accuracy"] = {**summary["accuracy"], "dxf_mm": 0, "how": 0}
+    fields["solids"] = list(summary["solids"].values())
+    assert {"gears", "dxf_mm", "triangles"} <= set(keys(fields))
+    missing = [key for key in {*keys(fields), *values} if not re.search(rf"[`.]{key}\b", told)]
+    assert missing == []
+
+
+def test_every_key_of_design_files_is_described() -> None:
+    told = CONVENTIONS.partition("\n## Design files\n")[2].partition("\n## ")[0]
+    entries = [key for title in [*TABLES, "limits"] for key in table(title).entries]
+    entries += [key for law in LAWS for key in law_table(law).entries]
+    assert len(entries) > 20
+    assert [key for key in entries if f"`{key}`" not in told] == []
+
+
+def features(svg: bytes) -> list[tuple[str | None, str | None]]:
+    """Class and text of every element of a picture, in order."""
+    return [(part.get("class"), part.text) for part in ET.fromstring(svg).iter()]
+
+
+def test_the_picture_is_the_programs_own(example: Run, tmp_path: Path) -> None:
+    written = example.names["result"].write(tmp_path, files=["svg"])
+    made = features((written.directory / "pair.svg").read_bytes())
+    assert ("gear2-outline", None) in made
+    assert features(PICTURE.read_bytes()) == made
