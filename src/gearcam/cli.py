@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
+import shlex
 import sys
 import textwrap
 import time
@@ -201,7 +202,7 @@ def _new(kind: str, file: str | None) -> None:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         _refuse([Problem(f"cannot be written: {reason}", file=file)])
-    say(f"{file}: written; build it with: gearcam build {file}")
+    say(f"{file}: written; build it with: gearcam build {shlex.quote(file)}")
 
 
 def _schema() -> None:

@@ -56,7 +56,7 @@ def written_lines(written: Written) -> Iterator[str]:
     for name in written.files:
         yield f"  {name:<{width}}  {_size(folder / name):>9}"
     for name in written.removed:
-        yield f"  {name:<{width}}  removed: no longer part of the design"
+        yield f"  {name:<{width}}  removed: this build does not write it"
 
 
 def _number(value: float | None, unit: str) -> str:

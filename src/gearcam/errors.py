@@ -3,11 +3,9 @@
 Three kinds of refusal, each from a common base and from the builtin that fits:
 
 * `DesignError`: the design file (or the call) is wrong by reading it. It carries every problem of
-the
-  file at once, each with its place.
+  the file at once, each with its place.
 * `InfeasibleError`: the design reads well, but computing shows that it cannot be made. It carries
-the
-  number that fails, the limit, and the nearest feasible value where one is known.
+  the number that fails, the limit, and the nearest feasible value where one is known.
 * `WriteError`: the disk refuses.
 """
 
@@ -103,7 +101,12 @@ class InfeasibleError(GearcamError, ValueError):
         self.what, self.where, self.nearest, self.unit = what, where, nearest, unit
         self.value, self.limit = value, limit
         text = f"{what} ({where})" if where else what
-        super().__init__(f"{text}; {nearest}" if nearest else text)
+        numbers = ", ".join(
+            f"{name} {number:.10g} {unit}".rstrip()
+            for name, number in (("value", value), ("limit", limit))
+            if number is not None
+        )
+        super().__init__("; ".join(part for part in (text, numbers, nearest) if part))
 
 
 class WriteError(GearcamError, OSError):

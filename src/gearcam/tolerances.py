@@ -23,8 +23,8 @@ class Tolerances:
     crossing : float
         Distance at which the crossing of two curves counts as found, in modules.
     oversampling : int
-        Dense points per final chord of an outline; 8 makes the error of the dense polygon 1/64 of
-        the chord error.
+        Dense points per final chord of an outline; 8 makes the error of the dense polygon about
+        1/64 of the chord error.
     """
 
     expansion: float = 1e-15

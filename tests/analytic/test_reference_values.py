@@ -44,7 +44,7 @@ def curvatures(rolling: Rolling, wheel: Any) -> np.ndarray:
     return rolling.curvature_extremes(wheel)[1]
 
 
-# The source's table gives 59.7386 for the driver in three phases: a sample beside the minimum. The
+# A value of 59.7386 circulates for the driver in three phases: a sample beside the minimum. The
 # mpmath witness, and finite differences of positions in 40 digits, give 59.738483.
 NAIL = {
     2: ("556.7768355399", "4.9229880875", "68.0793", "144.4514", "29.2869", "3.4259"),

@@ -75,7 +75,7 @@ def test_every_feature_is_there(root: Any) -> None:
 def test_the_caption_says_what_it_is_and_stays_clear(root: Any) -> None:
     first, second = root.findall(".//s:text", SPACE)
     assert first.text == root.find("s:title", SPACE).text == 'Nails & "wire" <fast>'
-    assert second.text == "center distance 190 mm, module 4.92299 mm, teeth 36 : 36"
+    assert second.text == "centre distance 190 mm, module 4.92299 mm, teeth 36 : 36"
     lowest = max(polygon(root, f"gear{k}-outline")[:, 1].max() for k in (1, 2))
     left, top, width, height = box(root)
     for text in (first, second):

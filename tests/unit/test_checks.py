@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from gearcam.findings import CHECKS, Finding
-from gearcam.gears.checks import KIND, Subject, remote_cutter, undercut
+from gearcam.gears.centrode_checks import remote_cutter
+from gearcam.gears.checks import KIND, Subject, undercut
 from gearcam.gears.spec import Rack
 from gearcam.jobs import GearPairJob
 from gearcam.laws.constant import Constant
@@ -61,6 +62,14 @@ def rim(extra: float) -> GearPairJob:
     return job(Constant(), (40, 40), bores=(2 * (18.75 - 2.7) + extra, 10.0))
 
 
+def overlap_of(ratio: float) -> GearPairJob:
+    """Circular wheels z = 40: the contact ratio follows from the addendum in closed form."""
+    alpha = math.radians(20)
+    half = 0.5 * ratio * math.pi * math.cos(alpha) + 20 * math.sin(alpha)
+    addendum = math.sqrt(half**2 + (20 * math.cos(alpha)) ** 2) - 20
+    return job(Constant(), (40, 40), rack=Rack(addendum=addendum))
+
+
 def heights(limit: float) -> GearPairJob:
     return job(Formula(r1="1 + 0.25*cos(2*phi1)"), (60, 60), limits={"tip_height": limit})
 
@@ -93,6 +102,7 @@ CASES = [
     Case(
         "undercut", "warning", lambda: job(Constant(), (17, 60)), lambda: job(Constant(), (18, 60))
     ),
+    Case("contact-ratio", "warning", lambda: overlap_of(1.0999), lambda: overlap_of(1.1001)),
     Case("thin-rim", "warning", lambda: rim(0.002), lambda: rim(-0.002)),
     Case(
         "no-backlash",
@@ -179,7 +189,16 @@ def test_every_check_of_the_registry_is_tested_here() -> None:
         "remote-cutter",
     }
     assert named == {check.code for check in CHECKS.values() if check.kind == KIND}
-    assert len(named) == 11
+    assert len(named) == 12
+
+
+def test_a_pair_that_does_not_drive_is_an_error() -> None:
+    found = codes(overlap_of(0.95))["contact-ratio"]
+    assert found.severity == "error"
+    assert found.value == pytest.approx(0.95, abs=1e-9)
+    assert "Nothing drives" in found.message
+    assert "phi1 = " in found.message
+    assert codes(overlap_of(1.01))["contact-ratio"].severity == "warning"
 
 
 def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:

@@ -47,7 +47,7 @@ CURVES: Final = ("arcs", "lines")
 
 ARCS_PART: Final = 0.96
 """Part of the tolerance that the arcs may take; the rest covers the chord error of the dense
-points that they are fitted to and measured against (at most 1/50 of the tolerance)."""
+points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
 
 COLORS: Final = {OUTLINE: 7, BORE: 5, MARK: 1, CENTRODE: 3, CENTER: 8}
 """Colour numbers: black or white, blue, red, green, grey."""

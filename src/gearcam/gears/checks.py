@@ -1,4 +1,4 @@
-"""The checks of a gear pair. Each looks at one thing; together they are the table in the README.
+"""The checks of a gear pair's teeth; importing this room registers those of its centrodes too.
 
 A check sees a `Subject` and yields findings. Values and limits of findings are in the units of
 files.
@@ -8,55 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from gearcam.findings import Finding, Severity, check
-from gearcam.gears.pair import ContactArcs, Gear, GearPair, contact_arcs
-from gearcam.laws.base import angle_text
-from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
+from gearcam.gears import centrode_checks
+from gearcam.gears.pair import Gear
+from gearcam.gears.subject import KIND, Subject
+from gearcam.quantities import LENGTH, NUMBER, Param
 
-KIND = "gear-pair"
-
-CLOSURE = math.radians(1e-7)
-"""Default closure error: 0.006 micrometres at 200 mm."""
-
-_ANY_RADIUS = 1e6
-"""Default of the concave radius: every concave part is reported, mm."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Subject:
-    """A pair as built, for checks.
-
-    Parameters
-    ----------
-    pair : GearPair
-        Centrodes and cutters.
-    gears : (Gear, Gear)
-        Both wheels.
-    bores : (float or None, float or None), mm
-        Bore diameters.
-    backlash : float, mm
-        Backlash along the pitch curve.
-    """
-
-    pair: GearPair
-    gears: tuple[Gear, Gear]
-    bores: tuple[float | None, float | None]
-    backlash: float
-
-    @cached_property
-    def arcs(self) -> tuple[ContactArcs, ContactArcs]:
-        """Contact arcs of both sides."""
-        return contact_arcs(*self.gears, 1), contact_arcs(*self.gears, -1)
-
-    @property
-    def contact_ratio(self) -> float:
-        """Smallest contact ratio of any flank, both sides."""
-        return min(float(arcs.ratios.min()) for arcs in self.arcs)
+__all__ = ["KIND", "Subject", "centrode_checks", "largest_module"]
 
 
 def _teeth(numbers: tuple[int, ...] | list[int]) -> str:
@@ -68,124 +29,6 @@ def _teeth(numbers: tuple[int, ...] | list[int]) -> str:
         else:
             spans.append([number, number])
     return ", ".join(f"{a}" if a == b else f"{a}-{b}" for a, b in spans)
-
-
-@check(
-    "closure",
-    kind=KIND,
-    doc="miss of the driven angle over a lobe",
-    limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE),
-)
-def closure(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Warn if the law closes only roughly: ratios typed with too few digits."""
-    miss = abs(subject.pair.law.closure_error)
-    if miss > limit:
-        yield Finding(
-            code="closure",
-            severity="warning",
-            message="The law does not close exactly: give the ratios with more digits, or leave "
-            'one to "solve".',
-            value=math.degrees(miss),
-            limit=math.degrees(limit),
-            unit="deg",
-            where="law",
-        )
-
-
-@check(
-    "ratio-positive",
-    kind=KIND,
-    doc="smallest ratio, and largest as its inverse",
-    limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0),
-)
-def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large."""
-    (low_place, low), (high_place, high) = subject.pair.law.ratio_range
-    for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
-        if swing > limit:
-            yield Finding(
-                code="ratio-positive",
-                severity="warning",
-                message=f"The ratio is {value:.6g} here: one wheel hardly moves, and its centrode "
-                "comes close to the other's shaft.",
-                value=swing,
-                limit=limit,
-                where=angle_text(place),
-            )
-
-
-@check(
-    "ratio-continuity",
-    kind=KIND,
-    doc="order to which the ratio is continuous at its knots",
-    limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
-)
-def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Warn at knots where a derivative jumps that the limit wants continuous."""
-    law = subject.pair.law
-    for number, order in enumerate(law.ratio.continuity, start=1):
-        if order < limit:
-            yield Finding(
-                code="ratio-continuity",
-                severity="warning",
-                message=f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
-                value=float(order),
-                limit=limit,
-                where=angle_text(float(law.knots[number])),
-            )
-
-
-@check(
-    "concave",
-    kind=KIND,
-    doc="concave parts of the centrodes",
-    limit=(
-        "concave_radius",
-        Param(LENGTH, gt=0, doc="concave radii below this are reported"),
-        _ANY_RADIUS,
-    ),
-)
-def concave(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Note a concave part, which a rack or hob cannot cut."""
-    for gear in subject.gears:
-        curvature = gear.concave_curvature
-        if gear.toothing.cutter.kc > 0.0 and 1.0 / curvature < limit:
-            place = float(gear.curvature_places[np.argmin(gear.curvatures)])
-            cutter = 2.0 / (gear.toothing.cutter.kc * subject.pair.module)
-            yield Finding(
-                code="concave",
-                severity="note",
-                message="The centrode is concave here: no rack or hob can cut this wheel; its "
-                f"fillets are those of a pinion cutter with up to {cutter:.3g} teeth.",
-                value=1.0 / curvature,
-                limit=limit if limit < _ANY_RADIUS else None,
-                unit="mm",
-                where=f"wheel {gear.wheel}, {angle_text(place)}",
-            )
-
-
-@check(
-    "sharp",
-    kind=KIND,
-    doc="smallest convex radius of the centrodes",
-    limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
-)
-def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Warn where a centrode bends so sharply that teeth have hardly a root."""
-    for gear in subject.gears:
-        radius = gear.convex_radius / subject.pair.module
-        if radius < limit:
-            place = float(gear.curvature_places[np.argmax(gear.curvatures)])
-            yield Finding(
-                code="sharp",
-                severity="warning",
-                message=f"The centrode bends with a radius of {gear.convex_radius:.6g} mm here; "
-                "take more teeth or a smaller swing of the ratio.",
-                value=radius,
-                limit=limit,
-                unit="modules",
-                where=f"wheel {gear.wheel}, {angle_text(place)}",
-            )
 
 
 def largest_module(gear: Gear) -> float:
@@ -209,39 +52,69 @@ def largest_module(gear: Gear) -> float:
     return gear.convex_radius * math.sin(cutter.alpha) ** 2 / depth
 
 
+_CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
+
+
+@check(
+    "contact-ratio",
+    kind=KIND,
+    doc="smallest contact ratio of any flank, both sides; phases in which nothing drives",
+    limit=_CONTACT_RATIO,
+)
+def contact_ratio(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn of a low contact ratio; an error where nothing drives."""
+    for side, arcs in zip(("forward", "backward"), subject.arcs, strict=True):
+        worst = float(arcs.ratios.min())
+        if not arcs.gaps and worst >= limit:
+            continue
+        tooth = int(arcs.ratios.argmin()) + 1
+        message = "Few teeth carry at a time; a larger rack.addendum or more teeth help."
+        if arcs.gaps:
+            places = [math.degrees(float(subject.pair.rolling.angle(s))) for s in arcs.gaps[0]]
+            message = (
+                f"Nothing drives {side} from phi1 = {places[0]:.6g} to {places[1]:.6g} deg"
+                f"{' and in other phases' if len(arcs.gaps) > 1 else ''}."
+            )
+        yield Finding(
+            code="contact-ratio",
+            severity="error" if arcs.gaps else "warning",
+            message=message,
+            value=worst,
+            limit=limit,
+            where=f"driving {side}, wheel 1, tooth {tooth}",
+        )
+
+
 @check(
     "undercut",
     kind=KIND,
     doc="flanks that turn back on themselves, and whether the pair still drives",
-    limit=(
-        "contact_ratio",
-        Param(NUMBER, ge=1, le=3, doc="least contact ratio of a pair with undercut"),
-        1.1,
-    ),
+    limit=_CONTACT_RATIO,
 )
 def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn of undercut teeth; an error where they no longer drive well enough."""
     ratio = subject.contact_ratio
     driven = not any(arcs.gaps for arcs in subject.arcs)
     severity: Severity = "warning" if driven and ratio >= limit else "error"
+    left = f"the least contact ratio that is left is {ratio:.4g}"
+    if not driven:
+        left += ", and in some phases nothing drives"
+    elif ratio < limit:
+        left += f", below the limit {limit:.4g}"
     for gear in subject.gears:
         teeth = gear.profile.undercut_teeth
         if not teeth:
             continue
-        flanks = gear.profile.flanks
-        lost = (flanks.lowest + gear.toothing.cutter.reach)[np.isfinite(flanks.cusps.dedendum)]
-        slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
-        depth = float(lost.max(initial=0.0)) * slope
-        message = (
-            f"Undercut takes up to {depth:.4g} mm from the root end of these flanks; the least "
-            f"contact ratio that is left is {ratio:.4g}"
-            + ("." if driven else ", and in some phases nothing drives.")
-        )
-        best = largest_module(gear)
-        if np.isfinite(flanks.cusps.dedendum).any():
-            fewest = math.ceil(gear.pair.teeth[gear.wheel - 1] * subject.pair.module / best)
-            message += (
-                f" Without undercut: a module up to {best:.4f} mm, which is {fewest} teeth or more "
+        flanks, best = gear.profile.flanks, largest_module(gear)
+        below = np.isfinite(flanks.cusps.dedendum)
+        message = f"Flanks end at a cusp above the pitch curve; {left}."
+        if below.any():
+            slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
+            lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
+            fewest = math.ceil(gear.toothing.teeth * subject.pair.module / best)
+            message = (
+                f"Undercut takes up to {lost:.4g} mm from the root end of these flanks; {left}. "
+                f"Without undercut: a module up to {best:.4f} mm, which is {fewest} teeth or more "
                 "on this wheel."
             )
         yield Finding(
@@ -249,7 +122,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
             severity=severity,
             message=message,
             value=subject.pair.module,
-            limit=best,
+            limit=best if below.any() else None,
             unit="mm",
             where=f"wheel {gear.wheel}, teeth {_teeth(teeth)}",
         )
@@ -330,46 +203,6 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
                 unit="modules",
                 where=f"wheel {gear.wheel}",
             )
-
-
-@check(
-    "remote-cutter",
-    kind=KIND,
-    doc="pinion cutter that reaches a remote part of its wheel",
-)
-def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa: ARG001
-    """Warn if the pinion cutter would cut a tooth far from the space it is in."""
-    for gear in subject.gears:
-        cutter = gear.toothing.cutter
-        if cutter.kc == 0.0:
-            continue
-        length, count = gear.pair.rolling.length(gear.wheel), 180
-        s = length * np.arange(count) / count
-        frames = gear.toothing.frames(gear.pair.rolling.angle(s))
-        center = frames.p + gear.toothing.turn * frames.t / cutter.kc
-        steps = np.arange(count)
-        ahead = frames.p[(steps[:, None] + steps) % count]
-        clear = np.abs(ahead - center[:, None]) - (1.0 / cutter.kc + cutter.dedendum)
-        # Once the centrode has left the cutter on either way round it must not come back to it.
-        half = count // 2
-        for way in (1, -1):
-            path = clear[:, way * np.arange(half)]
-            again = np.where(np.maximum.accumulate(path, axis=1) > 0.0, path, np.inf)
-            if again.min() < 0.0:
-                row, column = np.unravel_index(int(again.argmin()), again.shape)
-                places = s[[row, (row + way * column) % count]]
-                teeth = np.floor(places / gear.toothing.pitch).astype(int) % gear.toothing.teeth + 1
-                yield Finding(
-                    code="remote-cutter",
-                    severity="warning",
-                    message="A pinion cutter in this space would also cut the other tooth: laser, "
-                    "wire or printer can make the wheel, a shaper cannot.",
-                    value=float(-again.min()),
-                    limit=0.0,
-                    unit="mm",
-                    where=f"wheel {gear.wheel}, space after tooth {teeth[0]} and tooth {teeth[1]}",
-                )
-                break
 
 
 @check(

@@ -2,10 +2,9 @@
 
 Both wheels share one parameter, the driver angle `phi` (rad, any number of turns), and one arc
 length ``s(phi)``: rolling gives equal lengths. At `phi` the wheel carries the *frame* of its pitch
-point in its own coordinates: point P, unit tangent T (rising s), outward unit normal ``N = w*T``
-with ``w =
--1j`` on wheel 1 (where s runs counter-clockwise) and ``w = +1j`` on wheel 2 (clockwise), and the
-curvature kappa, so that ``dT/ds = -kappa*N`` and ``dN/ds = +kappa*T`` on both.
+point in its own coordinates: point P, unit tangent T (rising s), outward unit normal ``N = w*T``,
+with ``w = -1j`` on wheel 1 (where s runs counter-clockwise) and ``w = +1j`` on wheel 2 (clockwise),
+and the curvature kappa, so that ``dT/ds = -kappa*N`` and ``dN/ds = +kappa*T`` on both.
 """
 
 from __future__ import annotations

@@ -246,7 +246,6 @@ def make_law(
             where=angle_text(place),
             value=smallest,
             limit=0.0,
-            nearest=f"the smallest ratio is {smallest:.6g}",
         )
     _demand_smooth(law)
     if abs(law.closure_error) > tolerances.refusal:
@@ -255,9 +254,8 @@ def make_law(
             value=math.degrees(law.motion.last),
             limit=math.degrees(lobes.advance),
             unit="deg",
-            nearest=f"over {math.degrees(lobes.period):.10g} deg of the driver the other wheel "
-            f"turns {math.degrees(law.motion.last):.10g} deg and must turn "
-            f"{math.degrees(lobes.advance):.10g} deg",
+            nearest=f"over {math.degrees(lobes.period):.10g} deg of the driver the driven wheel "
+            "turns by the first; the tooth counts ask for the second",
         )
     return law
 
@@ -270,16 +268,15 @@ def _demand_smooth(law: RatioLaw) -> None:
             after = law.ratio.side(0 if ends else number, 1, 1)
             name, k = ("ratio", 0) if order < 0 else ("slope of the ratio", 1)
             place = angle_text(law.knots[number])
+            if not math.isfinite(before[k] + after[k]):
+                raise InfeasibleError(f"the {name} has no value", where=place)
             raise InfeasibleError(
-                f"the {name} {'is not periodic' if ends else 'jumps'}",
+                f"the {name} {'is not periodic' if ends else 'jumps'}: it is {before[k]:.6g} "
+                f"before {place} and {after[k]:.6g} {'at 0 deg' if ends else 'after it'}",
                 where=place,
-                value=before[k],
-                limit=after[k],
-                nearest=f"it is {before[k]:.6g} before {place}"
-                f" and {after[k]:.6g} {'at 0 deg' if ends else 'after it'}",
             )
 
 
 def angle_text(angle: float) -> str:
     """Return a driver angle, rad, as a place for messages."""
-    return f"phi1 = {math.degrees(angle):.6g} deg"
+    return f"phi1 = {round(math.degrees(angle), 6) + 0.0:.6g} deg"

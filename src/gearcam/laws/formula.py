@@ -39,12 +39,9 @@ class Formula:
             try:
                 parse(getattr(self, name))
             except FormulaError as error:
-                yield (
-                    name,
-                    None,
-                    str(error),
-                    "+ - * / **, phi1, pi, numbers, " + ", ".join(FUNCTIONS),
-                )
+                place = "" if error.column is None else f"column {error.column}: "
+                hint = f" ({error.hint})" if error.hint else ""
+                yield name, None, f"{place}{error.what}{hint}", error.allowed
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -108,7 +105,7 @@ def _from_motion(motion: Callable[[Jet], Jet], lobes: Lobes, tolerances: Toleran
             where=angle_text(x[place]),
             value=float(slopes[place]),
             limit=0.0,
-            nearest=f"the ratio there is {slopes[place]:.6g} and must be positive",
+            nearest="this is the ratio there, which must be positive",
         )
     try:
         expand(

@@ -144,7 +144,7 @@ class Phases:
                     where=f"law.ratios[{index}]",
                     value=float(given[index]),
                     limit=0.0,
-                    nearest=f"closure asks for {given[index]:.10g}; lower the other ratios",
+                    nearest="closure asks for this value; lower the other ratios",
                 )
             return [*given, given[0]], {f"ratios[{index}]": float(given[index])}
         if abs(rest) > tolerances.refusal:
@@ -154,24 +154,20 @@ class Phases:
                 value=math.degrees(lobes.advance - rest),
                 limit=math.degrees(lobes.advance),
                 unit="deg",
-                nearest=self._closing_values(given, weights, rest, lobes),
+                nearest=_closing_values(given, rest / weights),
             )
         return [*given, given[0]], {}
 
-    def _closing_values(
-        self, given: np.ndarray, weights: np.ndarray, rest: float, lobes: Lobes
-    ) -> str:
-        total = math.degrees(lobes.advance - rest)
-        lines = []
-        for index, (value, weight) in enumerate(zip(given, weights, strict=True)):
-            closing = value + rest / weight
-            name = f"ratios[{index}]" if index else f"ratios[0] and [{len(given)}]"
-            state = f"{closing:.10g}" if closing > 0 else f"none ({closing:.6g} is not positive)"
-            lines.append(f"{name} = {state} instead of {value:.10g}")
-        return (
-            f"the driven wheel turns {total:.10g} deg instead of "
-            f"{math.degrees(lobes.advance):.10g} deg; it closes with one of: " + "; ".join(lines)
-        )
+
+def _closing_values(given: np.ndarray, change: np.ndarray) -> str:
+    """Say which value each ratio must have for the law to close if only that one is changed."""
+    lines = ["it closes with one of these"]
+    for index, (value, step) in enumerate(zip(given, change, strict=True)):
+        closing = value + step
+        name = f"ratios[{index}]" if index else f"ratios[0] and ratios[{len(given)}]"
+        state = f"{closing:.10g}" if closing > 0 else f"none ({closing:.6g} is not positive)"
+        lines.append(f"{name} = {state} instead of {value:.10g}")
+    return "; ".join(lines)
 
 
 def _claims() -> tuple[Claim, ...]:

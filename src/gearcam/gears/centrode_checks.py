@@ -1,0 +1,177 @@
+"""Checks of a pair's law and centrodes (see `checks` for those of the teeth)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from gearcam.findings import Finding, check
+from gearcam.gears.subject import KIND, Subject
+from gearcam.laws.base import angle_text
+from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
+
+CLOSURE = math.radians(1e-7)
+"""Default closure error: 0.006 micrometres at 200 mm."""
+
+_ANY_RADIUS = 1e6
+"""Default of the concave radius: every concave part is reported, mm."""
+
+
+@check(
+    "closure",
+    kind=KIND,
+    doc="miss of the driven angle over a lobe",
+    limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE),
+)
+def closure(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn if the law closes only roughly: ratios typed with too few digits."""
+    miss = abs(subject.pair.law.closure_error)
+    if miss > limit:
+        yield Finding(
+            code="closure",
+            severity="warning",
+            message="The law does not close exactly: give the ratios with more digits, or leave "
+            'one to "solve".',
+            value=math.degrees(miss),
+            limit=math.degrees(limit),
+            unit="deg",
+            where="law",
+        )
+
+
+@check(
+    "ratio-positive",
+    kind=KIND,
+    doc="smallest ratio, and largest as its inverse",
+    limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0),
+)
+def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large."""
+    (low_place, low), (high_place, high) = subject.pair.law.ratio_range
+    for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
+        if swing > limit:
+            yield Finding(
+                code="ratio-positive",
+                severity="warning",
+                message=f"The ratio is {value:.6g} here: one wheel hardly moves, and its centrode "
+                "comes close to the other's shaft.",
+                value=swing,
+                limit=limit,
+                where=angle_text(place),
+            )
+
+
+@check(
+    "ratio-continuity",
+    kind=KIND,
+    doc="order to which the ratio is continuous at its knots",
+    limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
+)
+def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn at knots where a derivative jumps that the limit wants continuous."""
+    law = subject.pair.law
+    for number, order in enumerate(law.ratio.continuity, start=1):
+        if order < limit:
+            yield Finding(
+                code="ratio-continuity",
+                severity="warning",
+                message=f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
+                value=float(order),
+                limit=limit,
+                where=angle_text(float(law.knots[number])),
+            )
+
+
+@check(
+    "concave",
+    kind=KIND,
+    doc="concave parts of the centrodes",
+    limit=(
+        "concave_radius",
+        Param(LENGTH, gt=0, doc="concave radii below this are reported"),
+        _ANY_RADIUS,
+    ),
+)
+def concave(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Note a concave part, which a rack or hob cannot cut."""
+    for gear in subject.gears:
+        curvature = gear.concave_curvature
+        if gear.toothing.cutter.kc > 0.0 and 1.0 / curvature < limit:
+            place = float(gear.curvature_places[np.argmin(gear.curvatures)])
+            cutter = 2.0 / (gear.toothing.cutter.kc * subject.pair.module)
+            yield Finding(
+                code="concave",
+                severity="note",
+                message="The centrode is concave here: no rack or hob can cut this wheel; its "
+                f"fillets are those of a pinion cutter with up to {cutter:.3g} teeth.",
+                value=1.0 / curvature,
+                limit=limit if limit < _ANY_RADIUS else None,
+                unit="mm",
+                where=f"wheel {gear.wheel}, {angle_text(place)}",
+            )
+
+
+@check(
+    "sharp",
+    kind=KIND,
+    doc="smallest convex radius of the centrodes",
+    limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
+)
+def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn where a centrode bends so sharply that teeth have hardly a root."""
+    for gear in subject.gears:
+        radius = gear.convex_radius / subject.pair.module
+        if radius < limit * (1.0 - 1e-9):
+            place = float(gear.curvature_places[np.argmax(gear.curvatures)])
+            yield Finding(
+                code="sharp",
+                severity="warning",
+                message=f"The centrode bends with a radius of {gear.convex_radius:.6g} mm here; "
+                "take more teeth or a smaller swing of the ratio.",
+                value=radius,
+                limit=limit,
+                unit="modules",
+                where=f"wheel {gear.wheel}, {angle_text(place)}",
+            )
+
+
+@check(
+    "remote-cutter",
+    kind=KIND,
+    doc="pinion cutter that reaches a remote part of its wheel",
+)
+def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Warn if the pinion cutter would cut a tooth far from the space it is in."""
+    for gear in subject.gears:
+        cutter = gear.toothing.cutter
+        if cutter.kc == 0.0:
+            continue
+        length, count = gear.pair.rolling.length(gear.wheel), 180
+        s = length * np.arange(count) / count
+        frames = gear.toothing.frames(gear.pair.rolling.angle(s))
+        center = frames.p + gear.toothing.turn * frames.t / cutter.kc
+        steps = np.arange(count)
+        ahead = frames.p[(steps[:, None] + steps) % count]
+        clear = np.abs(ahead - center[:, None]) - (1.0 / cutter.kc + cutter.dedendum)
+        # Once the centrode has left the cutter on either way round it must not come back to it.
+        half = count // 2
+        for way in (1, -1):
+            path = clear[:, way * np.arange(half)]
+            again = np.where(np.maximum.accumulate(path, axis=1) > 0.0, path, np.inf)
+            if again.min() < 0.0:
+                row, column = np.unravel_index(int(again.argmin()), again.shape)
+                places = s[[row, (row + way * column) % count]]
+                teeth = np.floor(places / gear.toothing.pitch).astype(int) % gear.toothing.teeth + 1
+                yield Finding(
+                    code="remote-cutter",
+                    severity="warning",
+                    message="A pinion cutter in this space would also cut the other tooth: laser, "
+                    "wire or printer can make the wheel, a shaper cannot.",
+                    value=float(-again.min()),
+                    limit=0.0,
+                    unit="mm",
+                    where=f"wheel {gear.wheel}, space after tooth {teeth[0]} and tooth {teeth[1]}",
+                )
+                break

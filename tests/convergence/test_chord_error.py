@@ -1,0 +1,171 @@
+"""Outlines keep their tolerance, with no more points than the curvature asks for.
+
+What the sampler says of itself is not believed: chords are measured at 40 places each, against a
+much finer outline too, and the points that curvature asks for come from turning angles of that
+finer outline.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+import shapely
+
+from gearcam.gears.outline import Outline
+from gearcam.gears.rolling import Wheel
+from gearcam.laws.constant import Constant
+from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.formula import Formula
+from gearcam.numeric.contour import polygon_area
+from helpers_pairs import job, profile
+
+FINE = 1e-7
+"""Tolerance of the outline that stands for the true curve, modules."""
+
+CORNER = 0.02
+"""Turning angle from which a vertex of the finest outline is a corner: smooth ones turn 0.002."""
+
+TOLERANCES = [1 / 5000, 1 / 2000, 1 / 1000, 1 / 500, 1 / 200, 1 / 100, 1 / 50]
+"""Modules."""
+
+NAMES = ["ellipse", "circular", "nail", "peanut"]
+WHEELS: list[Wheel] = [1, 2]
+
+both = pytest.mark.parametrize(
+    ("name", "wheel"), [(name, wheel) for name in NAMES for wheel in WHEELS]
+)
+
+
+@cache
+def finest(name: str, wheel: Wheel) -> Outline:
+    """The outline of a wheel at the finest tolerance."""
+    if name == "nail":
+        made = profile("nail_machine_two_phase")
+    elif name == "ellipse":
+        made = job(Ellipse(eccentricity=0.3), (24, 24))
+    elif name == "circular":
+        made = job(Constant(), (20, 30))
+    else:
+        made = job(Formula(r1="1 + 0.3*cos(2*phi1)"), (48, 48))
+    return at(made.gears[wheel - 1].profile, FINE * made.pair.module)
+
+
+def at(outline: Outline, tolerance: float) -> Outline:
+    """The same wheel at another tolerance, mm."""
+    return replace(outline, tolerance=tolerance)
+
+
+def module(outline: Outline) -> float:
+    """Module, mm."""
+    return outline.toothing.pitch / np.pi
+
+
+def distances(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
+    """Distance of each point from a closed polygon, mm."""
+    ends = np.concatenate([polygon, polygon[:1]])
+    chords = shapely.linestrings(np.stack([ends[:-1], ends[1:]], axis=1))
+    places = shapely.points(points)
+    _, nearest = shapely.STRtree(chords).query_nearest(places, all_matches=False)
+    return shapely.distance(places, chords[nearest])
+
+
+class Demand(NamedTuple):
+    """What a curve asks for."""
+
+    root: float
+    """Integral of sqrt(kappa/8) ds: chords times sqrt(tolerance)."""
+    corners: int
+
+
+@cache
+def demand(name: str, wheel: Wheel) -> Demand:
+    """Points that curvature asks for, by finite differences of the finest outline."""
+    steps = np.diff(finest(name, wheel).points @ [1, 1j], append=0)
+    steps[-1] = complex(*(finest(name, wheel).points[0] - finest(name, wheel).points[-1]))
+    turning = np.abs(np.angle(steps * np.conj(np.roll(steps, 1))))
+    length = 0.5 * (np.abs(steps) + np.abs(np.roll(steps, 1)))
+    smooth = turning < CORNER
+    # kappa*ds = turning, so that sqrt(kappa/8) ds = sqrt(turning*ds/8).
+    return Demand(
+        float(np.sqrt(turning[smooth] * length[smooth] / 8.0).sum()), int((~smooth).sum())
+    )
+
+
+@both
+def test_vertices_lie_on_the_true_curve(name: str, wheel: Wheel) -> None:
+    fine = finest(name, wheel)
+    m = module(fine)
+    vertices = at(fine, m / 1000).points
+    assert distances(vertices, fine.points).max() <= 1.01 * FINE * m
+    off = vertices.copy()
+    off[7] *= 1 + 1e-6
+    assert distances(off, fine.points)[7] > 2 * FINE * m
+
+
+@both
+@pytest.mark.parametrize("part", TOLERANCES)
+def test_no_chord_is_farther_off_than_the_tolerance(name: str, wheel: Wheel, part: float) -> None:
+    fine = finest(name, wheel)
+    tolerance = part * module(fine)
+    outline = at(fine, tolerance)
+    vertices = outline.sampler.chords[0]
+    inner = np.linspace(0.0, 1.0, 42)[1:-1, None]
+    curve = outline.sampler.at((vertices[:-1] + inner * np.diff(vertices)).ravel())[0]
+    start = outline.points[::-1] if wheel == 2 else outline.points
+    first = start @ [1, 1j]
+    chord = np.roll(first, -1) - first
+    off = np.abs(np.imag(np.conj(chord) * (curve.reshape(40, -1) - first)) / np.abs(chord))
+    assert off.max() <= tolerance
+    # What the summary states is what one finds with ten times the places.
+    assert off.max() == pytest.approx(outline.chord_error, rel=0.05)
+    assert outline.chord_error <= tolerance
+
+
+@both
+@pytest.mark.parametrize("part", [1 / 5000, 1 / 500, 1 / 50])
+def test_the_finest_outline_lies_within_the_tolerance(name: str, wheel: Wheel, part: float) -> None:
+    fine = finest(name, wheel)
+    tolerance = part * module(fine)
+    worst = distances(fine.points, at(fine, tolerance).points).max()
+    assert 0.5 * tolerance <= worst <= tolerance
+
+
+@both
+@pytest.mark.parametrize("part", TOLERANCES)
+def test_few_points_more_than_curvature_asks_for(name: str, wheel: Wheel, part: float) -> None:
+    fine = finest(name, wheel)
+    asked = demand(name, wheel)
+    least = asked.root / np.sqrt(part * module(fine))
+    # A coarse tolerance leaves short stretches no choice: one chord each is the least there is.
+    spare = asked.corners if part > 1 / 200 else 0
+    assert 0.97 * least <= len(at(fine, part * module(fine)).points) <= 1.3 * least + spare
+
+
+@both
+def test_what_the_summary_calls_the_least_is_the_least(name: str, wheel: Wheel) -> None:
+    fine = finest(name, wheel)
+    tolerance = module(fine) / 1000
+    least = demand(name, wheel).root / np.sqrt(tolerance)
+    assert at(fine, tolerance).sampler.least == pytest.approx(least, rel=0.03)
+
+
+@both
+def test_corners_are_where_tips_begin_and_end(name: str, wheel: Wheel) -> None:
+    fine = finest(name, wheel)
+    trimmed = np.isfinite(fine.flanks.cusps.dedendum).sum()
+    assert demand(name, wheel).corners == 2 * fine.toothing.teeth + trimmed
+
+
+@both
+def test_the_area_converges_with_the_tolerance(name: str, wheel: Wheel) -> None:
+    """Slope 1 in the tolerance, which is 2 in the length of chords."""
+    fine = finest(name, wheel)
+    parts = np.geomspace(1e-2, 1e-5, 7)
+    areas = [polygon_area(at(fine, part * module(fine)).points) for part in parts]
+    errors = np.abs(np.array(areas) - polygon_area(fine.points))
+    slope = np.polyfit(np.log(parts), np.log(errors), 1)[0]
+    assert slope == pytest.approx(1.0, abs=0.1)
