@@ -23,11 +23,11 @@ from gearcam.laws.formula import Formula
 from gearcam.numeric.contour import polygon_area
 from helpers_pairs import job, profile
 
-FINE = 1e-7
+FINE = 1e-6
 """Tolerance of the outline that stands for the true curve, modules."""
 
 CORNER = 0.02
-"""Turning angle from which a vertex of the finest outline is a corner: smooth ones turn 0.002."""
+"""Turning angle from which a vertex of the finest outline is a corner: smooth ones turn 0.005."""
 
 TOLERANCES = [1 / 5000, 1 / 2000, 1 / 1000, 1 / 500, 1 / 200, 1 / 100, 1 / 50]
 """Modules."""
@@ -155,16 +155,18 @@ def test_what_the_summary_calls_the_least_is_the_least(name: str, wheel: Wheel) 
 
 @both
 def test_corners_are_where_tips_begin_and_end(name: str, wheel: Wheel) -> None:
+    """And where undercut has trimmed a flank, unless it took so little that hardly a kink is left."""
     fine = finest(name, wheel)
-    trimmed = np.isfinite(fine.flanks.cusps.dedendum).sum()
-    assert demand(name, wheel).corners == 2 * fine.toothing.teeth + trimmed
+    trimmed = int(np.isfinite(fine.flanks.cusps.dedendum).sum())
+    tips = 2 * fine.toothing.teeth
+    assert tips <= demand(name, wheel).corners <= tips + trimmed
 
 
 @both
 def test_the_area_converges_with_the_tolerance(name: str, wheel: Wheel) -> None:
     """Slope 1 in the tolerance, which is 2 in the length of chords."""
     fine = finest(name, wheel)
-    parts = np.geomspace(1e-2, 1e-5, 7)
+    parts = np.geomspace(1e-2, 1e-4, 5)
     areas = [polygon_area(at(fine, part * module(fine)).points) for part in parts]
     errors = np.abs(np.array(areas) - polygon_area(fine.points))
     slope = np.polyfit(np.log(parts), np.log(errors), 1)[0]

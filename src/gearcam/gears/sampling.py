@@ -21,8 +21,11 @@ from gearcam.numeric.contour import Run
 
 Array = NDArray[np.float64]
 
-_PROBES = 16
+_PROBES = 24
 """Intervals per row on which the density of points is found."""
+
+_FRACTIONS = np.array([0.25, 0.5, 0.75])
+"""Places inside a chord at which its error is measured."""
 
 _FILL = 0.97
 """Share of the tolerance's chord that is used: the density is known to a few percent only."""
@@ -93,7 +96,8 @@ class Sampler:
     def chords(self) -> tuple[Array, Plane, float]:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
         vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
-        points, errors = self._measure(vertices)
+        ends = self._ends(vertices)
+        errors = self._errors(vertices, ends, np.arange(len(vertices) - 1))
         for _ in range(_ROUNDS):
             if np.mean(errors > self.tolerance) <= _FEW:
                 break
@@ -101,18 +105,19 @@ class Sampler:
             effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + 1e-9)])
             at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
             vertices = self._spread(at_corners, effort, vertices)
-            points, errors = self._measure(vertices)
+            ends = self._ends(vertices)
+            errors = self._errors(vertices, ends, np.arange(len(vertices) - 1))
         for _ in range(_ROUNDS):
             bad = np.flatnonzero(errors > self.tolerance)
             if bad.size == 0:
                 break
             middle = 0.5 * (vertices[bad] + vertices[bad + 1])
             vertices = np.insert(vertices, bad + 1, middle)
-            points = np.insert(points, bad + 1, self.at(middle)[0])
+            ends = np.insert(ends, bad + 1, np.stack(self.at(middle)), axis=1)
             errors = np.insert(errors, bad + 1, 0.0)
             halves = np.flatnonzero(np.isin(vertices[1:], middle) | np.isin(vertices[:-1], middle))
-            errors[halves] = self._errors(vertices, points, halves)
-        return vertices, points[:-1], float(errors.max())
+            errors[halves] = self._errors(vertices, ends, halves)
+        return vertices, ends[0, :-1], float(errors.max())
 
     def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
         """Spread vertices evenly over `effort` (known at `places`) between `ends`: their J."""
@@ -124,31 +129,30 @@ class Sampler:
         vertices[np.cumsum(counts)[:-1]] = self.corners[1:]
         return vertices
 
-    def _measure(self, vertices: Array) -> tuple[Plane, Array]:
-        """Points of a closed polygon (the first repeated) and the errors of its chords."""
-        points = self.at(vertices[:-1])[0]
-        points = np.append(points, points[0])
-        return points, self._errors(vertices, points, np.arange(len(vertices) - 1))
+    def _ends(self, vertices: Array) -> Plane:
+        """Points and tangents, (2, n), of a closed polygon, the first repeated."""
+        ends = np.stack(self.at(vertices[:-1]))
+        return np.append(ends, ends[:, :1], axis=1)
 
-    def _errors(self, vertices: Array, points: Plane, todo: NDArray[np.int64]) -> Array:
-        """Distance of the curve from chords: in the middle; where rows join, at quarters too."""
-        errors = self._distances(vertices, points, todo, 0.5)
-        place = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
-        joined = np.floor(place[todo]) != np.ceil(place[todo + 1]) - 1.0
-        for fraction in (0.25, 0.75):
-            there = self._distances(vertices, points, todo[joined], fraction)
-            errors[joined] = np.maximum(errors[joined], there)
+    def _errors(self, vertices: Array, ends: Plane, todo: NDArray[np.int64]) -> Array:
+        """Distance of the curve from chords.
+
+        Well inside a row it follows from the tangents at the chord's ends, ``(l/2)*tan(turn/4)``,
+        which is exact for an arc; near the ends of rows, where the curvature jumps or grows without
+        bound, it is measured at three places.
+        """
+        start, turn = ends[0, todo], ends[1, todo + 1] * np.conj(ends[1, todo])
+        chord = ends[0, todo + 1] - start
+        errors = 0.5 * np.abs(chord) * np.tan(0.25 * np.abs(np.angle(turn)))
+        row = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
+        last = len(vertices) - 1
+        rough = np.floor(row[np.maximum(todo - 1, 0)]) != np.floor(row[np.minimum(todo + 2, last)])
+        low, high = vertices[todo[rough]], vertices[todo[rough] + 1]
+        inner = low + (high - low) * _FRACTIONS[:, None]
+        curve = self.at(inner.ravel())[0].reshape(inner.shape)
+        off = np.abs(np.imag(np.conj(chord[rough]) * (curve - start[rough]))).max(axis=0)
+        errors[rough] = off / np.maximum(np.abs(chord[rough]), np.finfo(float).tiny)
         return errors
-
-    def _distances(
-        self, vertices: Array, points: Plane, chords: NDArray[np.int64], fraction: float
-    ) -> Array:
-        """Distance of a place on the curve from each chord."""
-        low, high = vertices[chords], vertices[chords + 1]
-        curve = self.at(low + (high - low) * fraction)[0]
-        start, chord = points[chords], points[chords + 1] - points[chords]
-        off = np.imag(np.conj(chord) * (curve - start))
-        return np.abs(off) / np.maximum(np.abs(chord), np.finfo(float).tiny)
 
     def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
         """Return the dense runs between corners.

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -63,13 +64,25 @@ class Expansion:
         """Return the values at the points `x` (beyond the ends the end intervals are continued)."""
         x = np.asarray(x, dtype=float)
         index = np.searchsorted(self.knots[1:-1], x, side="right")
-        low, high = self.knots[index], self.knots[index + 1]
-        t2 = 2.0 * (2.0 * x - low - high) / (high - low)
-        columns = self.coefficients[:, index]
-        b1, b2 = columns[-1], np.zeros_like(t2)
-        for column in columns[-2:0:-1]:
-            b1, b2 = column + t2 * b1 - b2, b1
-        return columns[0] + 0.5 * t2 * b1 - b2
+        center, scale, powers = self._powers
+        t = (x - np.take(center, index)) * np.take(scale, index)
+        columns = np.take(powers, index, axis=1, mode="clip")
+        value = columns[-1]
+        for column in columns[-2::-1]:
+            value *= t
+            value += column
+        return value
+
+    @cached_property
+    def _powers(self) -> tuple[Array, Array, Array]:
+        """Middles and inverse half widths of the intervals, and coefficients of powers.
+
+        At this degree, and with coefficients that fall to rounding, powers lose nothing, and they
+        take half the time.
+        """
+        half = 0.5 * np.diff(self.knots)
+        powers = _powers_of_chebyshev(len(self.coefficients)).T @ self.coefficients
+        return 0.5 * (self.knots[:-1] + self.knots[1:]), 1.0 / half, powers
 
     def antiderivative(self) -> Expansion:
         """Return the integral from the first knot."""
@@ -88,6 +101,15 @@ class Expansion:
     def last(self) -> float:
         """Value at the last knot."""
         return float(self.coefficients[:, -1].sum())
+
+
+@lru_cache
+def _powers_of_chebyshev(count: int) -> Array:
+    """Row k holds the power coefficients of T_k, from ``T_(k+1) = 2*t*T_k - T_(k-1)``."""
+    rows = np.eye(count)
+    for k in range(2, count):
+        rows[k] = 2.0 * np.roll(rows[k - 1], 1) - rows[k - 2]
+    return rows
 
 
 def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: float) -> Expansion:

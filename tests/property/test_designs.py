@@ -1,0 +1,205 @@
+"""Whatever is asked for: two wheels that can be cut and fit each other, or a refusal that helps.
+
+Laws, tooth counts, racks and tolerances at random, far beyond what anybody would draw.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import HealthCheck, Phase, assume, given, settings
+from hypothesis import strategies as st
+
+from gearcam.errors import DesignError, InfeasibleError
+from gearcam.gears.flank import trace
+from gearcam.gears.outline import Outline
+from gearcam.gears.spec import Rack
+from gearcam.jobs import GearPairJob
+from gearcam.laws.constant import Constant
+from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.formula import Formula
+from gearcam.laws.phases import Phases
+from helpers_pairs import Assembly, job
+
+MODULE = 2.0
+"""mm; the size is a matter of scale, which has a test of its own."""
+
+NEAR_RACK = [
+    Rack(),
+    Rack(tip_radius=0.2),
+    Rack(tip_radius=0.0),
+    Rack(addendum=0.8, dedendum=1.0, tip_radius=0.3),
+    Rack(addendum=1.3, dedendum=1.5, tip_radius=0.2),
+    Rack(pressure_angle=math.radians(14.5)),
+    Rack(pressure_angle=math.radians(25), tip_radius=0.25),
+]
+
+Given = tuple[Any, tuple[int, int], Rack, float]
+
+
+def rounded(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers of a few digits, as people type them."""
+    return st.integers(round(low * 1000), round(high * 1000)).map(lambda n: n / 1000)
+
+
+@st.composite
+def tooth_counts(draw: st.DrawFn) -> tuple[int, int]:
+    """Equal counts as often as not, else lobes in small numbers or anything."""
+    z = draw(st.integers(6, 60))
+    kind = draw(st.sampled_from(["equal", "equal", "lobes", "any"]))
+    if kind == "equal":
+        return z, z
+    if kind == "any":
+        return z, draw(st.integers(6, 60))
+    n1, n2 = draw(st.sampled_from([(1, 2), (2, 1), (2, 3), (3, 2), (1, 3), (3, 1)]))
+    each = draw(st.integers(math.ceil(6 / min(n1, n2)), 60 // max(n1, n2)))
+    return n1 * each, n2 * each
+
+
+@st.composite
+def phase_laws(draw: st.DrawFn, teeth: tuple[int, int]) -> Phases:
+    """Two to five phases over a lobe, one ratio left to closure."""
+    period = 2 * math.pi * math.gcd(*teeth) / teeth[0]
+    widths = draw(st.lists(rounded(0.15, 1.0), min_size=2, max_size=5))
+    knots = np.cumsum([0.0, *widths]) / sum(widths) * period
+    swing = draw(st.sampled_from([0.05, 0.2, 0.5]))
+    mean = teeth[0] / teeth[1]
+    ratios: list[Any] = [mean * draw(rounded(1 - swing, 1 + swing)) for _ in widths]
+    ratios.append(ratios[0])
+    ratios[draw(st.integers(1, len(widths) - 1))] = "solve"
+    shape = draw(st.sampled_from(["cosine", "cubic"]))
+    return Phases(shape=shape, knots=(*knots[:-1].tolist(), period), ratios=tuple(ratios))
+
+
+@st.composite
+def formula_laws(draw: st.DrawFn, teeth: tuple[int, int]) -> Formula:
+    """Two harmonics on a mean: of the ratio, of the driver's radius, or of the driven angle."""
+    n1 = teeth[0] // math.gcd(*teeth)
+    a, b = draw(rounded(-0.4, 0.4)), draw(rounded(-0.15, 0.15))
+    shift, more = draw(rounded(0, 6)), draw(st.integers(1, 3))
+    kind = draw(st.sampled_from(["ratio", "r1", "phi2"]))
+    first, second = f"cos({n1}*phi1 + {shift})", f"sin({more * n1}*phi1)"
+    if kind == "phi2":
+        a, b = a / n1 * teeth[0] / teeth[1], b / (more * n1) * teeth[0] / teeth[1]
+        return Formula(phi2=f"phi1*{teeth[0]}/{teeth[1]} + {a}*{first} + {b}*{second}")
+    scale = 0.5 if kind == "r1" else 1.0
+    return Formula(**{kind: f"1 + {scale * a}*{first} + {scale * b}*{second}"})
+
+
+@st.composite
+def designs(draw: st.DrawFn) -> Given:
+    """A law, tooth counts, a rack and a tolerance in modules."""
+    teeth = draw(tooth_counts())
+    kind = draw(st.sampled_from(["phases", "phases", "formula", "formula", "ellipse", "constant"]))
+    law: Any = Constant()
+    if kind == "ellipse":
+        law = Ellipse(eccentricity=draw(rounded(0, 0.8)))
+    elif kind == "phases":
+        law = draw(phase_laws(teeth))
+    elif kind == "formula":
+        law = draw(formula_laws(teeth))
+    rack = draw(st.sampled_from([Rack(), *NEAR_RACK]))
+    return law, teeth, rack, draw(st.sampled_from([1e-4, 1e-3, 1e-2]))
+
+
+def chain_gaps(outline: Outline) -> np.ndarray:
+    """How far each curve of an outline ends from where the next begins, mm."""
+    rows, count = outline.rows, np.arange(len(outline.rows.kind))
+    ends = trace(outline.toothing, rows, count, rows.end)[0]
+    starts = trace(outline.toothing, rows, count, rows.start)[0]
+    return np.abs(ends - np.roll(starts, -1))
+
+
+def demand_outline(outline: Outline) -> None:
+    """An outline is simple, counter-clockwise, of one piece, and keeps its tolerance."""
+    polygon = shapely.Polygon(outline.points)
+    assert polygon.is_valid, shapely.is_valid_reason(polygon)
+    assert polygon.exterior.is_ccw
+    assert chain_gaps(outline).max() <= 1e-8 * MODULE
+    vertices = outline.sampler.chords[0]
+    inner = np.linspace(0.0, 1.0, 14)[1:-1, None]
+    curve = outline.sampler.at((vertices[:-1] + inner * np.diff(vertices)).ravel())[0]
+    first = (outline.points[::-1] if outline.toothing.wheel == 2 else outline.points) @ [1, 1j]
+    chord = np.roll(first, -1) - first
+    off = np.abs(np.imag(np.conj(chord) * (curve.reshape(12, -1) - first)) / np.abs(chord))
+    assert off.max() <= outline.tolerance
+
+
+def explained(made: GearPairJob) -> float:
+    """Overlap that two chord errors explain: a lens of that depth on each of four flank pairs.
+
+    A lens of depth d between flanks of relative curvature k has the area (4/3)*d*sqrt(2*d/k); flanks
+    are no flatter than a circle of the centre distance.
+    """
+    depth = made.gear1.profile.tolerance + made.gear2.profile.tolerance
+    return 4 * (4 / 3) * depth * math.sqrt(2 * depth * made.pair.center_distance)
+
+
+def demand_pair(given: Given) -> GearPairJob | None:
+    """Build a design and demand all that is promised of it; None if it is refused."""
+    law, teeth, rack, tolerance = given
+    try:
+        made = job(law, teeth, module=MODULE, tolerance=tolerance * MODULE, rack=rack)
+        wheels, findings = made.gears, made.findings
+    except DesignError as error:
+        assert error.problems
+        return None
+    except InfeasibleError as error:
+        assert error.what
+        assert error.nearest, f"no way out is named: {error}"
+        return None
+    for gear in wheels:
+        demand_outline(gear.profile)
+    if any(finding.severity == "error" for finding in findings):
+        return None
+    for gear in wheels:
+        assert shapely.Polygon(gear.outline).contains(shapely.Point(0.0, 0.0))
+    assembly = Assembly(made)
+    turns = made.law.lobes.n2 if made.law.lobes.n1 == 1 else 1
+    phases = 2 * math.pi * turns * (np.arange(8) + 0.37) / 8
+    assert max(assembly.overlap(phi) for phi in phases) <= explained(made)
+    return made
+
+
+quick = settings(
+    derandomize=True,
+    database=None,
+    deadline=None,
+    max_examples=25,
+    phases=[Phase.generate, Phase.shrink],
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+)
+
+
+@quick
+@given(designs())
+def test_any_design_can_be_cut_or_is_refused_with_a_reason(design: Given) -> None:
+    demand_pair(design)
+
+
+@pytest.mark.slow
+@settings(quick, max_examples=300)
+@given(designs())
+def test_many_designs_can_be_cut_or_are_refused_with_a_reason(design: Given) -> None:
+    demand_pair(design)
+
+
+@settings(quick, max_examples=15)
+@given(st.integers(17, 60), rounded(0.0, 0.3), st.sampled_from([1e-4, 1e-3]))
+def test_mild_designs_are_never_refused(z: int, swing: float, tolerance: float) -> None:
+    law = Formula(ratio=f"1 + {swing}*cos(phi1)")
+    assume(z * (1 - swing) > 17)
+    made = demand_pair((law, (z, z), Rack(), tolerance))
+    assert made is not None
+    assert all(gear.profile.undercut_teeth == () for gear in made.gears) or swing > 0.0
+
+
+def test_an_overlap_is_seen() -> None:
+    made = job(Ellipse(eccentricity=0.3), (24, 24), module=MODULE, tolerance=2e-4)
+    assembly = Assembly(made)
+    assembly.distance -= 0.01
+    assert max(assembly.overlap(phi) for phi in (0.4, 2.0)) > explained(made)
