@@ -351,3 +351,12 @@ def test_the_template_reads_and_shows_every_key() -> None:
     assert not any(line != line.rstrip() for line in text.splitlines())
     for line in bare:
         tomllib.loads(line.split(" # ")[0])
+
+
+def test_what_a_law_finds_is_told_beside_faults_of_single_values() -> None:
+    text = changed(
+        "knots_deg = [0, 160, 360]\nratios = [1.6, 0.4, 1.6]",
+        "knots_deg = [0, 160, 150, 360]\nratios = [1.6, 0.4, -1, 1.6]\nshap = 1",
+    )
+    keys = {problem.key for problem in problems(text)}
+    assert keys == {"law.knots_deg[2]", "law.ratios[2]", "law.shap"}

@@ -221,7 +221,9 @@ def test_pointed_teeth_end_in_a_point(law: Any, z: int) -> None:
 
 
 def test_some_teeth_are_pointed_and_others_are_not() -> None:
-    made = built(Ellipse(eccentricity=0.5), (41, 41), rack=Rack(addendum=1.45, dedendum=1.7, tip_radius=0.1))
+    made = built(
+        Ellipse(eccentricity=0.5), (41, 41), rack=Rack(addendum=1.45, dedendum=1.7, tip_radius=0.1)
+    )
     thickness = made.gear1.profile.tip_thickness
     assert thickness.min() < 1e-9 < 0.01 < thickness.max()
 
@@ -267,7 +269,9 @@ def errors_of(made: GearPairJob) -> list[str]:
 @pytest.mark.parametrize(("e", "z"), [(0.97, 40), (0.72, 6)])
 def test_a_shaft_outside_its_wheel_is_refused(e: float, z: int) -> None:
     """The near focus lies less than a dedendum inside the centrode: a*(1 - e) < 1.25 m."""
-    made = job(Ellipse(eccentricity=e), (z, z), rack=Rack(addendum=0.8, dedendum=1.0, tip_radius=0.3))
+    made = job(
+        Ellipse(eccentricity=e), (z, z), rack=Rack(addendum=0.8, dedendum=1.0, tip_radius=0.3)
+    )
     assert 0.5 * made.pair.center_distance * (1 - e) < 1.0
     with pytest.raises(InfeasibleError, match="shaft|axis"):
         _ = made.gears

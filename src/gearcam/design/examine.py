@@ -200,12 +200,21 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
     rest = {key: value for key, value in raw.items() if key != "type"}
     faults = list(_law_faults(known, rest))
     found.faults += faults
-    if not faults:
-        law = LAWS[law_type].parameters(**known.inward(rest))
-        problems = list(_own_problems(law, known, rest))
-        found.faults += problems
-        if not problems:
-            found.parts |= {"law_type": law_type, "law": law}
+    # What a law itself finds is said beside the faults of single values, as far as it can be read.
+    if any(len(fault.path) == 2 and fault.path[1] in known.entries for fault in faults):
+        return
+    wrong = {fault.path[1] for fault in faults}
+    readable = {key: value for key, value in rest.items() if key in known.entries}
+    try:
+        law = LAWS[law_type].parameters(**known.inward(readable))
+        problems = [p for p in _own_problems(law, known, rest) if p.path[1] not in wrong]
+    except (TypeError, ValueError, AttributeError, IndexError, KeyError):
+        if not faults:
+            raise
+        return
+    found.faults += problems
+    if not faults and not problems:
+        found.parts |= {"law_type": law_type, "law": law}
 
 
 def _law_faults(known: Table, raw: Mapping[str, Any]) -> Iterator[Fault]:
