@@ -362,11 +362,11 @@ def test_timing_marks_face_each_other_at_zero(bores: tuple[float, float] | None)
     assert (len(one), len(two)) == (1, 1)
     distance = made.pair.center_distance
     pitch = abs(made.pair.rolling.frames(1, np.zeros(1)).p[0])
-    first, second = one[0].center, two[0].center + [distance, 0.0]
+    first, second = one[0].center, two[0].center + np.array([distance, 0.0])
     assert (first[1], second[1]) == (0.0, pytest.approx(0.0, abs=1e-14))
     assert 0.0 < first[0] < pitch < second[0] < distance
     for part, mark, bore in zip(made.parts, (one[0], two[0]), bores or (0.0, 0.0), strict=True):
-        assert 0.0 < mark.diameter
+        assert mark.diameter > 0.0
         assert np.hypot(*mark.center) - 0.5 * mark.diameter > 0.5 * bore
         assert part.contour.polygon.contains(part.contour.polygon.__class__(_ring(mark)))
     if bores is None:

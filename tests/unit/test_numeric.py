@@ -95,7 +95,7 @@ def test_a_pole_is_found_where_it_is() -> None:
 
 def test_a_corner_at_a_break_is_allowed() -> None:
     made = expand(lambda x: np.abs(x - 0.3), [0.0, 0.3, 1.0], 1e-15)
-    assert len(made.knots) <= 4
+    assert 0.3 in made.knots
     assert made.antiderivative().last == pytest.approx(0.5 * (0.3**2 + 0.7**2), rel=1e-15)
 
 

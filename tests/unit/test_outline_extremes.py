@@ -26,6 +26,12 @@ SLOWEST = 5.0
 """Seconds; the machine that this was written on takes a tenth of it."""
 
 
+LARGEST_TIP = (math.pi / 4 - 1.25 * math.tan(math.radians(20))) / (
+    1 / math.cos(math.radians(20)) - math.tan(math.radians(20))
+)
+"""Tip radius that leaves the common rack no land at all, modules."""
+
+
 def degrees(*angles: float) -> tuple[float, ...]:
     """Angles in rad."""
     return tuple(math.radians(angle) for angle in angles)
@@ -44,12 +50,17 @@ def built_or_refused(law: Any, teeth: tuple[int, int], **given: Any) -> GearPair
     start = time.perf_counter()
     made = job(law, teeth, **given)
     try:
-        profiles = [gear.profile for gear in made.gears]
+        _ = made.gears
     except InfeasibleError as error:
-        assert error.value is not None
-        assert error.limit is not None
-        assert error.nearest
+        refused = error
+    else:
+        refused = None
+    if refused is not None:
+        assert refused.value is not None
+        assert refused.limit is not None
+        assert refused.nearest
         return None
+    profiles = [gear.profile for gear in made.gears]
     for profile in profiles:
         ring = shapely.LinearRing(profile.points)
         assert ring.is_simple
@@ -94,7 +105,7 @@ def test_hardly_any_teeth(z: int, law: Any) -> None:
 
 
 @pytest.mark.parametrize("teeth", [(3, 9), (9, 3), (3, 100), (7, 5), (17, 60), (3, 4)])
-def test_unequal_wheels(teeth: tuple[int, int]) -> None:
+def test_circles_of_unequal_size(teeth: tuple[int, int]) -> None:
     made = built(Constant(), teeth)
     ratio = made.gear1.convex_radius / made.gear2.convex_radius
     assert ratio == pytest.approx(teeth[0] / teeth[1], rel=1e-12)
@@ -107,8 +118,8 @@ def test_lobes_of_one_tooth() -> None:
 
 @pytest.mark.parametrize("z", [20, 80, 320])
 def test_a_phase_of_one_degree(z: int) -> None:
-    knots, ratios = degrees(0, 120, 121, 240, 360), (1.0, 1.0002, 0.9998, "solve", 1.0)
-    built(Phases(knots=knots, ratios=ratios), (z, z))
+    knots = degrees(0, 120, 121, 240, 360)
+    built(Phases(knots=knots, ratios=(1.0, 1.0002, 0.9998, "solve", 1.0)), (z, z))
     steep = Phases(knots=knots, ratios=(1.0, 1.05, 0.95, "solve", 1.0))
     assert built_or_refused(steep, (z, z)) is None
 
@@ -117,7 +128,6 @@ def test_a_phase_of_one_degree(z: int) -> None:
 @pytest.mark.parametrize("z", [40, 400])
 def test_a_ratio_that_swings_thirtyfold(shape: str, z: int) -> None:
     law = Phases(shape=shape, knots=degrees(0, 180, 360), ratios=(60 / 31, "solve", 60 / 31))
-    assert law.build.__self__ is law
     built_or_refused(law, (z, z))
 
 
@@ -168,7 +178,7 @@ RACKS = {
     "deep": Rack(dedendum=2.0, tip_radius=0.0),
     "shallow": Rack(addendum=0.4, dedendum=0.5, tip_radius=0.1),
     "hardly rounded": Rack(tip_radius=1e-6),
-    "fully rounded": Rack(tip_radius=0.4719),
+    "fully rounded": Rack(tip_radius=LARGEST_TIP),
     "centre of the tip on the pitch line": Rack(addendum=0.3, dedendum=0.38, tip_radius=0.38),
     "centre near the pitch line": Rack(addendum=0.3, dedendum=0.381, tip_radius=0.38),
     "14.5 degrees": Rack(pressure_angle=math.radians(14.5)),
@@ -213,17 +223,16 @@ def test_a_rack_that_cannot_be_made_is_refused_with_its_limit(
 @pytest.mark.parametrize("law", [Constant(), Ellipse(eccentricity=0.3)])
 @pytest.mark.parametrize("z", [20, 41])
 def test_pointed_teeth_end_in_a_point(law: Any, z: int) -> None:
-    made = built(law, (z, z), rack=Rack(addendum=1.6, dedendum=1.8, tip_radius=0.1))
+    made = built(law, (z, z), rack=Rack(addendum=1.75, dedendum=2.0, tip_radius=0.08))
     for gear in made.gears:
         assert gear.profile.tip_thickness.max() < 1e-9
-        assert gear.profile.flanks.tips.height.max() < 1.6 * made.pair.module
+        assert gear.profile.flanks.tips.height.max() < 1.75 * made.pair.module
     assert {finding.code for finding in made.findings} >= {"thin-tip"}
 
 
 def test_some_teeth_are_pointed_and_others_are_not() -> None:
-    made = built(
-        Ellipse(eccentricity=0.5), (41, 41), rack=Rack(addendum=1.45, dedendum=1.7, tip_radius=0.1)
-    )
+    rack = Rack(addendum=1.75, dedendum=2.0, tip_radius=0.08)
+    made = built(Ellipse(eccentricity=0.5), (41, 41), rack=rack)
     thickness = made.gear1.profile.tip_thickness
     assert thickness.min() < 1e-9 < 0.01 < thickness.max()
 
@@ -237,6 +246,9 @@ LOOPS = [
     *[(Ellipse(eccentricity=0.4), z, Rack()) for z in (9, 13, 14, 17)],
     *[(Ellipse(eccentricity=0.6), z, Rack()) for z in (8, 9, 12, 21)],
     (Ellipse(eccentricity=0.2), 17, Rack()),
+    # Without a land two fillets touch where they meet, and that is no crossing.
+    *[(Constant(), z, Rack(tip_radius=LARGEST_TIP)) for z in (8, 12, 16)],
+    (Ellipse(eccentricity=0.4), 17, Rack(tip_radius=LARGEST_TIP)),
 ]
 
 
@@ -273,7 +285,7 @@ def test_a_shaft_outside_its_wheel_is_refused(e: float, z: int) -> None:
         Ellipse(eccentricity=e), (z, z), rack=Rack(addendum=0.8, dedendum=1.0, tip_radius=0.3)
     )
     assert 0.5 * made.pair.center_distance * (1 - e) < 1.0
-    with pytest.raises(InfeasibleError, match="shaft|axis"):
+    with pytest.raises(InfeasibleError, match=r"shaft|axis"):
         _ = made.gears
 
 
@@ -306,7 +318,8 @@ def test_the_largest_module_is_free_of_undercut_under_a_pinion_cutter_too() -> N
 @pytest.mark.parametrize("center", [1.0, 1.8, 3.6])
 def test_a_narrow_bump_of_the_ratio_is_not_lost(center: float) -> None:
     """A bump of 1 % over half a degree: sqrt(2*pi/5000)*0.01 rad = 0.35e-3 of the driven angle."""
-    law = job(Formula(ratio=f"1 + 0.01*exp(-20000*sin((phi1 - {center})/2)**2)"), (300, 300)).law
+    bump = f"exp(-20000*sin((phi1 - {center})/2)**2)"
+    law = job(Formula(ratio=f"1 + 0.01*{bump}"), (300, 300)).law
     x = np.linspace(0.0, 2 * math.pi, 200001)
     assert np.trapezoid(law.ratio(x), x) == pytest.approx(2 * math.pi, abs=1e-9)
 

@@ -48,7 +48,8 @@ def largest_module(gear: Gear) -> float:
         For the same centre distance and other tooth counts.
     """
     cutter, module = gear.toothing.cutter, gear.pair.module
-    depth = round(-cutter.joint_height / module, 4)
+    # As a rack, also under a pinion: at a smaller module the pinion comes closer to it.
+    depth = round((cutter.depth + cutter.tip_radius * math.sin(cutter.alpha)) / module, 4)
     return gear.convex_radius * math.sin(cutter.alpha) ** 2 / depth
 
 

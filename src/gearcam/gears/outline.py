@@ -155,7 +155,7 @@ def build_outline(
     Raises
     ------
     InfeasibleError
-        If a tooth is cut away.
+        If a tooth is cut away, or the teeth reach past the shaft.
     """
     flanks = _find_flanks(toothing, mate_reach)
     rows = regular_rows(toothing, flanks.tips)
@@ -169,6 +169,7 @@ def build_outline(
         oversampling=tolerances.oversampling,
     )
     _demand_simple(outline)
+    _demand_shaft(outline)
     return outline
 
 
@@ -259,21 +260,40 @@ def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossin
 
 def _demand_simple(outline: Outline) -> None:
     """Refuse an outline that crosses itself: a tooth has been cut away."""
-    from shapely import LinearRing, is_valid_reason
+    from shapely import LinearRing, Polygon, is_valid_reason
 
-    ring = LinearRing(outline.points)
-    if ring.is_simple and not np.any(np.all(np.diff(outline.points, axis=0) == 0.0, axis=1)):
+    repeats = np.any(np.all(np.diff(outline.points, axis=0) == 0.0, axis=1))
+    if LinearRing(outline.points).is_simple and not repeats:
         return
-    cutter = outline.toothing.cutter
-    kappa = float(outline.toothing.rolling.curvature_extremes(outline.toothing.wheel)[1].max())
-    largest = np.sin(cutter.alpha) ** 2 / kappa
-    from shapely import Polygon
-
+    toothing = outline.toothing
+    kappa = float(toothing.rolling.curvature_extremes(toothing.wheel)[1].max())
+    largest = np.sin(toothing.cutter.alpha) ** 2 / kappa
     raise InfeasibleError(
-        f"wheel {outline.toothing.wheel} is not one piece: undercut cuts a tooth away",
+        f"wheel {toothing.wheel} is not one piece: undercut cuts a tooth away",
         where=is_valid_reason(Polygon(outline.points)),
-        value=outline.toothing.pitch / np.pi,
+        value=toothing.pitch / np.pi,
         limit=largest,
         unit="mm",
         nearest=f"up to a module of {largest:.6g} mm nothing is undercut; take more teeth",
+    )
+
+
+def _demand_shaft(outline: Outline) -> None:
+    """Refuse a wheel whose root passes its own shaft."""
+    x, y = outline.points.T
+    angles = np.unwrap(np.arctan2(y, x))
+    if angles[-1] - angles[0] > np.pi:
+        return
+    toothing = outline.toothing
+    turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+    radius = float(np.abs(toothing.frames(np.linspace(0.0, turn, 1441)).p).min())
+    module = toothing.pitch / np.pi
+    largest = module * radius / toothing.cutter.dedendum
+    raise InfeasibleError(
+        f"the teeth of wheel {toothing.wheel} reach past its own shaft",
+        where=f"the centrode comes within {radius:.6g} mm of the axis",
+        value=module,
+        limit=largest,
+        unit="mm",
+        nearest=f"a module below {largest:.6g} mm (more teeth), or a smaller swing of the ratio",
     )

@@ -28,6 +28,10 @@ Array = NDArray[np.float64]
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: finer ones would be lost in rounding."""
 
+_TIP_PART = 0.95
+"""Largest tip radius over the dedendum: with its centre on the pitch line a tip arc would cut the
+whole fillet at one instant."""
+
 COARSEST = 1.0 / 50.0
 """Coarsest tolerance of an outline, in modules: beyond it teeth are no longer teeth."""
 
@@ -239,7 +243,7 @@ def lobes_of(teeth: tuple[int, int]) -> Lobes:
 
 
 def demand_rack(rack: Rack) -> None:
-    """Refuse a rack whose tooth tip has no land or whose rounding is deeper than the tooth.
+    """Refuse a rack without clearance, or whose tooth tip has no land.
 
     Parameters
     ----------
@@ -252,10 +256,18 @@ def demand_rack(rack: Rack) -> None:
         Naming the largest tip radius.
     """
     alpha, depth = rack.pressure_angle, rack.dedendum
+    if depth < rack.addendum:
+        raise InfeasibleError(
+            "the dedendum is less than the addendum: teeth would run into the mate's root",
+            where="rack.dedendum",
+            value=depth,
+            limit=rack.addendum,
+            nearest=f"at least {rack.addendum:.6g}, better {1.25 * rack.addendum:.6g}",
+        )
     half_space = 0.25 * math.pi
     # rho/cos(alpha) + (hf - rho)*tan(alpha) <= pi/4
     largest = (half_space - depth * math.tan(alpha)) / (1.0 / math.cos(alpha) - math.tan(alpha))
-    largest = min(largest, depth)
+    largest = min(largest, _TIP_PART * depth)
     if largest < 0.0:
         raise InfeasibleError(
             "the rack's tooth is pointed before it is as deep as the dedendum",

@@ -33,7 +33,7 @@ _FILL = 0.97
 _FEW = 0.03
 """Share of chords that may be halved; with more of them the vertices are spread anew."""
 
-_ROUNDS = 6
+_ROUNDS = 12
 """Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
 
 

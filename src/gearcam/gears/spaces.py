@@ -23,10 +23,13 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 ROWS_PER_TOOTH = 6
+_TOUCH = 1e-9
+"""Length of a loop over the length of its space below which it is none."""
+
 _SAMPLES = 49
 _CELLS = 16
 _LEVELS = 8
-"""Each level narrows a crossing 16 times; eight reach 1e-12 rad from any start."""
+"""Each level narrows a crossing 8 times and interpolates in it; eight reach rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -287,7 +290,9 @@ def _crossing_segments(points: Plane, others: Plane) -> tuple[Index, Index]:
 def _walk(points: Plane) -> list[tuple[int, int]]:
     """Walk a polyline from its start and leave it at each crossing for its later branch."""
     i, j = _crossing_segments(points, points)
-    later = j > i + 1
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
+    # Where a land has no length its neighbours touch, and that is no loop.
+    later = (j > i + 1) & (along[j] - along[np.minimum(i + 1, j)] > _TOUCH * along[-1])
     i, j = i[later], j[later]
     result, position = [], -1
     while (i > position).any():
@@ -304,24 +309,51 @@ def _refine(
     one: tuple[Index, Array, Array],
     other: tuple[Index, Array, Array],
 ) -> list[Crossing]:
-    """Narrow crossings on the true curves, bracketed at every level: (row, low, high) of both."""
-    count = len(one[0])
+    """Narrow crossings on the true curves: (row, low, high) of both.
+
+    The cell in which the chords cross is kept with its neighbours, since the curves may cross just
+    beside it; where they do not cross at all inside, the brackets are widened again.
+    """
     row = np.stack([one[0], other[0]])
     low, high = np.stack([one[1], other[1]]), np.stack([one[2], other[2]])
+    ends = np.sort(np.stack([rows.start[row], rows.end[row]]), axis=0)
+    middle = 0.5 * (low + high)
     for _ in range(_LEVELS):
-        grid = low[..., None] + (high - low)[..., None] * np.linspace(0.0, 1.0, _CELLS + 1)
+        step = (high - low) / _CELLS
+        grid = np.clip(
+            low[..., None] + step[..., None] * np.arange(-1, _CELLS + 2),
+            ends[0][..., None],
+            ends[1][..., None],
+        )
         index = np.broadcast_to(row[..., None], grid.shape)
         a, b = trace(toothing, rows, index.ravel(), grid.ravel())[0].reshape(grid.shape)
         a, b = a[:, :, None], b[:, None, :]
-        hit = _cross(a[:, :-1], a[:, 1:], b[:, :, :-1], b[:, :, 1:]).reshape(count, -1)
-        cell = np.stack(np.divmod(hit.argmax(axis=1), _CELLS))[..., None]
-        found = hit.any(axis=1)
-        low = np.where(found, np.take_along_axis(grid, cell, axis=2)[..., 0], low)
-        high = np.where(found, np.take_along_axis(grid, cell + 1, axis=2)[..., 0], high)
-        if not found.any():
-            break
-    middle = 0.5 * (low + high)
+        hit = _cross(a[:, :-1], a[:, 1:], b[:, :, :-1], b[:, :, 1:])
+        hit &= (a[:, :-1] != a[:, 1:]) & (b[:, :, :-1] != b[:, :, 1:])
+        found = hit.any(axis=(1, 2))
+        first = hit.reshape(len(hit), -1).argmax(axis=1)
+        cell = np.stack(np.divmod(first, grid.shape[2] - 1))
+        near = np.take_along_axis(grid, cell[..., None], axis=2)[..., 0]
+        far = np.take_along_axis(grid, cell[..., None] + 1, axis=2)[..., 0]
+        corners = [
+            np.take_along_axis(curve.reshape(len(hit), -1), (c + k)[:, None], axis=1)[:, 0]
+            for curve, c in ((a, cell[0]), (b, cell[1]))
+            for k in (0, 1)
+        ]
+        share = np.clip(np.stack(_chord_crossing(*corners)), 0.0, 1.0)
+        middle = np.where(found, near + share * (far - near), middle)
+        low = np.where(found, near - 0.5 * step, low - 4.0 * step)
+        high = np.where(found, far + 0.5 * step, high + 4.0 * step)
     return [
         Crossing(before=int(r[0]), leaves=float(m[0]), after=int(r[1]), enters=float(m[1]))
         for r, m in zip(row.T, middle.T, strict=True)
     ]
+
+
+def _chord_crossing(a: Plane, b: Plane, c: Plane, d: Plane) -> tuple[Array, Array]:
+    """Where the lines a-b and c-d cross, as shares of both."""
+    area = np.imag(np.conj(b - a) * (d - c))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first = np.imag(np.conj(c - a) * (d - c)) / area
+        second = np.imag(np.conj(c - a) * (b - a)) / area
+    return np.nan_to_num(first, nan=0.5), np.nan_to_num(second, nan=0.5)

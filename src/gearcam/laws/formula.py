@@ -56,6 +56,7 @@ class Formula:
         name = "ratio" if self.ratio is not None else "r1"
         function = _compile(getattr(self, name) or "1")
         _demand_positive(function, name, lobes)
+        _demand_repeats(function, name, lobes)
         solve = _from_ratio if self.ratio is not None else _from_driver
         try:
             return solve(function, lobes, tolerances)
@@ -82,6 +83,25 @@ def _demand_positive(function: Callable[[Jet], Jet], name: str, lobes: Lobes) ->
         if bad.any():
             raise InfeasibleError(
                 f"{name} {state}", where=angle_text(x[bad][0]), limit=0.0, unit=""
+            )
+
+
+def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Lobes) -> None:
+    """Refuse a formula that is not the same in every lobe of the driver."""
+    x = np.linspace(0.0, lobes.period, 257)
+    first = function(Jet.variable(x, 0)).derivatives()[0]
+    for lobe in range(1, lobes.n1):
+        other = function(Jet.variable(x + lobe * lobes.period, 0)).derivatives()[0]
+        bad = ~(np.abs(other - first) <= 1e-9 * np.abs(first).max())
+        if bad.any():
+            place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
+            raise InfeasibleError(
+                f"{name} is not periodic: it must repeat every {math.degrees(lobes.period):.6g} deg "
+                "for these tooth counts",
+                where=angle_text(place + lobe * lobes.period),
+                value=wrong,
+                limit=right,
+                nearest=f"the limit is its value one lobe before; use functions of {lobes.n1}*phi1",
             )
 
 
@@ -148,8 +168,12 @@ def _from_driver(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Toleranc
     def excess(c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         center = float(c)
         tolerance = tolerances.expansion
-        driven = expand(lambda t: radius(t) / (center - radius(t)), ends, tolerance)
-        slope = expand(lambda t: radius(t) / (center - radius(t)) ** 2, ends, tolerance)
+        try:
+            driven = expand(lambda t: radius(t) / (center - radius(t)), ends, tolerance)
+            slope = expand(lambda t: radius(t) / (center - radius(t)) ** 2, ends, tolerance)
+        except NotSmoothError:
+            # Too close to the largest radius: the driven angle is lost in its peak, but large.
+            return np.asarray(-np.inf), np.asarray(np.inf)
         miss = lobes.advance - driven.antiderivative().last
         return np.asarray(miss), np.asarray(slope.antiderivative().last)
 
