@@ -54,7 +54,7 @@ def concave(limit: float) -> GearPairJob:
 
 
 def tips(addendum: float) -> GearPairJob:
-    return job(Constant(), (12, 60), rack=Rack(addendum=addendum))
+    return job(Constant(), (12, 60), rack=Rack(addendum=addendum, dedendum=2.0, tip_radius=0.08))
 
 
 def rim(extra: float) -> GearPairJob:
@@ -143,7 +143,7 @@ def test_thin_and_pointed_tips() -> None:
     assert "thin-tip" in codes(tips(low + 1e-6))
     assert "thin-tip" not in codes(tips(low - 1e-6))
     assert "thin" in codes(tips(low + 1e-6))["thin-tip"].message
-    pointed = tips(2.0)
+    pointed = tips(1.95)
     assert codes(pointed)["thin-tip"].value == pytest.approx(0.0, abs=1e-9)
     assert "pointed" in codes(pointed)["thin-tip"].message
 

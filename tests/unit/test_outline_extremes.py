@@ -328,3 +328,12 @@ def test_a_formula_must_repeat_with_every_lobe_not_only_meet_at_its_ends() -> No
     """sin(phi1)^3 is zero and flat at 0 and 180 degrees, but not the same in both halves."""
     with pytest.raises(InfeasibleError, match="periodic"):
         _ = job(Formula(ratio="1 + 0.3*sin(phi1)**3"), (40, 20)).law
+
+
+def test_a_flank_may_cross_itself_and_then_its_fillet() -> None:
+    """The curvature jumps at the knot at 0: the flank of tooth 14 has a small loop of its own."""
+    law = Phases(knots=(0.0, 4.4265040489080185, 2 * math.pi), ratios=(1.404, "solve", 1.404))
+    rack = Rack(addendum=1.3, dedendum=1.5, tip_radius=0.2)
+    made = built(law, (14, 14), rack=rack)
+    flanks = made.gear1.profile.flanks
+    assert -np.inf < flanks.cusps.dedendum[13] < flanks.lowest[13]

@@ -255,7 +255,9 @@ def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossin
             if rows.kind[number] == Kind.FLANK:
                 sf, sigma = rows.sf[number], rows.sigma[number]
                 flank = int(rows.tooth[number]) - 1 + (0 if sigma > 0 else z)
-                lowest[flank] = sigma * (sf - float(toothing.rolling.arc_length(phi)))
+                reach = sigma * (sf - float(toothing.rolling.arc_length(phi)))
+                # A flank that crosses itself counts down to its first loop only.
+                lowest[flank] = max(lowest[flank], reach)
 
 
 def _demand_simple(outline: Outline) -> None:
@@ -269,12 +271,13 @@ def _demand_simple(outline: Outline) -> None:
     kappa = float(toothing.rolling.curvature_extremes(toothing.wheel)[1].max())
     largest = np.sin(toothing.cutter.alpha) ** 2 / kappa
     raise InfeasibleError(
-        f"wheel {toothing.wheel} is not one piece: undercut cuts a tooth away",
+        f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
         where=is_valid_reason(Polygon(outline.points)),
         value=toothing.pitch / np.pi,
         limit=largest,
         unit="mm",
-        nearest=f"up to a module of {largest:.6g} mm nothing is undercut; take more teeth",
+        nearest="this is the module, and the largest that is certainly free of undercut; take more "
+        "teeth, a smaller rack.dedendum or a larger rack.tip_radius",
     )
 
 

@@ -24,11 +24,17 @@ Array = NDArray[np.float64]
 _PROBES = 24
 """Intervals per row on which the density of points is found."""
 
-_FRACTIONS = np.array([0.25, 0.5, 0.75])
+_FRACTIONS = np.arange(1, 8) / 8.0
 """Places inside a chord at which its error is measured."""
 
-_FILL = 0.97
+_FILL = 0.96
 """Share of the tolerance's chord that is used: the density is known to a few percent only."""
+
+_UNEVEN = 0.08
+"""Difference of a chord's angles with the curve at its ends above which its error is measured."""
+
+_MARGIN = 0.98
+"""Share of the tolerance that a measured error may take: between its places it may be larger."""
 
 _FEW = 0.03
 """Share of chords that may be halved; with more of them the vertices are spread anew."""
@@ -99,7 +105,7 @@ class Sampler:
         ends = self._ends(vertices)
         errors = self._errors(vertices, ends, np.arange(len(vertices) - 1))
         for _ in range(_ROUNDS):
-            if np.mean(errors > self.tolerance) <= _FEW:
+            if np.mean(errors > _MARGIN * self.tolerance) <= _FEW:
                 break
             # The error that a chord has, not the one that its J promised, says how long it may be.
             effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + 1e-9)])
@@ -108,7 +114,7 @@ class Sampler:
             ends = self._ends(vertices)
             errors = self._errors(vertices, ends, np.arange(len(vertices) - 1))
         for _ in range(_ROUNDS):
-            bad = np.flatnonzero(errors > self.tolerance)
+            bad = np.flatnonzero(errors > _MARGIN * self.tolerance)
             if bad.size == 0:
                 break
             middle = 0.5 * (vertices[bad] + vertices[bad + 1])
@@ -137,22 +143,37 @@ class Sampler:
     def _errors(self, vertices: Array, ends: Plane, todo: NDArray[np.int64]) -> Array:
         """Distance of the curve from chords.
 
-        Well inside a row it follows from the tangents at the chord's ends, ``(l/2)*tan(turn/4)``,
-        which is exact for an arc; near the ends of rows, where the curvature jumps or grows without
-        bound, it is measured at three places.
+        Where the curvature hardly changes it follows from the cubic with the end tangents.
+        Elsewhere, at the ends of rows and across knots of the law, it is measured.
         """
-        start, turn = ends[0, todo], ends[1, todo + 1] * np.conj(ends[1, todo])
-        chord = ends[0, todo + 1] - start
-        errors = 0.5 * np.abs(chord) * np.tan(0.25 * np.abs(np.angle(turn)))
-        row = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
-        last = len(vertices) - 1
-        rough = np.floor(row[np.maximum(todo - 1, 0)]) != np.floor(row[np.minimum(todo + 2, last)])
+        start, chord = ends[0, todo], ends[0, todo + 1] - ends[0, todo]
+        rise = np.tan(np.angle(chord * np.conj(ends[1, todo])))
+        fall = np.tan(np.angle(ends[1, todo + 1] * np.conj(chord)))
+        x = _FRACTIONS[:, None]
+        cubic = np.abs(rise * x * (1.0 - x) ** 2 + fall * x * x * (1.0 - x)).max(axis=0)
+        errors = np.abs(chord) * cubic
+        # Where the curvature changes much along a chord, the cubic is not good enough either.
+        uneven = np.abs(rise - fall) > _UNEVEN * np.maximum(np.abs(rise), np.abs(fall))
+        rough = uneven | self._rough(vertices, todo)
         low, high = vertices[todo[rough]], vertices[todo[rough] + 1]
         inner = low + (high - low) * _FRACTIONS[:, None]
         curve = self.at(inner.ravel())[0].reshape(inner.shape)
         off = np.abs(np.imag(np.conj(chord[rough]) * (curve - start[rough]))).max(axis=0)
         errors[rough] = off / np.maximum(np.abs(chord[rough]), np.finfo(float).tiny)
         return errors
+
+    def _rough(self, vertices: Array, chords: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Whether chords are next to the end of a row, or hold a knot of the law."""
+        place = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
+        around = np.floor(place[np.maximum(chords - 1, 0)])
+        last = len(vertices) - 1
+        rough = around != np.floor(place[np.minimum(chords + 2, last)])
+        index = np.minimum(place.astype(np.int64), len(self.rows.kind) - 1)
+        law = self.toothing.rolling.law
+        turns = self._angles(index, place - index) / law.lobes.period
+        piece = np.searchsorted(law.knots[1:], (turns % 1.0) * law.lobes.period, side="right")
+        piece = piece + np.floor(turns) * len(law.knots)
+        return rough | (piece[chords] != piece[chords + 1])
 
     def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
         """Return the dense runs between corners.

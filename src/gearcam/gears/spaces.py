@@ -156,13 +156,14 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, 
     """
     phi, index = _sample(rows, spaces)
     points, _ = trace(toothing, rows, index.ravel(), phi.ravel())
-    found: list[tuple[int, int, int]] = []
+    found: list[tuple[int, float, float]] = []
     for number, chain in enumerate(points.reshape(phi.shape)):
         found += [(number, before, after) for before, after in _walk(chain)]
     crossings: list[list[Crossing]] = [[] for _ in spaces]
     if found:
-        number, before, after = np.array(found).T
-        ends = [_segment(rows, index[number], phi[number], k) for k in (before, after)]
+        number, *places = np.array(found).T
+        number = number.astype(np.int64)
+        ends = [_bracket(rows, index[number], phi[number], place) for place in places]
         refined = _refine(toothing, rows, *ends)
         for k, crossing in zip(number, refined, strict=True):
             crossings[k].append(crossing)
@@ -220,7 +221,7 @@ def meet(toothing: Toothing, rows: Rows, one: int, other: int) -> Crossing | Non
     if i.size == 0:
         return None
     ends = [
-        _segment(rows, index[None], phi[None], np.array([k]))
+        _bracket(rows, index[None], phi[None], np.array([k + 0.5]))
         for k in (int(i[0]), int(j[0]) + len(t))
     ]
     return _refine(toothing, rows, *ends)[0]
@@ -254,12 +255,15 @@ def _sample(rows: Rows, spaces: Index) -> tuple[Array, Index]:
     return rows.start[index] + (rows.end - rows.start)[index] * np.concatenate(grading), index
 
 
-def _segment(rows: Rows, index: Index, phi: Array, segment: Index) -> tuple[Index, Array, Array]:
-    """Row and driver angles at the ends of sample segments (one a line of samples)."""
-    line = np.arange(len(segment))
+def _bracket(rows: Rows, index: Index, phi: Array, place: Array) -> tuple[Index, Array, Array]:
+    """Row, and driver angles around places on sampled chains (one a line of samples)."""
+    line, segment = np.arange(len(place)), np.floor(place).astype(np.int64)
+    segment = np.minimum(segment, phi.shape[1] - 2)
     row = index[line, segment + 1]
-    same = index[line, segment] == row
-    return row, np.where(same, phi[line, segment], rows.start[row]), phi[line, segment + 1]
+    low = np.where(index[line, segment] == row, phi[line, segment], rows.start[row])
+    step = phi[line, segment + 1] - low
+    middle = low + (place - segment) * step
+    return row, middle - 0.25 * step, middle + 0.25 * step
 
 
 def _side(p: Plane, q: Plane, x: Plane) -> Array:
@@ -287,19 +291,24 @@ def _crossing_segments(points: Plane, others: Plane) -> tuple[Index, Index]:
     return i[hit], j[hit]
 
 
-def _walk(points: Plane) -> list[tuple[int, int]]:
-    """Walk a polyline from its start and leave it at each crossing for its later branch."""
+def _walk(points: Plane) -> list[tuple[float, float]]:
+    """Walk a polyline from its start and leave it at each crossing for its later branch.
+
+    Returns the places of leaving and entering: segment number and share of it.
+    """
     i, j = _crossing_segments(points, points)
+    first, second = _chord_crossing(points[i], points[i + 1], points[j], points[j + 1])
+    leaves, enters = i + np.clip(first, 0.0, 1.0), j + np.clip(second, 0.0, 1.0)
     along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
     # Where a land has no length its neighbours touch, and that is no loop.
     later = (j > i + 1) & (along[j] - along[np.minimum(i + 1, j)] > _TOUCH * along[-1])
-    i, j = i[later], j[later]
-    result, position = [], -1
-    while (i > position).any():
-        start = int(i[i > position].min())
-        end = int(j[i == start].max())
-        result.append((start, end))
-        position = end
+    leaves, enters = leaves[later], enters[later]
+    result, position = [], -1.0
+    while (leaves > position).any():
+        ahead = np.flatnonzero(leaves > position)
+        next_one = ahead[leaves[ahead].argmin()]
+        result.append((float(leaves[next_one]), float(enters[next_one])))
+        position = enters[next_one]
     return result
 
 

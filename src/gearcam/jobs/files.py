@@ -42,17 +42,17 @@ def _tables(job: GearPairJob) -> dict[str, bytes]:
 
     phi1 = job.centrode_angles()
     rolling = job.pair.rolling
-    (ratio,) = job.law.derivatives(phi1, 0)
+    (ratio,), phi2 = job.law.derivatives(phi1, 0), job.law.phi2(phi1)
     one, two = rolling.frames(1, phi1), rolling.frames(2, phi1)
     with np.errstate(divide="ignore"):
         rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa
     centrodes = {
         "phi1_deg": np.degrees(phi1),
-        "phi2_deg": np.degrees(job.law.phi2(phi1)),
+        "phi2_deg": np.degrees(phi2 - phi2[0]),
         "ratio": ratio,
         "r1_mm": np.abs(one.p),
         "r2_mm": np.abs(two.p),
-        "s_mm": one.s,
+        "s_mm": one.s - one.s[0],
         "rho1_mm": rho1,
         "rho2_mm": rho2,
     }

@@ -96,8 +96,8 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Lobes) -> 
         if bad.any():
             place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
             raise InfeasibleError(
-                f"{name} is not periodic: it must repeat every {math.degrees(lobes.period):.6g} deg "
-                "for these tooth counts",
+                f"{name} is not periodic: it must repeat every "
+                f"{math.degrees(lobes.period):.6g} deg for these tooth counts",
                 where=angle_text(place + lobe * lobes.period),
                 value=wrong,
                 limit=right,

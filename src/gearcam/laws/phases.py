@@ -80,7 +80,7 @@ class Phases:
             yield "ratios", len(self.ratios) - 1, "the last ratio is not the first", f"{given!r}"
         if sum(value == "solve" for value in self.ratios[:-1]) > 1:
             second = [k for k, value in enumerate(self.ratios) if value == "solve"][1]
-            yield "ratios", second, 'more than one "solve"', 'one "solve"'
+            yield "ratios", second, 'more than one "solve"', 'one "solve"; one lobe is enough'
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

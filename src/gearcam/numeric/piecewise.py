@@ -157,7 +157,8 @@ def extremes(
     knots : (n + 1,) array
         Between them the functions are smooth.
     samples : int
-        Points per interval on which sign changes of the slopes are sought.
+        Points in all, at least a quarter of them on every interval, between which sign changes of
+        the slopes are sought.
 
     Returns
     -------
@@ -166,7 +167,7 @@ def extremes(
     """
     grid = np.asarray(knots, dtype=float)
     width = np.diff(grid)
-    steps = np.linspace(1e-12, 1.0 - 1e-12, samples)
+    steps = np.linspace(1e-12, 1.0 - 1e-12, max(samples // len(width), samples // 4))
     x = grid[:-1, None] + width[:, None] * steps
     _, slopes = function(x.ravel())
     slopes = slopes.reshape(-1, *x.shape)
