@@ -69,9 +69,12 @@ class Toothing:
         first = 0.0 if self.wheel == 1 else 0.5
         return self.pitch * np.arange(first, first + self.teeth)
 
-    def frames(self, phi: Array) -> Frames:
-        """Return the frames of this wheel's centrode at driver angles, rad."""
-        return self.rolling.frames(self.wheel, phi)
+    def frames(self, phi: Array, *, curved: bool = True) -> Frames:
+        """Return the frames of this wheel's centrode at driver angles `phi`, rad.
+
+        Without `curved` the curvature is left out.
+        """
+        return self.rolling.frames(self.wheel, phi, curved=curved)
 
     def flank_points(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
         """Return points of flanks (`sf`, `sigma`) at `frames`: feet from the pitch point."""
@@ -138,35 +141,34 @@ def trace(
         In the wheel's frame; forward is the direction of the outline with rising s.
     """
     cutter, w = toothing.cutter, toothing.turn
-    frames = toothing.frames(phi)
-    kind, sigma, sf = rows.kind[index], rows.sigma[index], rows.sf[index]
-    points, tangents = np.empty_like(frames.p), np.empty_like(frames.p)
+    kind = rows.kind[index]
+    points, tangents = np.empty((2, len(phi)), dtype=np.complex128)
 
     flank = np.flatnonzero(kind == Kind.FLANK)
-    part = frames.take(flank)
-    cosine, sine = np.cos(cutter.alpha), np.sin(cutter.alpha)
-    normal = part.t * (cosine + sigma[flank] * sine * w)
-    points[flank] = part.p + (sf[flank] - part.s) * cosine * normal
-    tangents[flank] = -sigma[flank] * w * normal
+    frames = toothing.frames(phi[flank], curved=False)
+    sf, sigma = rows.sf[index[flank]], rows.sigma[index[flank]]
+    normal = frames.t * (np.cos(cutter.alpha) + sigma * np.sin(cutter.alpha) * w)
+    points[flank] = frames.p + (sf - frames.s) * np.cos(cutter.alpha) * normal
+    tangents[flank] = -sigma * w * normal
 
     fillet = np.flatnonzero(kind == Kind.FILLET)
-    part = frames.take(fillet)
-    arm = _tip_center(cutter, part, sf[fillet] + sigma[fillet] * cutter.offset, w)
+    frames = toothing.frames(phi[fillet], curved=False)
+    sf, sigma = rows.sf[index[fillet]], rows.sigma[index[fillet]]
+    arm = _tip_center(cutter, frames, sf + sigma * cutter.offset, w)
     length = np.abs(arm)
-    unit = np.where(length > 0.0, arm, -w * part.t) / np.where(length > 0.0, length, 1.0)
-    points[fillet] = part.p + arm + cutter.tip_radius * unit
+    unit = np.where(length > 0.0, arm, -w * frames.t) / np.where(length > 0.0, length, 1.0)
+    points[fillet] = frames.p + arm + cutter.tip_radius * unit
     tangents[fillet] = w * unit
 
     parallel = np.flatnonzero(kind >= Kind.LAND)
-    part = frames.take(parallel)
-    row = index[parallel]
+    frames, row = toothing.frames(phi[parallel]), index[parallel]
     span = rows.end[row] - rows.start[row]
     fraction = (phi[parallel] - rows.start[row]) / np.where(span == 0.0, 1.0, span)
     rise = rows.high[row] - rows.low[row]
     height = rows.low[row] + fraction * rise
-    points[parallel] = part.p + height * w * part.t
-    slope = np.where(span == 0.0, 0.0, rise / np.where(span == 0.0, 1.0, span)) / part.speed
-    direction = part.t * (1.0 + part.kappa * height + slope * w)
+    points[parallel] = frames.p + height * w * frames.t
+    slope = np.where(span == 0.0, 0.0, rise / np.where(span == 0.0, 1.0, span)) / frames.speed
+    direction = frames.t * (1.0 + frames.kappa * height + slope * w)
     tangents[parallel] = direction / np.abs(direction)
     return points, tangents
 

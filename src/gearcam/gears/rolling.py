@@ -132,7 +132,7 @@ class Rolling:
     def _unit_speed(self, phi: Array) -> Array:
         return unit_speed(self.law, phi)
 
-    def frames(self, wheel: Wheel, phi: ArrayLike) -> Frames:
+    def frames(self, wheel: Wheel, phi: ArrayLike, *, curved: bool = True) -> Frames:
         """Return the frames of a wheel at driver angles.
 
         Parameters
@@ -141,6 +141,8 @@ class Rolling:
             Driver or driven wheel.
         phi : array, rad
             Driver angles.
+        curved : bool
+            Whether the curvature is wanted; else it is an empty array, and time is saved.
 
         Returns
         -------
@@ -153,21 +155,23 @@ class Rolling:
         that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
-        i, di, ddi = self.law.derivatives(phi, 2)
+        i, di, *more = self.law.derivatives(phi, 2 if curved else 1)
         a = 1.0 / (1.0 + i)
         r = self.center_distance * i * a
         dr = self.center_distance * a * a * di
-        ddr = self.center_distance * a * a * (ddi - 2.0 * a * di * di)
         speed = np.sqrt(r * r + dr * dr)
-        cube = speed * speed * speed
         turned = phi if wheel == 1 else -self.law.phi2(phi)
-        axis, pole = 0.0, np.asarray(np.exp(1j * turned), dtype=np.complex128)
-        if wheel == 1:
-            kappa = (r * r + 2.0 * dr * dr - r * ddr) / cube
-        else:
-            axis = self.center_distance
-            kappa = (i * r * r + r * ddr + (i - 1.0) * dr * dr) / cube
-        point, tangent = (r - axis) * pole, (dr + 1j * r) / speed * pole
+        pole = np.asarray(np.exp(1j * turned), dtype=np.complex128)
+        point = (r if wheel == 1 else r - self.center_distance) * pole
+        tangent = (dr + 1j * r) / speed * pole
+        kappa = np.empty(0)
+        if curved:
+            ddr = self.center_distance * a * a * (more[0] - 2.0 * a * di * di)
+            if wheel == 1:
+                top = r * r + 2.0 * dr * dr - r * ddr
+            else:
+                top = i * r * r + r * ddr + (i - 1.0) * dr * dr
+            kappa = top / (speed * speed * speed)
         return Frames(point, tangent, kappa, speed, self.arc_length(phi))
 
     def curvature_extremes(self, wheel: Wheel) -> tuple[Array, Array]:

@@ -36,7 +36,7 @@ _UNEVEN = 0.08
 _MARGIN = 0.98
 """Share of the tolerance that a measured error may take: between its places it may be larger."""
 
-_FEW = 0.03
+_FEW = 0.08
 """Share of chords that may be halved; with more of them the vertices are spread anew."""
 
 _ROUNDS = 12
@@ -143,15 +143,13 @@ class Sampler:
     def _errors(self, vertices: Array, ends: Plane, todo: NDArray[np.int64]) -> Array:
         """Distance of the curve from chords.
 
-        Where the curvature hardly changes it follows from the cubic with the end tangents.
+        Where the curvature hardly changes it is the middle of the cubic with the end tangents.
         Elsewhere, at the ends of rows and across knots of the law, it is measured.
         """
         start, chord = ends[0, todo], ends[0, todo + 1] - ends[0, todo]
-        rise = np.tan(np.angle(chord * np.conj(ends[1, todo])))
-        fall = np.tan(np.angle(ends[1, todo + 1] * np.conj(chord)))
-        x = _FRACTIONS[:, None]
-        cubic = np.abs(rise * x * (1.0 - x) ** 2 + fall * x * x * (1.0 - x)).max(axis=0)
-        errors = np.abs(chord) * cubic
+        rise, fall = chord * np.conj(ends[1, todo]), ends[1, todo + 1] * np.conj(chord)
+        rise, fall = rise.imag / rise.real, fall.imag / fall.real
+        errors = np.abs(chord) * np.abs(rise + fall) / 8.0
         # Where the curvature changes much along a chord, the cubic is not good enough either.
         uneven = np.abs(rise - fall) > _UNEVEN * np.maximum(np.abs(rise), np.abs(fall))
         rough = uneven | self._rough(vertices, todo)
@@ -163,11 +161,9 @@ class Sampler:
         return errors
 
     def _rough(self, vertices: Array, chords: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Whether chords are next to the end of a row, or hold a knot of the law."""
+        """Whether chords hold the end of a row or a knot of the law."""
         place = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
-        around = np.floor(place[np.maximum(chords - 1, 0)])
-        last = len(vertices) - 1
-        rough = around != np.floor(place[np.minimum(chords + 2, last)])
+        rough = np.floor(place[chords]) != np.ceil(place[chords + 1]) - 1.0
         index = np.minimum(place.astype(np.int64), len(self.rows.kind) - 1)
         law = self.toothing.rolling.law
         turns = self._angles(index, place - index) / law.lobes.period
