@@ -144,7 +144,7 @@ class Sampler:
         """Distance of the curve from chords.
 
         Where the curvature hardly changes it is the middle of the cubic with the end tangents.
-        Elsewhere, at the ends of rows and across knots of the law, it is measured.
+        Elsewhere, and across the ends of rows and the knots of the law, it is measured.
         """
         start, chord = ends[0, todo], ends[0, todo + 1] - ends[0, todo]
         rise, fall = chord * np.conj(ends[1, todo]), ends[1, todo + 1] * np.conj(chord)
@@ -152,7 +152,7 @@ class Sampler:
         errors = np.abs(chord) * np.abs(rise + fall) / 8.0
         # Where the curvature changes much along a chord, the cubic is not good enough either.
         uneven = np.abs(rise - fall) > _UNEVEN * np.maximum(np.abs(rise), np.abs(fall))
-        rough = uneven | self._rough(vertices, todo)
+        rough = uneven | self._rough(vertices)[todo]
         low, high = vertices[todo[rough]], vertices[todo[rough] + 1]
         inner = low + (high - low) * _FRACTIONS[:, None]
         curve = self.at(inner.ravel())[0].reshape(inner.shape)
@@ -160,16 +160,25 @@ class Sampler:
         errors[rough] = off / np.maximum(np.abs(chord[rough]), np.finfo(float).tiny)
         return errors
 
-    def _rough(self, vertices: Array, chords: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Whether chords hold the end of a row or a knot of the law."""
-        place = np.interp(vertices, self.density, np.arange(len(self.density)) / _PROBES)
-        rough = np.floor(place[chords]) != np.ceil(place[chords + 1]) - 1.0
-        index = np.minimum(place.astype(np.int64), len(self.rows.kind) - 1)
-        law = self.toothing.rolling.law
-        turns = self._angles(index, place - index) / law.lobes.period
-        piece = np.searchsorted(law.knots[1:], (turns % 1.0) * law.lobes.period, side="right")
-        piece = piece + np.floor(turns) * len(law.knots)
-        return rough | (piece[chords] != piece[chords + 1])
+    def _rough(self, vertices: Array) -> NDArray[np.bool_]:
+        """Whether chords hold a break inside."""
+        chord = np.searchsorted(vertices, self._breaks, side="right") - 1
+        inside = (chord < len(vertices) - 1) & (self._breaks > vertices[chord])
+        rough = np.zeros(len(vertices) - 1, dtype=bool)
+        rough[chord[inside]] = True
+        return rough
+
+    @cached_property
+    def _breaks(self) -> Array:
+        """J where the curvature jumps: at the ends of rows, and at the law's knots inside them."""
+        law, rows = self.toothing.rolling.law, self.rows
+        low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
+        period = law.lobes.period
+        phi = law.knots[:-1, None] + period * np.ceil((low - law.knots[:-1, None]) / period)
+        _, row = np.nonzero(phi < high)
+        share = (phi[phi < high] - rows.start[row]) / (rows.end - rows.start)[row]
+        steps = np.arange(len(self.density)) / _PROBES
+        return np.append(self.density[::_PROBES], np.interp(row + share, steps, self.density))
 
     def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
         """Return the dense runs between corners.
