@@ -24,16 +24,18 @@ Array = NDArray[np.float64]
 _PROBES = 24
 """Intervals per row on which the density of points is found."""
 
-_FRACTIONS = np.arange(1, 8) / 8.0
-"""Places inside a chord at which its error is measured."""
+_EIGHTHS = np.arange(1, 8) / 8.0
+_AROUND = np.array([-3, -2, -1, 1, 2, 3]) / 32.0
+"""Places inside a chord at which its error is measured: where the curve bends like a corner, the
+largest distance is a peak."""
 
-_FILL = 0.96
+_FILL = 0.955
 """Share of the tolerance's chord that is used: the density is known to a few percent only."""
 
-_UNEVEN = 0.08
-"""Difference of a chord's angles with the curve at its ends above which its error is measured."""
+_UNEVEN = 0.05
+"""Change of curvature along a chord above which its error is measured."""
 
-_MARGIN = 0.98
+_MARGIN = 0.97
 """Share of the tolerance that a measured error may take: between its places it may be larger."""
 
 _FEW = 0.08
@@ -103,7 +105,7 @@ class Sampler:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
         vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
         ends = self._ends(vertices)
-        errors = self._errors(vertices, ends, np.arange(len(vertices) - 1))
+        errors = self._errors(vertices, ends)
         for _ in range(_ROUNDS):
             if np.mean(errors > _MARGIN * self.tolerance) <= _FEW:
                 break
@@ -112,7 +114,7 @@ class Sampler:
             at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
             vertices = self._spread(at_corners, effort, vertices)
             ends = self._ends(vertices)
-            errors = self._errors(vertices, ends, np.arange(len(vertices) - 1))
+            errors = self._errors(vertices, ends)
         for _ in range(_ROUNDS):
             bad = np.flatnonzero(errors > _MARGIN * self.tolerance)
             if bad.size == 0:
@@ -121,8 +123,9 @@ class Sampler:
             vertices = np.insert(vertices, bad + 1, middle)
             ends = np.insert(ends, bad + 1, np.stack(self.at(middle)), axis=1)
             errors = np.insert(errors, bad + 1, 0.0)
-            halves = np.flatnonzero(np.isin(vertices[1:], middle) | np.isin(vertices[:-1], middle))
-            errors[halves] = self._errors(vertices, ends, halves)
+            new = bad + 1 + np.arange(bad.size)
+            halves = np.concatenate([new - 1, new])
+            errors[halves] = self._measure(vertices, ends[0], halves)
         return vertices, ends[0, :-1], float(errors.max())
 
     def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
@@ -140,25 +143,40 @@ class Sampler:
         ends = np.stack(self.at(vertices[:-1]))
         return np.append(ends, ends[:, :1], axis=1)
 
-    def _errors(self, vertices: Array, ends: Plane, todo: NDArray[np.int64]) -> Array:
-        """Distance of the curve from chords.
+    def _errors(self, vertices: Array, ends: Plane) -> Array:
+        """Distance of the curve from all chords.
 
         Where the curvature hardly changes it is the middle of the cubic with the end tangents.
         Elsewhere, and across the ends of rows and the knots of the law, it is measured.
         """
-        start, chord = ends[0, todo], ends[0, todo + 1] - ends[0, todo]
-        rise, fall = chord * np.conj(ends[1, todo]), ends[1, todo + 1] * np.conj(chord)
+        chord = np.diff(ends[0])
+        rise, fall = chord * np.conj(ends[1, :-1]), ends[1, 1:] * np.conj(chord)
         rise, fall = rise.imag / rise.real, fall.imag / fall.real
-        errors = np.abs(chord) * np.abs(rise + fall) / 8.0
-        # Where the curvature changes much along a chord, the cubic is not good enough either.
-        uneven = np.abs(rise - fall) > _UNEVEN * np.maximum(np.abs(rise), np.abs(fall))
-        rough = uneven | self._rough(vertices)[todo]
-        low, high = vertices[todo[rough]], vertices[todo[rough] + 1]
-        inner = low + (high - low) * _FRACTIONS[:, None]
-        curve = self.at(inner.ravel())[0].reshape(inner.shape)
-        off = np.abs(np.imag(np.conj(chord[rough]) * (curve - start[rough]))).max(axis=0)
-        errors[rough] = off / np.maximum(np.abs(chord[rough]), np.finfo(float).tiny)
+        length, bend = np.abs(chord), rise + fall
+        errors = length * np.abs(bend) / 8.0
+        # Within a chord the ends' angles differ, along the curve the chords' curvatures.
+        rough = self._rough(vertices) | (np.abs(rise - fall) > _UNEVEN * np.abs(bend))
+        curvature = bend / length
+        jump = np.abs(np.diff(curvature)) > 2.0 * _UNEVEN * np.abs(curvature[1:])
+        rough[1:] |= jump
+        rough[:-1] |= jump
+        errors[rough] = self._measure(vertices, ends[0], np.flatnonzero(rough))
         return errors
+
+    def _measure(self, vertices: Array, points: Plane, chords: NDArray[np.int64]) -> Array:
+        """Distance of the curve from some chords: at eighths, then around the largest of these."""
+        start, chord = points[chords], points[chords + 1] - points[chords]
+        low, span = vertices[chords], vertices[chords + 1] - vertices[chords]
+
+        def off(share: Array) -> Array:
+            curve = self.at((low + span * share).ravel())[0].reshape(share.shape)
+            return np.abs(np.imag(np.conj(chord) * (curve - start)))
+
+        coarse = np.broadcast_to(_EIGHTHS[:, None], (len(_EIGHTHS), len(chords)))
+        first = off(coarse)
+        second = off(_EIGHTHS[first.argmax(axis=0)] + _AROUND[:, None])
+        largest = np.maximum(first.max(axis=0), second.max(axis=0))
+        return largest / np.maximum(np.abs(chord), np.finfo(float).tiny)
 
     def _rough(self, vertices: Array) -> NDArray[np.bool_]:
         """Whether chords hold a break inside."""

@@ -113,7 +113,7 @@ def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
         "closure_rad": "miss of the driven angle over a lobe",
         "arc_length_mm": "last Chebyshev coefficients over all intervals, and rounding",
         "flank_mm": "arc length, and the law's error and rounding at the largest radius",
-        "chord_mm": "largest distance of the curve from a chord: measured at seven places, or, "
+        "chord_mm": "largest distance of the curve from a chord: measured at 13 places, or, "
         "where the curvature hardly changes, from the tangents at its ends",
     }
     if dxf is not None:
