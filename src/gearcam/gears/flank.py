@@ -70,9 +70,9 @@ class Toothing:
         return self.pitch * np.arange(first, first + self.teeth)
 
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
-        """Return the frames of this wheel's centrode at driver angles `phi`, rad.
+        """Return the frames of this wheel at driver angles `phi`, rad, `curved` or not.
 
-        Without `curved` the curvature is left out.
+        See `Rolling.frames`.
         """
         return self.rolling.frames(self.wheel, phi, curved=curved)
 
