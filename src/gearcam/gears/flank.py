@@ -70,10 +70,7 @@ class Toothing:
         return self.pitch * np.arange(first, first + self.teeth)
 
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
-        """Return the frames of this wheel at driver angles `phi`, rad, `curved` or not.
-
-        See `Rolling.frames`.
-        """
+        """Return the frames of this wheel at driver angles, rad (see `Rolling.frames`)."""
         return self.rolling.frames(self.wheel, phi, curved=curved)
 
     def flank_points(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
