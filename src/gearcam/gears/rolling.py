@@ -161,7 +161,8 @@ class Rolling:
         dr = self.center_distance * a * a * di
         speed = np.sqrt(r * r + dr * dr)
         turned = phi if wheel == 1 else -self.law.phi2(phi)
-        pole = np.asarray(np.exp(1j * turned), dtype=np.complex128)
+        pole = np.empty(np.shape(turned), dtype=np.complex128)
+        pole.real, pole.imag = np.cos(turned), np.sin(turned)
         point = (r if wheel == 1 else r - self.center_distance) * pole
         tangent = (dr + 1j * r) / speed * pole
         kappa = np.empty(0)

@@ -156,15 +156,20 @@ class Sampler:
         errors = length * np.abs(bend) / 8.0
         # Within a chord the ends' angles differ, along the curve the chords' curvatures.
         rough = self._rough(vertices) | (np.abs(rise - fall) > _UNEVEN * np.abs(bend))
+        errors[rough] = self._measure(vertices, ends[0], np.flatnonzero(rough))
         curvature = bend / length
         jump = np.abs(np.diff(curvature)) > 2.0 * _UNEVEN * np.abs(curvature[1:])
-        rough[1:] |= jump
-        rough[:-1] |= jump
-        errors[rough] = self._measure(vertices, ends[0], np.flatnonzero(rough))
+        beside = (np.append(jump, False) | np.append(False, jump)) & ~rough
+        errors[beside] = self._measure(vertices, ends[0], np.flatnonzero(beside), around=False)
         return errors
 
-    def _measure(self, vertices: Array, points: Plane, chords: NDArray[np.int64]) -> Array:
-        """Distance of the curve from some chords: at eighths, then around the largest of these."""
+    def _measure(
+        self, vertices: Array, points: Plane, chords: NDArray[np.int64], *, around: bool = True
+    ) -> Array:
+        """Distance of the curve from some chords: at quarters, or at eighths and `around` the best.
+
+        A chord that only has uneven neighbours is smooth: its distance is flat near its largest.
+        """
         start, chord = points[chords], points[chords + 1] - points[chords]
         low, span = vertices[chords], vertices[chords + 1] - vertices[chords]
 
@@ -172,10 +177,12 @@ class Sampler:
             curve = self.at((low + span * share).ravel())[0].reshape(share.shape)
             return np.abs(np.imag(np.conj(chord) * (curve - start)))
 
-        coarse = np.broadcast_to(_EIGHTHS[:, None], (len(_EIGHTHS), len(chords)))
-        first = off(coarse)
-        second = off(_EIGHTHS[first.argmax(axis=0)] + _AROUND[:, None])
-        largest = np.maximum(first.max(axis=0), second.max(axis=0))
+        places = _EIGHTHS if around else _EIGHTHS[1::2]
+        found = off(np.broadcast_to(places[:, None], (len(places), len(chords))))
+        largest = found.max(axis=0, initial=0.0)
+        if around:
+            second = off(places[found.argmax(axis=0)] + _AROUND[:, None])
+            largest = np.maximum(largest, second.max(axis=0))
         return largest / np.maximum(np.abs(chord), np.finfo(float).tiny)
 
     def _rough(self, vertices: Array) -> NDArray[np.bool_]:

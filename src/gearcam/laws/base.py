@@ -78,7 +78,9 @@ class RatioLaw:
 
     def derivatives(self, phi1: ArrayLike, order: int) -> list[Array]:
         """Return ``[i, i', ..., i^(order)]`` at any driver angles `phi1`, rad."""
-        return self.ratio.derivatives(np.mod(phi1, self.lobes.period), order)
+        phi1 = np.asarray(phi1, dtype=float)
+        period = self.lobes.period
+        return self.ratio.derivatives(phi1 - np.floor(phi1 / period) * period, order)
 
     def phi2(self, phi1: ArrayLike) -> Array:
         """Return the driven angle, rad, at any driver angles, rad (turns are counted)."""
