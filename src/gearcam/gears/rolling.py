@@ -155,16 +155,18 @@ class Rolling:
         that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
-        i, di, *more = self.law.derivatives(phi, 2 if curved else 1)
+        lobes = self.law.lobes
+        turns = np.floor(phi / lobes.period)
+        x = phi - turns * lobes.period
+        i, di, *more = self.law.ratio.derivatives(x, 2 if curved else 1)
         a = 1.0 / (1.0 + i)
         r = self.center_distance * i * a
         dr = self.center_distance * a * a * di
         speed = np.sqrt(r * r + dr * dr)
-        turned = phi if wheel == 1 else -self.law.phi2(phi)
-        pole = np.empty(np.shape(turned), dtype=np.complex128)
-        pole.real, pole.imag = np.cos(turned), np.sin(turned)
+        turned = phi if wheel == 1 else -(self.law.motion(x) + turns * lobes.advance)
+        pole = _complex(np.cos(turned), np.sin(turned))
         point = (r if wheel == 1 else r - self.center_distance) * pole
-        tangent = (dr + 1j * r) / speed * pole
+        tangent = _complex(dr / speed, r / speed) * pole
         kappa = np.empty(0)
         if curved:
             ddr = self.center_distance * a * a * (more[0] - 2.0 * a * di * di)
@@ -173,7 +175,8 @@ class Rolling:
             else:
                 top = i * r * r + r * ddr + (i - 1.0) * dr * dr
             kappa = top / (speed * speed * speed)
-        return Frames(point, tangent, kappa, speed, self.arc_length(phi))
+        arc = (self.unit_arc(x) + turns * self.unit_arc.last) * self.center_distance
+        return Frames(point, tangent, kappa, speed, arc)
 
     def curvature_extremes(self, wheel: Wheel) -> tuple[Array, Array]:
         """Return a wheel's extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
@@ -204,6 +207,13 @@ class Rolling:
         return self.center_distance * self.unit_arc.error + 4.0 * np.finfo(float).eps * max(
             self.length(1), self.length(2)
         )
+
+
+def _complex(real: Array, imag: Array) -> Plane:
+    """Return ``real + 1j*imag`` without the products."""
+    result = np.empty(np.shape(real), dtype=np.complex128)
+    result.real, result.imag = real, imag
+    return result
 
 
 def unit_speed(law: RatioLaw, phi: Array) -> Array:
