@@ -52,6 +52,8 @@ class Param:
         Fewest entries, for lists.
     doc : str
         One line for schema, template and messages.
+    word : str
+        The key's word where the field cannot bear it, such as ``from``.
     """
 
     quantity: Quantity = NUMBER
@@ -62,10 +64,11 @@ class Param:
     choices: tuple[str, ...] | None = None
     min_length: int | None = None
     doc: str = ""
+    word: str = ""
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""
-        return name + self.quantity.suffix
+        return (self.word or name) + self.quantity.suffix
 
 
 def param(
@@ -79,9 +82,10 @@ def param(
     choices: tuple[str, ...] | None = None,
     min_length: int | None = None,
     doc: str = "",
+    word: str = "",
 ) -> Any:
     """Return a dataclass field that knows its quantity, bounds and meaning (see `Param`)."""
-    made = Param(quantity, gt, ge, lt, le, choices, min_length, doc)
+    made = Param(quantity, gt, ge, lt, le, choices, min_length, doc, word)
     return dataclasses.field(default=default, metadata={"param": made})
 
 

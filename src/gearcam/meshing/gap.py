@@ -1,0 +1,300 @@
+"""The exact gap: how far the driven wheel can turn until flanks touch, for any mounting.
+
+With wheel 1 held at a phase, the points of a driver's flank and those of its mate are compared at
+equal distance rho from the driven axis: the angle between them is what the driven wheel may turn
+until these points meet. Its extreme over the common range of rho is the touch of the pair, where
+the flanks share a tangent or at the end of one of them (an edge). The driven wheel lies between
+the largest of these angles on the driving side and the smallest on the other: the first is its
+transmission error, the difference its play. Negative play means that the pair cannot be assembled.
+
+Flanks only: that an edge meets the mate's fillet is seen by the stepwise overlap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.gears.rolling import Plane, Wheel
+from gearcam.meshing.contact import FlankPairs, Ints
+from gearcam.numeric.roots import bracketed_root, newton_in_bracket
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 13
+"""Points of a flank between which the extreme is sought; its slope has one zero on smooth flanks."""
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Touches:
+    """Where the flanks of pairs come nearest at phases, one entry a pair that faces its mate.
+
+    Parameters
+    ----------
+    step, pair : (n,) int arrays
+        Index of the phase; j.
+    turn : (n,) array, rad
+        The driven wheel's turn from its nominal place at which the pair touches: it must lie above
+        on the driving side and below on the other.
+    angle : (n,) array, rad
+        Driver angle that names the touching point of the driver's flank.
+    edge : (n,) bool array
+        Whether an end of a flank touches first.
+    low, high : (n,) arrays, rad
+        Driver angles of the ends of the common range on the driver's flank, root first.
+    """
+
+    step: Ints
+    pair: Ints
+    turn: Array
+    angle: Array
+    edge: NDArray[np.bool_]
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Facing:
+    """Pairs of flanks at phases, compared at equal distance from the driven axis.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    step, pair : (n,) int arrays
+        Index of the phase; j.
+    phi1 : (n,) array, rad
+        Phase.
+    advance : float, rad
+        How far the driver is ahead of it.
+    distance : float, mm
+        Distance of the shafts as mounted.
+    """
+
+    pairs: FlankPairs
+    step: Ints
+    pair: Ints
+    phi1: Array
+    advance: float
+    distance: float
+
+    def select(self, index: Array | NDArray[np.bool_] | Ints) -> Facing:
+        """Return some of the pairs, by `index`."""
+        return Facing(
+            pairs=self.pairs,
+            step=self.step[index],
+            pair=self.pair[index],
+            phi1=self.phi1[index],
+            advance=self.advance,
+            distance=self.distance,
+        )
+
+    def end(self, wheel: Wheel, tip: bool) -> Array:
+        """Return the driver angles, rad, of the ends (`tip` or root) of a `wheel`'s flanks."""
+        toothing = self.pairs.toothings[wheel - 1]
+        sigma = self.pairs.side if wheel == 1 else -self.pairs.side
+        reach = self.pairs.reach(wheel, self.pair)[int(tip)]
+        return toothing.rolling.angle(self.pairs.place(wheel, self.pair) - sigma * reach)
+
+    def flank(self, wheel: Wheel, angle: Array, *, moving: bool) -> tuple[Plane, Plane]:
+        """Return points seen from the driven axis and directions of a wheel's flanks.
+
+        Parameters
+        ----------
+        wheel : {1, 2}
+            Driver or driven wheel.
+        angle : (n,) array, rad
+            Driver angles that name the points.
+        moving : bool
+            Whether the directions are derivatives by `angle` instead of unit vectors.
+
+        Returns
+        -------
+        points, directions : (n,) complex arrays
+            With the wheels turned to their phases, mm and 1 (or mm/rad).
+        """
+        toothing = self.pairs.toothings[wheel - 1]
+        sigma = self.pairs.side if wheel == 1 else -self.pairs.side
+        alpha, w = toothing.cutter.alpha, toothing.turn
+        frames = toothing.frames(angle, curved=moving)
+        cosine, sine = np.cos(alpha), sigma * np.sin(alpha)
+        ahead = (self.pairs.place(wheel, self.pair) - frames.s) * cosine
+        point = frames.p + ahead * frames.t * (cosine + sine * w)
+        direction = frames.t * (cosine * w - sine)
+        if moving:
+            direction = -(sine + ahead * frames.kappa) * frames.speed * direction
+        if wheel == 1:
+            turned = np.exp(-1j * (self.phi1 + self.advance))
+            return point * turned - self.distance, direction * turned
+        turned = np.exp(1j * toothing.rolling.law.phi2(self.phi1))
+        return point * turned, direction * turned
+
+    def find(self, wheel: Wheel, radius: Array, low: Array, high: Array, start: Array) -> Array:
+        """Return the driver angles, rad, of flank points at distances from the driven axis.
+
+        Parameters
+        ----------
+        wheel : {1, 2}
+            Driver or driven wheel.
+        radius : (n,) array, mm
+            Distances from O2.
+        low, high : (n,) arrays, rad
+            Angles of flank points that are nearer and farther than that.
+        start : (n,) array, rad
+            First guess.
+
+        Returns
+        -------
+        (n,) array
+            The nearer end where a distance is not reached.
+        """
+
+        def miss(angle: Array) -> tuple[Array, Array]:
+            point, direction = self.flank(wheel, angle, moving=True)
+            size = np.abs(point)
+            return size - radius, np.real(np.conj(point) * direction) / size
+
+        start = np.clip(start, np.minimum(low, high), np.maximum(low, high))
+        return newton_in_bracket(miss, low, high, start, 1e-14)
+
+    def compare(self, angle: Array, root: Array, tip: Array) -> tuple[Array, Array]:
+        """Compare flanks at points of the driver's.
+
+        Parameters
+        ----------
+        angle : (n,) array, rad
+            Driver angles that name the points.
+        root, tip : (n,) arrays, rad
+            Ends of the mates' flanks.
+
+        Returns
+        -------
+        turn, slope : (n,) arrays, rad
+            The driven wheel's turn until it meets the points, and its derivative by log(rho).
+        """
+        point, direction = self.flank(1, angle, moving=False)
+        mate = self.find(2, np.abs(point), root, tip, angle)
+        other, along = self.flank(2, mate, moving=False)
+        rise = direction / point
+        mates = along / other
+        slope = rise.imag / rise.real - mates.imag / mates.real
+        return np.angle(point * np.conj(other)), slope
+
+
+def facing(
+    pairs: FlankPairs, phi1: ArrayLike, *, advance: float = 0.0, distance: float | None = None
+) -> tuple[Facing, Array, Array]:
+    """Return the pairs that share a range of distance from the driven axis.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+    advance : float, rad
+        How far the driver is ahead.
+    distance : float, mm, optional
+        Distance of the shafts as mounted; as designed if left out.
+
+    Returns
+    -------
+    facing : Facing
+        The pairs.
+    low, high : arrays, rad
+        Driver angles of the ends of the common range on the driver's flanks, root first.
+    """
+    phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
+    rolling = pairs.toothings[0].rolling
+    candidates = pairs.near(rolling.arc_length(phi1))
+    step = np.repeat(np.arange(len(phi1)), candidates.shape[1])
+    every = Facing(
+        pairs=pairs,
+        step=step,
+        pair=candidates.ravel(),
+        phi1=phi1[step],
+        advance=advance,
+        distance=rolling.center_distance if distance is None else distance,
+    )
+    ends = [every.end(1, tip=False), every.end(1, tip=True)]
+    mates = [every.end(2, tip=True), every.end(2, tip=False)]
+    far, near = (np.abs(every.flank(1, angle, moving=False)[0]) for angle in ends)
+    highest, lowest = (np.abs(every.flank(2, angle, moving=False)[0]) for angle in mates)
+    apart = np.abs(every.pairs.place(1, every.pair) - rolling.arc_length(every.phi1))
+    shared = (np.minimum(far, highest) > np.maximum(near, lowest)) & (apart < 2.0 * pairs.pitch)
+    found = every.select(shared)
+    low, high = ends[0][shared], ends[1][shared]
+    cut = []
+    for own, limit, beyond in (
+        (low, highest[shared], far[shared] > highest[shared]),
+        (high, lowest[shared], near[shared] < lowest[shared]),
+    ):
+        some, angle = found.select(beyond), own.copy()
+        angle[beyond] = some.find(
+            1, limit[beyond], high[beyond], low[beyond], 0.5 * (low + high)[beyond]
+        )
+        cut.append(angle)
+    return found, cut[0], cut[1]
+
+
+def touches(
+    pairs: FlankPairs, phi1: ArrayLike, *, advance: float = 0.0, distance: float | None = None
+) -> Touches:
+    """Find where the flanks of a side come nearest at phases.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+    advance : float, rad
+        How far the driver is ahead.
+    distance : float, mm, optional
+        Distance of the shafts as mounted; as designed if left out.
+
+    Returns
+    -------
+    Touches
+        Pairs without a common range of distance from the driven axis are left out.
+    """
+    found, low, high = facing(pairs, phi1, advance=advance, distance=distance)
+    root, tip = found.end(2, tip=False), found.end(2, tip=True)
+    many = found.select(np.repeat(np.arange(len(low)), _SAMPLES))
+    share = np.tile(np.linspace(0.0, 1.0, _SAMPLES), len(low))
+    angle = np.repeat(low, _SAMPLES) + share * np.repeat(high - low, _SAMPLES)
+    turn, slope = many.compare(angle, np.repeat(root, _SAMPLES), np.repeat(tip, _SAMPLES))
+    # On the driving side the largest turn counts, on the other the smallest.
+    turn, slope, angle = (v.reshape(-1, _SAMPLES) for v in (-pairs.side * turn, slope, angle))
+    rows, best = np.arange(len(low)), turn.argmax(axis=1)
+    # rho falls from root to tip of the driver's flank: there the extreme lies where the slope,
+    # taken towards the tip, turns from rising to falling.
+    falling = pairs.side * slope
+    before, after = np.maximum(best - 1, 0), np.minimum(best + 1, _SAMPLES - 1)
+    left = np.where(falling[rows, best] > 0.0, best, before)
+    right = np.where(falling[rows, best] > 0.0, after, best)
+    inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
+    at, extreme = angle[rows, best], turn[rows, best]
+    some = found.select(inner)
+    at[inner] = bracketed_root(
+        lambda x: some.compare(x, root[inner], tip[inner])[1],
+        angle[inner, left[inner]],
+        angle[inner, right[inner]],
+        1e-10,
+    )
+    extreme[inner] = -pairs.side * some.compare(at[inner], root[inner], tip[inner])[0]
+    edge = np.ones(len(low), dtype=bool)
+    edge[inner] = False
+    return Touches(
+        step=found.step,
+        pair=found.pair,
+        turn=-pairs.side * extreme,
+        angle=at,
+        edge=edge,
+        low=low,
+        high=high,
+    )

@@ -1,0 +1,49 @@
+"""What a design says of its meshing study."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gearcam.quantities import ANGLE, COUNT, LENGTH, param
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshingSpec:
+    """Phases of the driver, its advance, and how the wheels are mounted.
+
+    The phases divide the stretch from `start` to `end` into `steps` equal parts, its end left out.
+    The driver is turned ahead by `advance` at each (a negative one holds it back, so that the
+    other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
+    the pitch point are studied. Without `center_distance` the wheels stand as designed.
+    """
+
+    steps: int = param(COUNT, default=360, ge=1, le=1000000, doc="phases studied")
+    start: float = param(
+        ANGLE, default=0.0, ge=-36000, le=36000, word="from", doc="driver angle of the first phase"
+    )
+    end: float = param(
+        ANGLE,
+        default=2.0 * math.pi,
+        ge=-36000,
+        le=36000,
+        word="to",
+        doc="driver angle at which the study ends",
+    )
+    advance: float = param(
+        ANGLE,
+        default=math.radians(0.005),
+        ge=-1,
+        le=1,
+        doc="how far the driver is turned ahead of its place, to make flanks overlap; not 0",
+    )
+    teeth: tuple[int, ...] | None = param(
+        COUNT, default=None, ge=1, min_length=1, doc="teeth of the driver to study; all if left out"
+    )
+    center_distance: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e6,
+        doc="distance of the shafts as mounted; as designed if left out",
+    )
