@@ -1,8 +1,9 @@
 r"""Tables: columns of numbers as CSV, exact to the last bit.
 
 Numbers are written with the fewest digits that read back as the same double; an infinite number
-(the radius of a straight part) is ``inf``; lines end in ``\n``. Refused: not-a-number, columns of
-different lengths, names that would need quotes.
+(the radius of a straight part) is ``inf``; what a masked array masks does not exist and is left
+empty; lines end in ``\n``. Refused: not-a-number, columns of different lengths, names that would
+need quotes.
 """
 
 from __future__ import annotations
@@ -38,19 +39,21 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     if bad:
         raise ValueError(f"names that cannot stand in a header: {bad}")
     arrays = {
-        name: np.asarray(values, dtype=np.float64).ravel() for name, values in columns.items()
+        name: np.ma.asarray(values, dtype=np.float64).ravel() for name, values in columns.items()
     }
     lengths = {name: len(values) for name, values in arrays.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"columns differ in length: {lengths}")
     texts = []
     for name, values in arrays.items():
-        if np.isnan(values).any():
-            row = int(np.argmax(np.isnan(values)))
-            raise ValueError(f"column {name} is not a number in row {row}")
+        missing, plain = np.ma.getmaskarray(values), np.ma.getdata(values)
+        bad_rows = np.flatnonzero(np.isnan(plain) & ~missing)
+        if bad_rows.size:
+            raise ValueError(f"column {name} is not a number in row {bad_rows[0]}")
         # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
-        tidy = np.where(np.isinf(values), np.inf, values + 0.0)
-        texts.append([repr(value) for value in tidy.tolist()])
+        tidy = np.where(np.isinf(plain), np.inf, plain + 0.0)
+        cells = zip(tidy.tolist(), missing.tolist(), strict=True)
+        texts.append(["" if empty else repr(value) for value, empty in cells])
     lines = [",".join(arrays), *(",".join(row) for row in zip(*texts, strict=True))]
     return ("\n".join(lines) + "\n").encode("ascii")
 

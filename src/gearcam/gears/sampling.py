@@ -89,6 +89,11 @@ class Sampler:
     def _trace(self, index: NDArray[np.int64], phi: Array) -> tuple[Plane, Plane]:
         return trace(self.toothing, self.rows, index, phi)
 
+    def row_of(self, j: Array) -> NDArray[np.int64]:
+        """Return the rows of places given by their J."""
+        place = np.interp(j, self.density, np.arange(len(self.density)) / _PROBES)
+        return np.minimum(place.astype(np.int64), len(self.rows.kind) - 1)
+
     def at(self, j: Array) -> tuple[Plane, Plane]:
         """Return points and forward unit tangents at places given by their J (after a corner)."""
         place = np.interp(j, self.density, np.arange(len(self.density)) / _PROBES)

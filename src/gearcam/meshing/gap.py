@@ -26,8 +26,6 @@ Array = NDArray[np.float64]
 _SAMPLES = 13
 """Points of a flank between which the extreme is sought; its slope has one zero on smooth flanks."""
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Touches:

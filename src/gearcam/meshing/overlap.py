@@ -1,0 +1,299 @@
+"""Stepwise overlap: the outlines of the pair, turned phase by phase and intersected.
+
+This is the source texts' study of the contact patch (003, section 2.3.3.1), and the proof that
+looks at nothing but outlines. Each wheel is divided into *halves* of teeth, from the middle of a
+tip to the middle of a root and a little below; h counts them from tooth 1's +s half as 0, wheel 2
+from the half that faces it. Half h of the driver faces half h of the driven wheel, and can reach
+the two beside it: so all overlap of the wheels is looked at, and each piece of it belongs to a
+pair of halves. Driver's halves are turned into the driven wheel's frame.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from gearcam.gears.flank import Kind
+from gearcam.gears.outline import Outline
+from gearcam.gears.rolling import Plane, Rolling
+from gearcam.meshing.contact import Ints
+
+Array = NDArray[np.float64]
+
+_BELOW = 0.5
+"""Depth of the halves below the root, in dedendums: more than any overlap that is worth a name."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Halves:
+    """The halves of a wheel's teeth.
+
+    Parameters
+    ----------
+    points : complex array, mm
+        Vertices of all halves in the wheel's frame, one half after another.
+    starts : (2z + 1,) int array
+        Where each half begins, and the end.
+    chord_error : float, mm
+        Largest distance of the curve from its chords.
+    """
+
+    points: Plane
+    starts: Ints
+    chord_error: float
+
+    @property
+    def count(self) -> int:
+        """Number of halves, 2z."""
+        return len(self.starts) - 1
+
+    def gather(self, halves: Ints) -> tuple[Ints, Ints]:
+        """Return indices into `points` of some `halves`, and for each which of them it belongs to."""
+        sizes = self.starts[halves + 1] - self.starts[halves]
+        owner = np.repeat(np.arange(len(halves)), sizes)
+        first = np.cumsum(sizes) - sizes
+        return np.arange(len(owner)) - first[owner] + self.starts[halves][owner], owner
+
+
+def halve(outline: Outline) -> Halves:
+    """Divide a wheel into the halves of its teeth.
+
+    Parameters
+    ----------
+    outline : Outline
+        The wheel at the tolerance of the study.
+
+    Returns
+    -------
+    Halves
+        In the order of rising s from the middle of tooth 1 (wheel 1) or from the middle of the
+        space before tooth 1 (wheel 2).
+    """
+    toothing, size = outline.toothing, len(outline.points)
+    roots, tips = _middles(outline)
+    depth = -(1.0 + _BELOW) * toothing.cutter.dedendum
+    angles = toothing.rolling.angle(toothing.tooth_places)
+    gaps = toothing.rolling.angle(toothing.tooth_places + 0.5 * toothing.pitch)
+    deep, low = (_below(outline, v, depth) for v in (angles, gaps))
+    points = outline.sampler.chords[1]
+    halves: list[Plane] = []
+    for tooth, (root, tip) in enumerate(zip(roots, tips, strict=True)):
+        before = tips[tooth - 1] - (0 if tooth else size)
+        front, back = np.arange(before, root + 1) % size, np.arange(root, tip + 1) % size
+        following = (tooth + 1) % toothing.teeth
+        halves.append(np.concatenate([points[front], [low[tooth], deep[tooth]]]))
+        halves.append(np.concatenate([points[back], [deep[following], low[tooth]]]))
+    if toothing.wheel == 2:
+        halves = halves[-1:] + halves[:-1]
+    starts = np.concatenate([[0], np.cumsum([len(half) for half in halves])])
+    return Halves(
+        points=np.concatenate(halves), starts=starts, chord_error=outline.sampler.chords[2]
+    )
+
+
+def _middles(outline: Outline) -> tuple[Ints, Ints]:
+    """Vertices in the middle of each space and, following it, of the next tip.
+
+    A space begins with the + flank of its tooth and ends with the - flank of the next one.
+    """
+    rows, z = outline.rows, outline.toothing.teeth
+    row = outline.sampler.row_of(outline.sampler.chords[0][:-1])
+    flank = np.flatnonzero(rows.kind == Kind.FLANK)
+    space = np.where(rows.sigma[flank] > 0.0, rows.tooth[flank], rows.tooth[flank] - 1) % z
+    ends = np.zeros((2, 2, z), dtype=np.int64)
+    for side, mine in enumerate((rows.sigma[flank] > 0.0, rows.sigma[flank] < 0.0)):
+        first, last = np.full(z, len(rows.kind)), np.full(z, -1)
+        np.minimum.at(first, space[mine], flank[mine])
+        np.maximum.at(last, space[mine], flank[mine])
+        ends[side] = np.searchsorted(row, first), np.searchsorted(row, last + 1)
+    # space 1 follows tooth 1 and comes first; space z, counted as 0, comes last
+    (front, front_end), (back, back_end) = np.roll(ends, -1, axis=2)
+    roots = (front_end + back) // 2
+    tips = (back_end + np.append(front[1:], len(row))) // 2
+    return roots, tips
+
+
+def _below(outline: Outline, angle: Array, height: float) -> Plane:
+    frames = outline.toothing.frames(angle, curved=False)
+    return frames.p + height * outline.toothing.turn * frames.t
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Overlaps:
+    """Pieces of overlap, one entry each.
+
+    Parameters
+    ----------
+    step : (n,) int array
+        Index of the phase.
+    half : (2, n) int array
+        Halves of driver and driven wheel that overlap, counted within the first turn.
+    facing : (n,) bool array
+        Whether these halves face each other, so that their flanks are a pair.
+    area : (n,) array, mm^2
+        Area.
+    length : (n,) array, mm
+        Diagonal of its box: the length of a thin lens.
+    radius : (2, n) array, mm
+        Smallest and largest distance of its corners from the driver's axis.
+    """
+
+    step: Ints
+    half: Ints
+    facing: NDArray[np.bool_]
+    area: Array
+    length: Array
+    radius: Array
+
+    @property
+    def depth(self) -> Array:
+        """Depth of a lens (a parabola's segment) of this area and length, mm."""
+        return 1.5 * self.area / self.length
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Turning:
+    """Two wheels on their shafts, ready to be turned.
+
+    Parameters
+    ----------
+    rolling : Rolling
+        The centrodes.
+    driver, driven : Halves
+        The wheels.
+    distance : float, mm
+        Distance of the shafts as mounted.
+    """
+
+    rolling: Rolling
+    driver: Halves
+    driven: Halves
+    distance: float
+
+    @cached_property
+    def _tree(self) -> tuple[Any, Any]:
+        polygons = _polygons(self.driven.points, np.diff(self.driven.starts))
+        return shapely.STRtree(polygons), polygons
+
+    @cached_property
+    def _tops(self) -> tuple[Array, Plane]:
+        """Largest radius of the driven wheel, and of each half of the driver the outmost point."""
+        radius = np.abs(self.driver.points)
+        outmost = np.maximum.reduceat(radius, self.driver.starts[:-1])
+        index, owner = self.driver.gather(np.arange(self.driver.count))
+        best = np.flatnonzero(radius[index] == outmost[owner])
+        _, first = np.unique(owner[best], return_index=True)
+        return outmost, self.driver.points[index[best[first]]]
+
+    def pose(self, phi1: Array, advance: float, lead: Array | float = 0.0) -> tuple[Plane, Plane]:
+        """Return the turn and shift that take the driver's points into the driven wheel's frame.
+
+        Parameters
+        ----------
+        phi1 : (n,) array, rad
+            Phases.
+        advance : float, rad
+            How far the driver is ahead of them.
+        lead : (n,) array or float, rad
+            How far the driven wheel is.
+
+        Returns
+        -------
+        turn, shift : (n,) complex arrays, 1 and mm
+        """
+        back = np.exp(-1j * (self.rolling.law.phi2(phi1) + lead))
+        return np.exp(-1j * (phi1 + advance)) * back, -self.distance * back
+
+    def overlaps(self, phi1: Array, advance: float, lead: Array | float = 0.0) -> Overlaps:
+        """Return all pieces of overlap at phases (see `pose`)."""
+        turn, shift = self.pose(phi1, advance, lead)
+        step, half = self._near(turn, shift)
+        index, owner = self.driver.gather(half)
+        points = self.driver.points[index] * turn[step][owner] + shift[step][owner]
+        polygons = _polygons(points, np.diff(self.driver.starts)[half])
+        tree, mates = self._tree
+        one, two = tree.query(polygons, predicate="intersects")
+        shared = shapely.intersection(polygons[one], mates[two])
+        area = shapely.area(shared)
+        some = np.flatnonzero(area > 0.0)
+        bounds = shapely.bounds(shared[some])
+        corners, of = shapely.get_coordinates(shared[some], return_index=True)
+        step = step[one[some]]
+        seen = np.abs(corners @ [1.0, 1.0j] - shift[step][of])
+        starts = np.flatnonzero(np.append(True, np.diff(of) > 0)) if len(of) else of
+        radius = [f.reduceat(seen, starts) if len(of) else seen for f in (np.minimum, np.maximum)]
+        return Overlaps(
+            step=step,
+            half=np.stack([half[one[some]], two[some]]),
+            facing=self.face(phi1[step], half[one[some]], two[some]),
+            area=area[some],
+            length=np.hypot(bounds[:, 2] - bounds[:, 0], bounds[:, 3] - bounds[:, 1]),
+            radius=np.stack(radius),
+        )
+
+    def face(self, phi1: Array, one: Ints, two: Ints) -> NDArray[np.bool_]:
+        """Return whether halves face each other.
+
+        Parameters
+        ----------
+        phi1 : (n,) array, rad
+            Phases.
+        one, two : (n,) int arrays
+            Halves of driver and driven wheel, counted within the first turns.
+
+        Returns
+        -------
+        (n,) bool array
+        """
+        at = 2.0 * self.rolling.arc_length(phi1) / self._pitch
+        turns = np.rint((at - 0.5 - one) / self.driver.count).astype(np.int64)
+        return (one + turns * self.driver.count - two) % self.driven.count == 0
+
+    @property
+    def _pitch(self) -> float:
+        return self.rolling.length(1) / (self.driver.count // 2)
+
+    def gaps(self, side: int, phi1: Array, advance: float, lead: Array | float = 0.0) -> Array:
+        """Return the least distance of facing halves of a side at phases.
+
+        Parameters
+        ----------
+        side : {-1, +1}
+            sigma of the driver's flanks.
+        phi1, advance, lead
+            See `pose`.
+
+        Returns
+        -------
+        (n,) array, mm
+            0 where they overlap.
+        """
+        turn, shift = self.pose(phi1, advance, lead)
+        pair = np.rint(self.rolling.arc_length(phi1) / self._pitch - 0.25 * side).astype(np.int64)
+        least = np.full(len(phi1), np.inf)
+        mates = self._tree[1]
+        for j in (pair - 1, pair, pair + 1):
+            half = 2 * j - (side < 0)
+            index, owner = self.driver.gather(half % self.driver.count)
+            points = self.driver.points[index] * turn[owner] + shift[owner]
+            polygons = _polygons(points, np.bincount(owner))
+            distance = shapely.distance(polygons, mates[half % self.driven.count])
+            least = np.minimum(least, distance)
+        return least
+
+    def _near(self, turn: Plane, shift: Plane) -> tuple[Ints, Ints]:
+        """Phases and driver's halves that come within the driven wheel's tips."""
+        _, tops = self._tops
+        reach = float(np.abs(self.driven.points).max())
+        return np.nonzero(np.abs(tops * turn[:, None] + shift[:, None]) <= reach)
+
+
+def _polygons(points: Plane, sizes: Ints) -> Any:
+    coordinates = np.stack([points.real, points.imag], axis=1)
+    owner = np.repeat(np.arange(len(sizes)), sizes)
+    return shapely.polygons(shapely.linearrings(coordinates, indices=owner))

@@ -1,0 +1,185 @@
+"""What a study finds at some phases, and the rows of ``meshing.csv`` that say it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.meshing.contact import Contacts, Ints
+from gearcam.meshing.lens import Lenses
+from gearcam.meshing.overlap import Overlaps, Turning
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Block:
+    """Some phases of a study.
+
+    Parameters
+    ----------
+    first : int
+        Number of the first phase.
+    phi1, phi2 : (n,) arrays, rad
+        Driver and nominal driven angles.
+    side : {-1, +1}
+        sigma of the driver's flanks that the advance presses together.
+    error : (n,) array, rad
+        The driven wheel's turn from its nominal place at first touch on that side; not finite
+        where no flanks face each other.
+    play : (n,) array, rad
+        What the driven wheel can turn between both touches.
+    backlash : (n,) array, mm
+        The same along the pitch curve.
+    edge : (n,) bool array
+        Whether an edge decides the first touch.
+    held_back : (n,) array, mm
+        Distance of the flanks when the driver is held back by the advance.
+    overlaps : Overlaps
+        Of the outlines, with the driver ahead.
+    contacts : Contacts
+        Exact ones, without advance.
+    lenses : Lenses
+        Predicted overlaps.
+    interferes : (n,) bool array
+        Whether flanks overlap that should not, or deeper than the advance explains.
+    """
+
+    first: int
+    phi1: Array
+    phi2: Array
+    side: int
+    error: Array
+    play: Array
+    backlash: Array
+    edge: Mask
+    held_back: Array
+    overlaps: Overlaps
+    contacts: Contacts
+    lenses: Lenses
+    interferes: Mask
+
+
+def on_side(found: Overlaps, side: int) -> NDArray[np.bool_]:
+    """Return which overlaps lie on facing halves of a side.
+
+    Parameters
+    ----------
+    found : Overlaps
+        Pieces.
+    side : {-1, +1}
+        sigma of the driver's halves.
+
+    Returns
+    -------
+    (n,) bool array
+    """
+    return found.facing & (found.half[0] % 2 == (side < 0))
+
+
+def stepwise_pairs(found: Overlaps, side: int, count: int, noise: float) -> Ints:
+    """Return how many pairs of a side overlap at each phase.
+
+    Parameters
+    ----------
+    found : Overlaps
+        Pieces.
+    side : {-1, +1}
+        sigma of the driver's halves.
+    count : int
+        Number of phases.
+    noise : float, mm
+        Depth that the chords alone explain: no contact.
+
+    Returns
+    -------
+    (count,) int array
+    """
+    good = on_side(found, side) & (found.depth > noise)
+    return np.bincount(found.step[good], minlength=count)
+
+
+def columns_of(blocks: list[Block], turning: Turning) -> dict[str, Array]:
+    """Return the rows of a study: one for each phase and pair that overlaps or is in contact.
+
+    Parameters
+    ----------
+    blocks : list of Block
+        What was found.
+    turning : Turning
+        The wheels.
+
+    Returns
+    -------
+    dict of str to (n,) array
+        Columns; what does not exist is masked.
+    """
+    parts = [_columns(block, turning) for block in blocks]
+    if not parts:
+        return {}
+    return {name: np.ma.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _columns(block: Block, turning: Turning) -> dict[str, Array]:
+    found, exact, lens = block.overlaps, block.contacts, block.lenses
+    halves = (turning.driver.count, turning.driven.count)
+    keys = [
+        (found.step, *found.half),
+        (exact.step, *_halves(exact.pair, block.side, halves)),
+        (lens.step, *_halves(lens.pair, block.side, halves)),
+    ]
+    every, where = np.unique(np.hstack([np.stack(key) for key in keys]), axis=1, return_inverse=True)
+    step, one, two = every
+    rows = np.split(where.ravel(), np.cumsum([len(found.step), len(exact.step)]))
+    size = every.shape[1]
+
+    def column(number: int, values: Array) -> Array:
+        result = np.ma.masked_all(size, dtype=float)
+        result[rows[number]] = np.ma.masked_invalid(values)
+        return result
+
+    area = np.zeros(size)
+    area[rows[0]] = found.area
+    carries = np.zeros(size)
+    carries[rows[1]] = 1.0
+    axis = turning.rolling.center_distance
+    return {
+        "step": (block.first + step).astype(float),
+        "phi1_deg": np.degrees(block.phi1[step]),
+        "phi2_deg": np.degrees(block.phi2[step]),
+        "tooth1": ((one + 1) // 2 % (halves[0] // 2) + 1).astype(float),
+        "tooth2": (two // 2 + 1).astype(float),
+        "side": np.where(one % 2 == 0, 1.0, -1.0),
+        "facing": (one % 2 == (block.side < 0)) * _facing(block, turning, step, one, two),
+        "carries": carries,
+        "area_mm2": area,
+        "predicted_mm2": column(2, lens.area),
+        "closed_mm2": column(2, lens.closed),
+        "depth_mm": column(0, found.depth),
+        "length_mm": column(0, found.length),
+        "patch_from_mm": column(0, found.radius[0]),
+        "patch_to_mm": column(0, found.radius[1]),
+        "contact_radius1_mm": column(1, np.abs(exact.point)),
+        "contact_radius2_mm": column(1, np.abs(exact.point - axis)),
+        "pressure_angle_deg": column(1, np.degrees(exact.pressure_angle)),
+        "sliding_mm_per_rad": column(1, exact.sliding),
+        "specific_sliding1": column(1, exact.specific[0]),
+        "specific_sliding2": column(1, exact.specific[1]),
+        "relative_curvature_per_mm": column(1, exact.curvature),
+        "transmission_error_rad": np.ma.masked_invalid(block.error[step]),
+        "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
+        "held_back_gap_mm": block.held_back[step],
+    }
+
+
+def _facing(block: Block, turning: Turning, step: Ints, one: Ints, two: Ints) -> Array:
+    return turning.face(block.phi1[step], one, two).astype(float)
+
+
+def _halves(pair: Ints, side: int, count: tuple[int, int]) -> tuple[Ints, Ints]:
+    """Return the halves of pairs j of a side, counted within the first turns."""
+    half = 2 * pair - (side < 0)
+    return half % count[0], half % count[1]

@@ -1,0 +1,314 @@
+"""The meshing study: exact contact, exact gap and stepwise overlap side by side, phase by phase.
+
+At every phase the driver is turned ahead by a small angle, and the outlines are intersected; the
+exact flanks say which pairs must overlap, how much, and how far the driven wheel could turn. Off
+the designed centre distance the driven wheel is first turned until it touches, as in a machine.
+The outlines are made anew, so fine that the chord errors of both together are at most a hundredth
+of the penetration. An interruption keeps the phases done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.gears.pair import FINEST, Gear
+from gearcam.meshing.contact import COAST, DRIVE, FlankPairs, Ints, contacts, flank_pairs
+from gearcam.meshing.gap import touches
+from gearcam.meshing.lens import lenses
+from gearcam.meshing.overlap import Overlaps, Turning, halve
+from gearcam.meshing.rows import Block, columns_of, on_side
+from gearcam.meshing.settings import MeshingSpec
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+_SHARE = 1.0 / 200.0
+"""Chord error of each outline over the penetration: both together are a hundredth."""
+
+_BLOCK = 60
+"""Phases that are studied at once: few enough for progress, many enough to be fast."""
+
+_BESIDE = 0.15
+"""Phases studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""
+
+DEEPER = 1.25
+"""Depth of overlap, over what the advance explains, from which flanks count as interfering."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Setup:
+    """A pair as mounted for a study.
+
+    Parameters
+    ----------
+    spec : MeshingSpec
+        Settings.
+    pairs : mapping of int to FlankPairs
+        Both sides.
+    turning : Turning
+        The outlines.
+    penetration : float, mm
+        Smallest penetration of a full contact: advance times lever.
+    lever : float, mm
+        Largest lever of the driver.
+    shift : float, mm
+        Centre distance as mounted less that as designed.
+    """
+
+    spec: MeshingSpec
+    pairs: dict[int, FlankPairs]
+    turning: Turning
+    penetration: float
+    lever: float
+    shift: float
+
+    @property
+    def side(self) -> int:
+        """The side that the advance presses together."""
+        return DRIVE if self.spec.advance > 0.0 else COAST
+
+    @property
+    def noise(self) -> float:
+        """Depth of overlap that the chords alone may cause, mm."""
+        return 1.5 * (self.turning.driver.chord_error + self.turning.driven.chord_error)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Meshing:
+    """A finished or interrupted study.
+
+    Parameters
+    ----------
+    setup : Setup
+        The pair as mounted.
+    phi1 : (n,) array, rad
+        The phases done.
+    asked : int
+        Number of phases asked for.
+    blocks : list of Block
+        What was found, block by block.
+    """
+
+    setup: Setup
+    phi1: Array
+    asked: int
+    blocks: list[Block] = field(default_factory=list)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every phase was studied."""
+        return len(self.phi1) == self.asked
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """The rows of ``meshing.csv``: one a phase and pair of halves that touch or should."""
+        return columns_of(self.blocks, self.setup.turning)
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """The numbers of the study, for JSON."""
+        from gearcam.meshing.numbers import numbers
+
+        return numbers(self)
+
+    def every(self, name: str) -> Array:
+        """Return a field of all blocks, end to end, by its `name`."""
+        if not self.blocks:
+            return np.empty(0)
+        return np.concatenate([getattr(block, name) for block in self.blocks])
+
+
+def study(
+    gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None = None
+) -> Meshing:
+    """Study a pair.
+
+    Parameters
+    ----------
+    gears : (Gear, Gear)
+        The wheels.
+    spec : MeshingSpec
+        Settings.
+    progress : callable, optional
+        Called with ``"meshing"``, the phases done and their number.
+
+    Returns
+    -------
+    Meshing
+        Of the phases done where it was interrupted.
+
+    Raises
+    ------
+    InfeasibleError
+        If the wheels do not reach each other, or the advance is lost in rounding.
+    """
+    setup = mount(gears, spec)
+    phi1 = phases(setup)
+    blocks: list[Block] = []
+    done = 0
+    try:
+        for start in range(0, len(phi1), _BLOCK):
+            if progress is not None:
+                progress("meshing", start, len(phi1))
+            blocks.append(_block(setup, phi1[start : start + _BLOCK], start))
+            done = min(start + _BLOCK, len(phi1))
+    except KeyboardInterrupt:
+        pass
+    return Meshing(setup=setup, phi1=phi1[:done], asked=len(phi1), blocks=blocks)
+
+
+def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
+    """Put a pair on its shafts, with outlines as fine as the advance asks for.
+
+    Parameters
+    ----------
+    gears : (Gear, Gear)
+        The wheels.
+    spec : MeshingSpec
+        Settings.
+
+    Returns
+    -------
+    Setup
+
+    Raises
+    ------
+    InfeasibleError
+        If the wheels do not reach each other, or the advance is lost in rounding.
+    """
+    pair = gears[0].pair
+    distance = spec.center_distance or pair.center_distance
+    shift = distance - pair.center_distance
+    depth = 2.0 * pair.rack.addendum * pair.module
+    if abs(shift) >= depth:
+        near, far = pair.center_distance - depth, pair.center_distance + depth
+        raise InfeasibleError(
+            "the wheels are mounted so far from their designed distance that their teeth do not "
+            "mesh",
+            where="meshing.center_distance_mm",
+            value=distance,
+            limit=near if shift < 0.0 else far,
+            unit="mm",
+            nearest=f"between {near:.6g} and {far:.6g} mm",
+        )
+    pairs = {side: flank_pairs(gears, side) for side in (DRIVE, COAST)}
+    side = DRIVE if spec.advance > 0.0 else COAST
+    turn = pair.law.lobes.n1 * pair.law.lobes.period
+    levers = contacts(pairs[side], np.linspace(0.0, turn, 20 * pair.teeth[0])).lever[0]
+    if not levers.size:
+        levers = np.array([pair.rolling.frames(1, np.zeros(1)).p.real[0]])
+    penetration = abs(spec.advance) * float(levers.min())
+    tolerance = min(_SHARE * penetration, pair.chord_tolerance(None))
+    if tolerance < FINEST * pair.module:
+        least = spec.advance * FINEST * pair.module / tolerance
+        raise InfeasibleError(
+            "the advance is so small that the overlap would be lost in rounding",
+            where="meshing.advance_deg",
+            value=float(np.degrees(spec.advance)),
+            limit=float(np.degrees(least)),
+            unit="deg",
+            nearest=f"at least {np.degrees(abs(least)):.3g} deg",
+        )
+    first, second = (halve(replace(gear.profile, tolerance=tolerance)) for gear in gears)
+    turning = Turning(rolling=pair.rolling, driver=first, driven=second, distance=distance)
+    return Setup(
+        spec=spec,
+        pairs=pairs,
+        turning=turning,
+        penetration=penetration,
+        lever=float(levers.max()),
+        shift=shift,
+    )
+
+
+def phases(setup: Setup) -> Array:
+    """Return the phases of a study, rad.
+
+    Parameters
+    ----------
+    setup : Setup
+        The pair as mounted.
+
+    Returns
+    -------
+    (n,) array
+        All, or with `teeth` those at which the teeth are in contact or nearly.
+
+    Raises
+    ------
+    InfeasibleError
+        If there is none.
+    """
+    spec = setup.spec
+    phi1 = spec.start + (spec.end - spec.start) * np.arange(spec.steps) / spec.steps
+    if spec.teeth is None:
+        return phi1
+    pairs = setup.pairs[setup.side]
+    start, end = (edge[np.array(spec.teeth) - 1] for edge in pairs.arcs)
+    turn = pairs.toothings[0].rolling.length(1)
+    s = pairs.toothings[0].rolling.arc_length(phi1)[:, None]
+    margin = _BESIDE * pairs.pitch
+    inside = np.mod(s - start + margin, turn) <= end - start + 2.0 * margin
+    chosen = phi1[inside.any(axis=1)]
+    if not chosen.size:
+        angles = np.degrees(pairs.toothings[0].rolling.angle(0.5 * (start + end)))
+        raise InfeasibleError(
+            "none of the phases has one of these teeth in contact",
+            where="meshing.teeth",
+            nearest="their contact is about phi1 = "
+            + ", ".join(f"{angle:.4g}" for angle in angles)
+            + " deg; take more steps or another range",
+        )
+    return chosen
+
+
+def _block(setup: Setup, phi1: Array, first: int) -> Block:
+    """Study some phases; `first` is the number of the first of them."""
+    spec, turning, side = setup.spec, setup.turning, setup.side
+    distance = turning.distance
+    turns = {s: touches(setup.pairs[s], phi1, distance=distance) for s in (DRIVE, COAST)}
+    extreme: dict[int, Array] = {}
+    edge = np.zeros(len(phi1), dtype=bool)
+    for s, found in turns.items():
+        outward = np.full(len(phi1), -np.inf)
+        np.maximum.at(outward, found.step, -s * found.turn)
+        extreme[s] = -s * outward
+        if s == side:
+            deciding = found.edge & (-s * found.turn >= outward[found.step])
+            edge[found.step[deciding]] = True
+    lead = np.where(np.isfinite(extreme[side]), extreme[side], 0.0) if setup.shift else 0.0
+    ahead = turning.overlaps(phi1, spec.advance, lead)
+    held = turning.gaps(side, phi1, -spec.advance, lead)
+    r2 = np.abs(turning.rolling.frames(2, phi1).p)
+    tangent = turning.rolling.frames(1, phi1).t * np.exp(-1j * phi1)
+    play = extreme[COAST] - extreme[DRIVE]
+    return Block(
+        first=first,
+        phi1=phi1,
+        phi2=turning.rolling.law.phi2(phi1),
+        side=side,
+        error=extreme[side],
+        backlash=play * r2 * tangent.imag,
+        play=play,
+        edge=edge,
+        held_back=held,
+        overlaps=ahead,
+        contacts=contacts(setup.pairs[side], phi1),
+        lenses=lenses(setup.pairs[side], phi1, spec.advance, distance, lead),
+        interferes=_interferes(setup, ahead, len(phi1)),
+    )
+
+
+def _interferes(setup: Setup, found: Overlaps, count: int) -> NDArray[np.bool_]:
+    """Whether flanks overlap at a phase that should not, or deeper than the advance explains."""
+    expected = on_side(found, setup.side)
+    limit = np.where(expected, DEEPER * abs(setup.spec.advance) * setup.lever, 0.0) + setup.noise
+    result = np.zeros(count, dtype=bool)
+    result[found.step[found.depth > limit]] = True
+    return result
