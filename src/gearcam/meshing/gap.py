@@ -13,6 +13,7 @@ Flanks only: that an edge meets the mate's fillet is seen by the stepwise overla
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -96,7 +97,7 @@ class Facing:
         toothing = self.pairs.toothings[wheel - 1]
         sigma = self.pairs.side if wheel == 1 else -self.pairs.side
         reach = self.pairs.reach(wheel, self.pair)[int(tip)]
-        return toothing.rolling.angle(self.pairs.place(wheel, self.pair) - sigma * reach)
+        return toothing.rolling.angle(self._places[wheel - 1] - sigma * reach)
 
     def flank(self, wheel: Wheel, angle: Array, *, moving: bool) -> tuple[Plane, Plane]:
         """Return points seen from the driven axis and directions of a wheel's flanks.
@@ -120,16 +121,23 @@ class Facing:
         alpha, w = toothing.cutter.alpha, toothing.turn
         frames = toothing.frames(angle, curved=moving)
         cosine, sine = np.cos(alpha), sigma * np.sin(alpha)
-        ahead = (self.pairs.place(wheel, self.pair) - frames.s) * cosine
+        ahead = (self._places[wheel - 1] - frames.s) * cosine
         point = frames.p + ahead * frames.t * (cosine + sine * w)
         direction = frames.t * (cosine * w - sine)
         if moving:
             direction = -(sine + ahead * frames.kappa) * frames.speed * direction
-        if wheel == 1:
-            turned = np.exp(-1j * (self.phi1 + self.advance))
-            return point * turned - self.distance, direction * turned
-        turned = np.exp(1j * toothing.rolling.law.phi2(self.phi1))
-        return point * turned, direction * turned
+        turned = self._turned[wheel - 1]
+        shift = self.distance if wheel == 1 else 0.0
+        return point * turned - shift, direction * turned
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        return self.pairs.place(1, self.pair), self.pairs.place(2, self.pair)
+
+    @cached_property
+    def _turned(self) -> tuple[Plane, Plane]:
+        law = self.pairs.toothings[0].rolling.law
+        return np.exp(-1j * (self.phi1 + self.advance)), np.exp(1j * law.phi2(self.phi1))
 
     def find(self, wheel: Wheel, radius: Array, low: Array, high: Array, start: Array) -> Array:
         """Return the driver angles, rad, of flank points at distances from the driven axis.

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.meshing.contact import FlankPairs, Ints, contacts
-from gearcam.meshing.gap import facing, touches
+from gearcam.meshing.gap import Facing, facing, touches
 from gearcam.numeric.roots import bracketed_root
 
 Array = NDArray[np.float64]
@@ -99,12 +99,7 @@ def lenses(
         ends[-1][inside] = limit[inside]
         clipped.append(inside)
     low, high = ends
-    half = 0.5 * (high - low)
-    area = np.zeros(len(low))
-    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
-        angle = low + half * (1.0 + node)
-        point, motion = some.flank(1, angle, moving=True)
-        area += weight * half * depth(angle) * np.real(np.conj(point) * motion)
+    area = _areas(some, low, high, root, tip, ahead)
     edge = clipped[0] | clipped[1]
     axis = some.distance
     radius = np.stack([np.abs(some.flank(1, v, moving=False)[0] + axis) for v in (low, high)])
@@ -121,12 +116,26 @@ def lenses(
     return Lenses(
         step=some.step,
         pair=some.pair,
-        area=np.abs(area),
+        area=area,
         closed=closed,
         depth=-pairs.side * (found.turn[over] - ahead) * lever,
         radius=radius,
         edge=edge,
     )
+
+
+def _areas(
+    some: Facing, low: Array, high: Array, root: Array, tip: Array, ahead: Array
+) -> Array:
+    """Integrate the gaps between driver angles `low` and `high`, mm^2."""
+    n, count = len(_NODES), len(low)
+    many = some.select(np.repeat(np.arange(count), n))
+    half = 0.5 * (high - low)
+    angle = (low[:, None] + half[:, None] * (1.0 + _NODES)).ravel()
+    point, motion = many.flank(1, angle, moving=True)
+    turn = many.compare(angle, np.repeat(root, n), np.repeat(tip, n))[0] - np.repeat(ahead, n)
+    values = (turn * np.real(np.conj(point) * motion)).reshape(count, n)
+    return np.abs(values @ _WEIGHTS * half)
 
 
 def _closed(pairs: FlankPairs, phi1: Array, advance: float, step: Ints, pair: Ints) -> Array:

@@ -31,7 +31,7 @@ Progress = Callable[[str, int, int], None]
 _SHARE = 1.0 / 200.0
 """Chord error of each outline over the penetration: both together are a hundredth."""
 
-_BLOCK = 60
+_BLOCK = 120
 """Phases that are studied at once: few enough for progress, many enough to be fast."""
 
 _BESIDE = 0.15

@@ -44,14 +44,16 @@ def newton_in_bracket(
         The roots. Where the function does not change sign, the end that is nearer to zero.
     """
     a, b, x = (np.array(v, dtype=float) for v in np.broadcast_arrays(low, high, start))
-    for _ in range(_STEPS):
+    for number in range(_STEPS):
         value, slope = function(x)
         below = value < 0.0
         a, b = np.where(below, x, a), np.where(below, b, x)
         with np.errstate(divide="ignore", invalid="ignore"):
             step = x - value / slope
         inside = (step - a) * (step - b) <= 0.0
-        new = np.where(value == 0.0, x, np.where(inside, step, 0.5 * (a + b)))
+        # A first step that leads out tries the end: it may be the answer.
+        other = 0.5 * (a + b) if number else np.where((step - a) * (b - a) > 0.0, b, a)
+        new = np.where(value == 0.0, x, np.where(inside, step, other))
         done = np.all(np.abs(new - x) <= tolerance)
         x = new
         if done:
