@@ -64,7 +64,7 @@ _CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact 
 )
 def contact_ratio(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn of a low contact ratio; an error where nothing drives."""
-    for side, arcs in zip(("forward", "backward"), subject.arcs, strict=True):
+    for side, arcs in zip(("backward", "forward"), subject.arcs, strict=True):
         worst = float(arcs.ratios.min())
         if not arcs.gaps and worst >= limit:
             continue

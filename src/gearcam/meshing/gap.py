@@ -25,7 +25,7 @@ from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 Array = NDArray[np.float64]
 
 _SAMPLES = 13
-"""Points of a flank between which the extreme is sought; its slope has one zero on smooth flanks."""
+"""Points of a flank between which the extreme is sought: on a smooth flank there is one."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -81,7 +81,7 @@ class Facing:
     advance: float
     distance: float
 
-    def select(self, index: Array | NDArray[np.bool_] | Ints) -> Facing:
+    def select(self, index: NDArray[np.bool_] | Ints) -> Facing:
         """Return some of the pairs, by `index`."""
         return Facing(
             pairs=self.pairs,

@@ -124,9 +124,7 @@ def lenses(
     )
 
 
-def _areas(
-    some: Facing, low: Array, high: Array, root: Array, tip: Array, ahead: Array
-) -> Array:
+def _areas(some: Facing, low: Array, high: Array, root: Array, tip: Array, ahead: Array) -> Array:
     """Integrate the gaps between driver angles `low` and `high`, mm^2."""
     n, count = len(_NODES), len(low)
     many = some.select(np.repeat(np.arange(count), n))
@@ -139,7 +137,7 @@ def _areas(
 
 
 def _closed(pairs: FlankPairs, phi1: Array, advance: float, step: Ints, pair: Ints) -> Array:
-    """The closed form of each lens, mm^2; nan for pairs that do not touch without the advance."""
+    """Return closed forms, mm^2; nan for pairs that do not touch without the advance."""
     exact = contacts(pairs, phi1)
     delta = abs(advance) * exact.lever[0]
     with np.errstate(invalid="ignore"):
@@ -155,6 +153,7 @@ def _uneven(pairs: FlankPairs, low: Array, high: Array) -> NDArray[np.bool_]:
     """Whether stretches of flank, by driver angle, hold a knot of the law."""
     law = pairs.toothings[0].rolling.law
     start, end = np.minimum(low, high), np.maximum(low, high)
-    period = law.lobes.period
-    turns = [np.floor((end - knot) / period) > np.floor((start - knot) / period) for knot in law.knots]
-    return np.any(turns, axis=0) if len(law.knots) > 2 else np.zeros(len(low), dtype=bool)
+    # a smooth law has no knots but the ends of its lobe
+    knots = law.knots[:-1] if len(law.knots) > 2 else law.knots[:0]
+    first = np.floor((start[:, None] - knots) / law.lobes.period)
+    return np.any(np.floor((end[:, None] - knots) / law.lobes.period) > first, axis=1)

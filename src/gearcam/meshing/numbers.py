@@ -70,7 +70,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
     return result
 
 
-def extent(values: Array, kind: type = float) -> dict[str, Any]:
+def extent(values: Array | NDArray[np.int64], kind: type = float) -> dict[str, Any]:
     """Return the smallest and the largest of some values.
 
     Parameters
@@ -129,8 +129,7 @@ def agreement(meshing: Meshing, stepwise: NDArray[np.int64]) -> dict[str, Any]:
     inside, clipped, predicted = [0.0], [0.0], []
     for block in meshing.blocks:
         area, lens, closed = (
-            {key: value for key, value in zip(keys, values.tolist(), strict=True)}
-            for keys, values in _areas(meshing, block)
+            dict(zip(keys, values.tolist(), strict=True)) for keys, values in _areas(meshing, block)
         )
         for key, value in lens.items():
             found, plain = area.get(key, 0.0), closed[key]

@@ -131,7 +131,9 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         (exact.step, *_halves(exact.pair, block.side, halves)),
         (lens.step, *_halves(lens.pair, block.side, halves)),
     ]
-    every, where = np.unique(np.hstack([np.stack(key) for key in keys]), axis=1, return_inverse=True)
+    every, where = np.unique(
+        np.hstack([np.stack(key) for key in keys]), axis=1, return_inverse=True
+    )
     step, one, two = every
     rows = np.split(where.ravel(), np.cumsum([len(found.step), len(exact.step)]))
     size = every.shape[1]
@@ -153,7 +155,7 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         "tooth1": ((one + 1) // 2 % (halves[0] // 2) + 1).astype(float),
         "tooth2": (two // 2 + 1).astype(float),
         "side": np.where(one % 2 == 0, 1.0, -1.0),
-        "facing": (one % 2 == (block.side < 0)) * _facing(block, turning, step, one, two),
+        "facing": turning.face(block.phi1[step], one, two).astype(float),
         "carries": carries,
         "area_mm2": area,
         "predicted_mm2": column(2, lens.area),
@@ -173,10 +175,6 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back[step],
     }
-
-
-def _facing(block: Block, turning: Turning, step: Ints, one: Ints, two: Ints) -> Array:
-    return turning.face(block.phi1[step], one, two).astype(float)
 
 
 def _halves(pair: Ints, side: int, count: tuple[int, int]) -> tuple[Ints, Ints]:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.pair import FINEST, Gear
-from gearcam.meshing.contact import COAST, DRIVE, FlankPairs, Ints, contacts, flank_pairs
+from gearcam.meshing.contact import COAST, DRIVE, FlankPairs, contacts, flank_pairs
 from gearcam.meshing.gap import touches
 from gearcam.meshing.lens import lenses
 from gearcam.meshing.overlap import Overlaps, Turning, halve
@@ -124,9 +124,7 @@ class Meshing:
         return np.concatenate([getattr(block, name) for block in self.blocks])
 
 
-def study(
-    gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None = None
-) -> Meshing:
+def study(gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None = None) -> Meshing:
     """Study a pair.
 
     Parameters
@@ -148,7 +146,11 @@ def study(
     InfeasibleError
         If the wheels do not reach each other, or the advance is lost in rounding.
     """
-    setup = mount(gears, spec)
+    return run(mount(gears, spec), progress)
+
+
+def run(setup: Setup, progress: Progress | None = None) -> Meshing:
+    """Study a pair as mounted (see `study`)."""
     phi1 = phases(setup)
     blocks: list[Block] = []
     done = 0

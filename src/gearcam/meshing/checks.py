@@ -1,0 +1,229 @@
+"""The checks of a meshing study; importing this room registers them.
+
+A check sees a `Meshing` and yields findings. Values and limits are in the units of files.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from gearcam.findings import Finding, check
+from gearcam.meshing.contact import DRIVE, stretches
+from gearcam.meshing.rows import on_side
+from gearcam.meshing.study import Meshing
+from gearcam.quantities import NUMBER, Param
+
+Array = NDArray[np.float64]
+
+KIND = "gear-pair-meshing"
+
+_CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
+_CLEARANCE = (
+    "tip_clearance",
+    Param(NUMBER, ge=0, le=1, doc="least clearance of tips from the mate's root, in modules"),
+    0.1,
+)
+_UNPREDICTED = 0.5
+"""Share of the penetration from which an overlap that no flank predicts is worth a word."""
+
+
+def spans(angles: Array, step: float) -> str:
+    """Return phases as ranges in degrees, with the number of the ranges that are left out.
+
+    Parameters
+    ----------
+    angles : (n,) array, rad
+        Rising.
+    step : float, rad
+        Distance of phases that follow each other.
+
+    Returns
+    -------
+    str
+    """
+    cuts = np.flatnonzero(np.diff(angles) > 1.5 * step)
+    starts, ends = np.append(0, cuts + 1), np.append(cuts, len(angles) - 1)
+    shown = [
+        f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}"
+        for a, b in zip(np.degrees(angles[starts]), np.degrees(angles[ends]), strict=True)
+    ][:3]
+    more = f" and {len(starts) - 3} more" if len(starts) > 3 else ""
+    return f"phi1 = {', '.join(shown)} deg{more}"
+
+
+def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
+    spec = meshing.setup.spec
+    return spans(meshing.phi1[chosen], (spec.end - spec.start) / spec.steps)
+
+
+def _side(meshing: Meshing) -> str:
+    return "driving" if meshing.setup.side == DRIVE else "holding back"
+
+
+@check(
+    "meshing-contact-ratio",
+    kind=KIND,
+    doc="smallest contact ratio of any flank on the side that is pressed together",
+    limit=_CONTACT_RATIO,
+)
+def contact_ratio(meshing: Meshing, limit: float) -> Iterator[Finding]:
+    """Warn of a low contact ratio."""
+    ratios = meshing.setup.pairs[meshing.setup.side].contact_ratios
+    if ratios.min() < limit:
+        yield Finding(
+            code="meshing-contact-ratio",
+            severity="warning",
+            message="Few teeth carry at a time; a larger rack.addendum or more teeth help.",
+            value=float(ratios.min()),
+            limit=limit,
+            where=f"{_side(meshing)}, wheel 1, tooth {int(ratios.argmin()) + 1}",
+        )
+
+
+@check("nothing-drives", kind=KIND, doc="arcs of the driver's turn on which no pair carries")
+def nothing_drives(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Report the arcs on which nothing drives, as errors."""
+    start, end, carrying = stretches(meshing.setup.pairs[meshing.setup.side])
+    idle = np.flatnonzero(carrying == 0)
+    if idle.size:
+        arcs = [f"{math.degrees(start[k]):.6g} to {math.degrees(end[k]):.6g}" for k in idle[:3]]
+        more = f" and {idle.size - 3} more" if idle.size > 3 else ""
+        yield Finding(
+            code="nothing-drives",
+            severity="error",
+            message="On these arcs no flanks are in contact: the pair jumps or stops there.",
+            value=math.degrees(float((end - start)[idle].sum())),
+            unit="deg",
+            where=f"{_side(meshing)}, phi1 = {', '.join(arcs)} deg{more}",
+        )
+
+
+@check("interference", kind=KIND, doc="overlap where none may be, or deeper than the advance")
+def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Report interference, as an error."""
+    hit = meshing.every("interferes").astype(bool)
+    if not hit.any():
+        return
+    deepest, where = 0.0, ""
+    for block in meshing.blocks:
+        found, count = block.overlaps, meshing.setup.turning.driver.count
+        bad = block.interferes[found.step]
+        if bad.any() and found.depth[bad].max() > deepest:
+            k = np.flatnonzero(bad)[found.depth[bad].argmax()]
+            deepest = float(found.depth[k])
+            one, two = (found.half[0][k] + 1) // 2 % (count // 2) + 1, found.half[1][k] // 2 + 1
+            angle = math.degrees(block.phi1[found.step[k]])
+            where = f"deepest at phi1 = {angle:.6g} deg, tooth {one} in tooth {two}"
+    yield Finding(
+        code="interference",
+        severity="error",
+        message=f"The wheels run into each other at {_at(meshing, hit)}.",
+        value=deepest,
+        limit=meshing.setup.noise,
+        unit="mm",
+        where=where,
+    )
+
+
+@check("edge-contact", kind=KIND, doc="phases at which an edge touches before the flanks do")
+def edge_contact(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Warn of edges that touch first."""
+    edge = meshing.every("edge").astype(bool)
+    if edge.any():
+        yield Finding(
+            code="edge-contact",
+            severity="warning",
+            message="The end of a flank touches before the flanks do: it scratches, and the "
+            "motion is not the one asked for.",
+            value=float(np.count_nonzero(edge)),
+            unit="phases",
+            where=_at(meshing, edge),
+        )
+
+
+@check(
+    "contact-off-flank",
+    kind=KIND,
+    doc="contact of the outlines where no active flanks predict it",
+)
+def contact_off_flank(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Warn of facing halves that overlap although their flanks cannot."""
+    side, count = meshing.setup.side, meshing.setup.turning.driver.count
+    least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
+    off = np.zeros(len(meshing.phi1), dtype=bool)
+    for block in meshing.blocks:
+        found, lens = block.overlaps, block.lenses
+        halves = (2 * lens.pair - (side < 0)) % count
+        known = set(zip(lens.step.tolist(), halves.tolist(), strict=True))
+        keys = zip(found.step.tolist(), found.half[0].tolist(), strict=True)
+        strange = np.array([key not in known for key in keys], dtype=bool)
+        strange &= on_side(found, side) & (found.depth > least)
+        off[block.first + found.step[strange]] = True
+    if off.any():
+        yield Finding(
+            code="contact-off-flank",
+            severity="warning",
+            message="The outlines touch where neither flank is: on a fillet or on a tip.",
+            value=float(np.count_nonzero(off)),
+            unit="phases",
+            where=_at(meshing, off),
+        )
+
+
+@check(
+    "tip-clearance",
+    kind=KIND,
+    doc="smallest distance of a tip's middle from the mate's root as it passes the pitch point",
+    limit=_CLEARANCE,
+)
+def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Finding]:
+    """Warn of tips that nearly touch the mate's root."""
+    module = meshing.setup.pairs[DRIVE].pitch / math.pi
+    for wheel, distances in enumerate(clearances(meshing), start=1):
+        least = float(distances.min()) / module
+        if least < limit:
+            yield Finding(
+                code="tip-clearance",
+                severity="warning",
+                message="The tip nearly touches the mate's root, or does; a larger rack.dedendum "
+                "or centre distance helps.",
+                value=least,
+                limit=limit,
+                unit="modules",
+                where=f"wheel {wheel}, tooth {int(distances.argmin()) + 1}",
+            )
+
+
+def clearances(meshing: Meshing) -> tuple[Array, Array]:
+    """Return the distances of the tips' middles from the mates' outlines.
+
+    Parameters
+    ----------
+    meshing : Meshing
+        A study.
+
+    Returns
+    -------
+    one, two : (z1,) and (z2,) arrays, mm
+        Of each tooth of both wheels, at the phase at which its middle passes the pitch point;
+        0 where it lies inside its mate.
+    """
+    turning, pairs = meshing.setup.turning, meshing.setup.pairs[DRIVE]
+    result = []
+    for own, mate, toothing in (
+        (turning.driver, turning.driven, pairs.toothings[0]),
+        (turning.driven, turning.driver, pairs.toothings[1]),
+    ):
+        phi1 = turning.rolling.angle(toothing.tooth_places)
+        turn, shift = turning.pose(phi1, 0.0)
+        # the + half of a tooth begins in the middle of its tip
+        tips = own.points[own.starts[np.arange(toothing.wheel - 1, own.count, 2)]]
+        seen = tips * turn + shift if toothing.wheel == 1 else (tips - shift) / turn
+        nearest = shapely.distance(mate.union, shapely.points(seen.real, seen.imag))
+        result.append(nearest)
+    return result[0], result[1]

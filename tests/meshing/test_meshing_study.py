@@ -1,0 +1,217 @@
+"""The meshing study on the nail machine: what it proves, and what it finds when a pair is wrong."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+
+from gearcam.findings import run_checks
+from gearcam.gears.outline import build_outline
+from gearcam.meshing.checks import KIND
+from gearcam.meshing.contact import COAST, DRIVE, count, flank_pairs, stretches
+from gearcam.meshing.numbers import pairs_in_contact
+from gearcam.meshing.overlap import Turning, halve
+from gearcam.meshing.settings import MeshingSpec
+from gearcam.meshing.study import Meshing, Setup, mount, run, study
+from gearcam.tolerances import DEFAULT
+from helpers_pairs import profile
+
+NAILS = ("nail_machine_two_phase", "nail_machine_three_phase")
+ADVANCE = math.radians(0.005)
+TURN = np.radians(np.arange(360.0))
+
+
+@cache
+def full_turn(name: str, advance: float = ADVANCE) -> Meshing:
+    return study(profile(name).gears, MeshingSpec(advance=advance))
+
+
+def codes(meshing: Meshing) -> dict[str, str]:
+    return {found.code: found.severity for found in run_checks(KIND, meshing, {})}
+
+
+def moved(setup: Setup, tooth: int, by: float) -> Setup:
+    """The pair with a tooth of the driver moved along the pitch curve, outline and flanks."""
+    halves, count = setup.turning.driver, setup.turning.driver.count
+    angle = by / float(np.abs(setup.turning.rolling.frames(1, np.array([0.0])).p[0]))
+    points = halves.points.copy()
+    for half in (2 * tooth - 2, (2 * tooth - 3) % count):
+        points[halves.starts[half] : halves.starts[half + 1]] *= np.exp(1j * angle)
+    sf = setup.pairs[DRIVE].flanks[0].sf.copy()
+    sf[[tooth - 1, count // 2 + tooth - 1]] += by
+    pairs = {
+        side: replace(found, flanks=(replace(found.flanks[0], sf=sf), found.flanks[1]))
+        for side, found in setup.pairs.items()
+    }
+    turning = replace(setup.turning, driver=replace(halves, points=points))
+    return replace(setup, pairs=pairs, turning=turning)
+
+
+@pytest.mark.parametrize("name", NAILS)
+@pytest.mark.parametrize("advance", [ADVANCE, -ADVANCE])
+def test_a_full_turn_runs_clean(name: str, advance: float) -> None:
+    meshing = full_turn(name, advance)
+    found = meshing.summary
+    assert found["complete"]
+    assert found["steps_done"] == 360
+    assert found["interference_steps"] == 0
+    assert found["transmission_error_rad_max"] < 1e-9
+    assert max(map(abs, found["backlash_mm"].values())) < 1e-9
+    assert found["pairs_in_contact"] == {"min": 1, "max": 2}
+    assert 2.0 * found["chord_error_mm"] <= found["penetration_mm"] / 100.0
+    assert codes(meshing) == {}
+
+
+@pytest.mark.parametrize("name", NAILS)
+@pytest.mark.parametrize("advance", [ADVANCE, -ADVANCE])
+def test_outlines_and_exact_flanks_agree(name: str, advance: float) -> None:
+    agreement = full_turn(name, advance).summary["agreement"]
+    assert agreement["inside"] < 0.02
+    assert agreement["steps_apart"] <= 1
+    assert agreement["clipped_mm2"] < 3e-3
+
+
+@pytest.mark.parametrize("name", NAILS)
+def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(name: str) -> None:
+    """Edges overlap by half a lens outside their arcs: the advance must be small.
+
+    Where an undercut flank ends its mate is nearly parallel, and the lens is long.
+    """
+    meshing = study(profile(name).gears, MeshingSpec(advance=math.radians(5e-4)))
+    pairs = meshing.setup.pairs[DRIVE]
+    stepwise, unloaded = pairs_in_contact(meshing), count(pairs, TURN)
+    assert np.all(stepwise >= unloaded)
+    changes = stretches(pairs)[0]
+    apart = np.flatnonzero(stepwise != unloaded)
+    beside = np.abs(np.angle(np.exp(1j * (TURN[apart][:, None] - changes)))).min(axis=1)
+    far = apart[beside > math.radians(1.0)]
+    columns = meshing.columns
+    idle = (columns["carries"] == 0.0) & np.isin(columns["step"], far)
+    undercut = profile(name).gear2.profile.undercut_teeth
+    assert set(columns["tooth2"][idle].astype(int).tolist()) <= set(undercut)
+    assert len(far) <= 4
+
+
+@pytest.mark.parametrize("name", NAILS)
+def test_held_back_the_flanks_come_apart_by_the_advance(name: str) -> None:
+    held = full_turn(name).summary["held_back_gap_mm"]
+    setup = full_turn(name).setup
+    assert held["min"] == pytest.approx(setup.penetration, rel=0.02)
+    assert held["max"] <= ADVANCE * setup.lever * 1.01
+
+
+def test_all_overlap_is_that_of_the_whole_outlines() -> None:
+    made = profile(NAILS[1])
+    first, second = (halve(gear.profile) for gear in made.gears)
+    rolling, distance = made.pair.rolling, made.pair.center_distance
+    turning = Turning(rolling=rolling, driver=first, driven=second, distance=distance)
+    angles = TURN[::17]
+    for lead in (0.0, 2e-4, -0.03):
+        found = turning.overlaps(angles, ADVANCE, lead)
+        areas = np.bincount(found.step, found.area, minlength=len(angles))
+        for area, phi in zip(areas, angles, strict=True):
+            turned = (
+                made.gear1.outline @ [1, 1j] * np.exp(-1j * (phi + ADVANCE)),
+                made.gear2.outline @ [1, 1j] * np.exp(1j * (made.law.phi2(phi) + lead)) + distance,
+            )
+            one, two = (shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in turned)
+            assert area == pytest.approx(one.intersection(two).area, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("by", [0.02, -0.02])
+def test_a_tooth_moved_by_20_um_is_found(by: float) -> None:
+    """Tooth 1 driving: forward is the side of falling s."""
+    spec = MeshingSpec(start=math.radians(-8.0), end=math.radians(8.0), steps=64)
+    setup = mount(profile(NAILS[0]).gears, spec)
+    whole, broken = run(setup), run(moved(setup, 1, by))
+    assert codes(whole) == {}
+    driven = 180.0 / (1.0 + 1.6)
+    shift = 0.02 / driven
+    assert np.abs(broken.every("error")).max() == pytest.approx(shift, rel=0.05)
+    if by < 0.0:
+        assert codes(broken)["interference"] == "error"
+        assert broken.every("error").max() == pytest.approx(shift, rel=0.05)
+    else:
+        # it carries no load: where it would be alone, nothing touches
+        assert broken.summary["pairs_in_contact"]["min"] == 0
+        assert whole.summary["pairs_in_contact"]["min"] == 1
+
+
+def test_half_a_pitch_off_phase_is_found() -> None:
+    made = profile(NAILS[0])
+    setup = mount(made.gears, MeshingSpec())
+    radius = np.abs(made.pair.rolling.frames(2, TURN[::10]).p)
+    lead = 0.5 * math.pi * made.pair.module / radius
+    found = setup.turning.overlaps(TURN[::10], ADVANCE, lead)
+    areas = np.bincount(found.step, found.area, minlength=36)
+    assert areas.min() > made.pair.module**2
+
+
+@pytest.mark.parametrize("name", NAILS)
+def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
+    made = profile(name)
+    close = study(made.gears, MeshingSpec(steps=72, center_distance=179.9))
+    assert close.summary["interference_steps"] == 72
+    assert codes(close)["interference"] == "error"
+    wide = study(made.gears, MeshingSpec(steps=72, center_distance=180.1))
+    assert wide.summary["interference_steps"] == 0
+    play = wide.every("play")
+    phi = wide.phi1
+    tangent = made.pair.rolling.frames(1, phi).t * np.exp(-1j * phi)
+    tilt = np.arctan2(tangent.real, tangent.imag)
+    alpha = made.pair.rack.pressure_angle
+    radius = np.abs(made.pair.rolling.frames(2, phi).p)
+    # to first order: the force lines of both sides cut the line of centres at alpha +- tilt
+    expected = 0.1 * (np.tan(alpha + tilt) + np.tan(alpha - tilt)) / radius
+    assert np.all(np.abs(play / expected - 1.0) < 0.01)
+    # and the outlines say the same: turned by all of the play, the other flanks touch
+    turning, error = wide.setup.turning, wide.every("error")
+    for share, free in ((0.999, True), (1.001, False)):
+        found = turning.overlaps(phi, 0.0, error + share * play)
+        touched = np.unique(found.step[found.depth > wide.setup.noise])
+        assert (len(touched) == 0) == free
+
+
+@pytest.mark.parametrize("name", NAILS)
+def test_corners_not_taken_from_the_roots_are_found(name: str) -> None:
+    made = profile(name)
+    free = 10 * made.pair.module  # the flanks go on to the tip curve, whatever the mate's roots
+    first, second = (
+        replace(gear, profile=build_outline(gear.toothing, free, 1e-3, DEFAULT))
+        for gear in made.gears
+    )
+    assert "interference" in codes(study((first, second), MeshingSpec()))
+
+
+def test_an_interruption_keeps_the_steps_done() -> None:
+    def stop(stage: str, done: int, total: int) -> None:  # noqa: ARG001
+        if done:
+            raise KeyboardInterrupt
+
+    meshing = study(profile(NAILS[0]).gears, MeshingSpec(steps=300), stop)
+    found = meshing.summary
+    assert not found["complete"]
+    assert 0 < found["steps_done"] < found["steps"] == 300
+    assert meshing.columns["phi1_deg"].max() < 180.0
+
+
+def test_teeth_choose_the_phases() -> None:
+    meshing = study(profile(NAILS[0]).gears, MeshingSpec(teeth=(1, 27)))
+    assert 25 < len(meshing.phi1) < 50
+    pairs = flank_pairs(profile(NAILS[0]).gears, DRIVE)
+    middle = pairs.toothings[0].rolling.angle(pairs.toothings[0].tooth_places[[0, 26]])
+    beside = np.abs(np.angle(np.exp(1j * (meshing.phi1[:, None] - middle)))).min(axis=1)
+    assert beside.max() < math.radians(20.0)
+    assert {1.0, 27.0} <= set(meshing.columns["tooth1"].tolist())
+
+
+def test_both_sides_are_those_of_the_motion() -> None:
+    """With the driver ahead it is the drive side that overlaps, held back the other."""
+    for advance, side in ((ADVANCE, DRIVE), (-ADVANCE, COAST)):
+        columns = full_turn(NAILS[0], advance).columns
+        assert set(columns["side"].tolist()) == {float(side)}
