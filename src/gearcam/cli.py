@@ -24,6 +24,7 @@ from gearcam.console import (
     complain,
     finding_lines,
     infeasible_text,
+    meshing_lines,
     pair_lines,
     progress_bar,
     say,
@@ -114,10 +115,10 @@ def _dispatch(words: list[str]) -> None:
 def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]:
     """Return a parser and a function for each command; its help is the function's docstring."""
     parsers = {}
-    for command in (_build, _check, _laws, _new, _schema):
+    for command in (_build, _check, _mesh, _laws, _new, _schema):
         name = command.__name__.lstrip("_")
         parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
-        if command in (_build, _check):
+        if command in (_build, _check, _mesh):
             parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
             parser.add_argument(
                 "-o", "--output", metavar="DIR", default="output", help="where to write"
@@ -128,11 +129,37 @@ def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]
         if command is _build:
             words = f"write only these: {','.join(FORMATS)}"
             parser.add_argument("--only", action="append", metavar="KINDS", help=words)
+        if command is _mesh:
+            _mesh_options(parser)
         if command is _new:
             parser.add_argument("kind", metavar="KIND", help=f"the kind of design: {KIND}")
             parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
         parsers[name] = (parser, command)
     return parsers
+
+
+def _mesh_options(parser: argparse.ArgumentParser) -> None:
+    """Add the settings of a study: they stand before those of the file's table [meshing]."""
+    from gearcam.design.tables import table
+
+    kinds = {"steps": int, "teeth": _numbers}
+    for key, entry in table("meshing").entries.items():
+        word = {"center_distance_mm": "center"}.get(key, key.removesuffix("_deg"))
+        unit = entry.param.quantity.unit.upper()
+        parser.add_argument(
+            f"--{word}",
+            dest=key,
+            type=kinds.get(key, float),
+            metavar=unit or ("1,27,..." if key == "teeth" else "N"),
+            help=entry.param.doc,
+        )
+
+
+def _numbers(text: str) -> list[int]:
+    try:
+        return [int(word) for word in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f'"{text}" is no list of teeth such as 1,27') from None
 
 
 def _command_help(parsers: Mapping[str, tuple[Any, Callable[..., None]]]) -> str:
@@ -163,6 +190,18 @@ def _check(files: list[str], output: str, debug: bool) -> None:
         return job.check(output)
 
     _each(files, "checked", action, debug=debug)
+
+
+def _mesh(files: list[str], output: str, debug: bool, **settings: Any) -> None:
+    """Turn the pair step by step: contact, interference, play; writes DIR/<name>/meshing.csv."""
+    from gearcam.design import with_meshing
+
+    given = {key: value for key, value in settings.items() if value is not None}
+
+    def action(job: GearPairJob, progress: Progress | None) -> Written:
+        return job.mesh(output, progress=progress)
+
+    _each(files, "meshed", action, debug=debug, adapt=lambda design: with_meshing(design, given))
 
 
 def _laws() -> None:
@@ -248,15 +287,20 @@ def _refuse(problems: Sequence[Problem]) -> None:
 
 Progress = Callable[[str, int, int], None]
 Action = Callable[["GearPairJob", Progress | None], "Written"]
+Adapt = Callable[[GearPairDesign], GearPairDesign]
 
 
-def _each(files: Sequence[str], done: str, action: Action, *, debug: bool) -> None:
-    """Do something with every file and end with the largest code."""
+def _each(
+    files: Sequence[str], done: str, action: Action, *, debug: bool, adapt: Adapt | None = None
+) -> None:
+    """Do something with every file, adapted where asked, and end with the largest code."""
     names: dict[str, str] = {}
     codes = []
     for file in files:
         try:
-            codes.append(_one(file, names, done, action))
+            codes.append(_one(file, names, done, action, adapt))
+            if codes[-1] == INTERRUPTED:
+                break
         except KeyboardInterrupt:
             raise SystemExit(_interrupted()) from None
         except DesignError as error:
@@ -278,10 +322,10 @@ def _each(files: Sequence[str], done: str, action: Action, *, debug: bool) -> No
     raise SystemExit(max(codes, default=GOOD))
 
 
-def _one(file: str, names: dict[str, str], done: str, action: Action) -> int:
+def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Adapt | None) -> int:
     """Do something with one file and say what came of it."""
     start = time.perf_counter()
-    design = load(file)
+    design = load(file) if adapt is None else adapt(load(file))
     _demand_new_name(design, file, names)
     from gearcam.jobs import GearPairJob  # a file that is refused needs none of it
 
@@ -289,10 +333,18 @@ def _one(file: str, names: dict[str, str], done: str, action: Action) -> int:
     with progress_bar(file) as progress:
         written = action(job, progress)
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
-    findings = job.findings
-    told = [pair_lines(written.summary), finding_lines(findings), written_lines(written)]
+    told = [
+        pair_lines(written.summary),
+        meshing_lines(written.summary),
+        finding_lines(written.findings),
+        written_lines(written),
+    ]
     say(textwrap.indent("\n".join(line for lines in told for line in lines), "  "))
-    return FINDINGS if any(finding.severity == "error" for finding in findings) else GOOD
+    if not written.complete:
+        found = written.summary["meshing"]
+        complain(f"{file}: interrupted: {found['steps_done']} of {found['steps']} steps are kept")
+        return INTERRUPTED
+    return FINDINGS if any(finding.severity == "error" for finding in written.findings) else GOOD
 
 
 def _demand_new_name(design: GearPairDesign, file: str, names: dict[str, str]) -> None:

@@ -30,6 +30,48 @@ def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         yield f"centre distance {distance:.6g} mm, module {module:.6g} mm, teeth {teeth}"
 
 
+def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the table of the numbers of a meshing study, if the summary has one."""
+    found = summary.get("meshing")
+    if found is None:
+        return
+    ahead = "ahead" if found["advance_deg"] > 0 else "back"
+    phases = (
+        f"{found['steps_done']} phases"
+        if found["complete"]
+        else (f"{found['steps_done']} of {found['steps']} phases")
+    )
+    yield (
+        f"{phases} at centre distance {found['center_distance_mm']:.6g} mm, driver turned "
+        f"{ahead} by {abs(found['advance_deg']):.6g} deg"
+    )
+    rows = [
+        ("contact ratio", found["contact_ratio"], ""),
+        ("pairs in contact", found.get("pairs_in_contact"), ""),
+        ("phases with interference", found.get("interference_steps"), ""),
+        ("transmission error, largest", found.get("transmission_error_rad_max"), "rad"),
+        ("backlash along the pitch curve", found.get("backlash_mm"), "mm"),
+        ("penetration of flanks", found["penetration_mm"], "mm"),
+        ("chord error of outlines", found["chord_error_mm"], "mm"),
+    ]
+    for words, value, unit in rows:
+        if value is not None:
+            yield f"  {words:<30}  {_span(value)} {unit}".rstrip()
+
+
+def _span(value: Any) -> str:
+    """Write a number, or the smallest and largest of some."""
+    if not isinstance(value, Mapping):
+        return f"{value:.4g}"
+    low, high = (_small(value[end]) for end in ("min", "max"))
+    return low if low == high else f"{low} to {high}"
+
+
+def _small(value: float) -> str:
+    """Write a number; what is rounding of millimetres is 0."""
+    return f"{0.0 if abs(value) < 1e-9 else value:.4g}"
+
+
 def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
     """Lay out findings as a table, each with its message below."""
     if not findings:

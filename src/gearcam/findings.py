@@ -128,5 +128,10 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
                 name, _, default = entry.limit
                 limit = limits.get(name, default)
             found += entry.run(subject, limit)
+    return in_order(found)
+
+
+def in_order(found: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Return findings with errors first, then warnings, then notes."""
     order = ("error", "warning", "note")
     return tuple(sorted(found, key=lambda finding: order.index(finding.severity)))

@@ -9,7 +9,16 @@ kinds of design that this version does not build.
 """
 
 from gearcam.design.reader import load, loads
-from gearcam.design.spec import GearPairDesign, document_of
+from gearcam.design.spec import GearPairDesign, document_of, with_meshing
 from gearcam.design.tables import FORMATS, KIND, OutputSpec
 
-__all__ = ["FORMATS", "KIND", "GearPairDesign", "OutputSpec", "document_of", "load", "loads"]
+__all__ = [
+    "FORMATS",
+    "KIND",
+    "GearPairDesign",
+    "OutputSpec",
+    "document_of",
+    "load",
+    "loads",
+    "with_meshing",
+]

@@ -28,7 +28,7 @@ _LONGEST_NAME: Final = 100
 _COARSEST: Final = 50
 """A chord tolerance coarser than module/50 no longer draws a tooth."""
 
-_TOP: Final = ("kind", "name", "law", "pair", "rack", "blank", "limits", "output")
+_TOP: Final = ("kind", "name", "law", "pair", "rack", "blank", "limits", "output", "meshing")
 _REQUIRED_TABLES: Final = ("law", "pair")
 _OPEN_PAIRS: Final = "open pairs (driven_travel_deg) are not built by this version yet"
 
@@ -62,8 +62,8 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     Returns
     -------
     Examined
-        With ``name``, ``law_type``, ``law``, ``pair``, ``rack``, ``blank``, ``limits``, ``output``
-        where there is no fault.
+        With ``name``, ``law_type``, ``law``, ``pair``, ``rack``, ``blank``, ``limits``, ``output``,
+        ``meshing`` where there is no fault.
     """
     found = Examined()
     found.faults += _kind_faults(document)
@@ -81,6 +81,7 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     _examine_limits(document, found)
     found.faults += _pair_faults(document.get("pair"))
     found.faults += _output_faults(document.get("output"), document.get("pair"))
+    found.faults += _meshing_faults(document.get("meshing"), document.get("pair"))
     return found
 
 
@@ -285,6 +286,30 @@ def _output_faults(raw: Any, pair: Any) -> Iterator[Fault]:
             message = f"{show(tolerance)} is too coarse for a module of {show(module)} mm"
             rule = f"at most module/{_COARSEST} = {coarsest:g} mm"
             yield Fault(("output", "chord_tolerance_mm"), message, tolerance, rule)
+
+
+def _meshing_faults(raw: Any, pair: Any) -> Iterator[Fault]:
+    if not isinstance(raw, Mapping):
+        return
+    start, end = raw.get("from_deg", 0), raw.get("to_deg", 360)
+    if _is_number(start) and _is_number(end) and not end > start:
+        key = "to_deg" if "to_deg" in raw else "from_deg"
+        message = f"{show(raw[key])}: the study ends at {show(end)} deg before it begins"
+        yield Fault(("meshing", key), message, raw[key], "to_deg above from_deg")
+    if raw.get("advance_deg") == 0:
+        message = "0: without an advance no flanks overlap, and nothing can be seen"
+        yield Fault(("meshing", "advance_deg"), message, 0, "-1 to 1, but not 0; 0.005 is usual")
+    given = raw.get("teeth")
+    teeth = given if isinstance(given, list) else []
+    counts = pair.get("teeth") if isinstance(pair, Mapping) else None
+    known = counts[0] if isinstance(counts, list) and counts else None
+    for index, tooth in enumerate(teeth):
+        path = ("meshing", "teeth", index)
+        if _is_number(known) and _is_number(tooth) and tooth > known:
+            message = f"the driver has no tooth {show(tooth)}"
+            yield Fault(path, message, tooth, f"1 to {show(known)}")
+        if tooth in teeth[:index]:
+            yield Fault(path, f"{show(tooth)} is listed twice", tooth, "each tooth once")
 
 
 def _is_number(value: Any) -> TypeGuard[float]:

@@ -13,6 +13,7 @@ from gearcam.design.wording import MISSING, dotted
 from gearcam.errors import DesignError, Problem
 from gearcam.gears.spec import PairSpec, Rack
 from gearcam.laws.base import LAWS
+from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts import Blank
 
 
@@ -40,6 +41,8 @@ class GearPairDesign:
         Limits of checks by name, in mm and rad; the others keep their defaults.
     output : OutputSpec
         Files and their tolerance.
+    meshing : MeshingSpec
+        Phases and mounting of a meshing study.
 
     Raises
     ------
@@ -56,6 +59,7 @@ class GearPairDesign:
     blank: Blank = field(default_factory=Blank)
     limits: Mapping[str, float] = field(default_factory=dict)
     output: OutputSpec = field(default_factory=OutputSpec)
+    meshing: MeshingSpec = field(default_factory=MeshingSpec)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "limits", dict(self.limits))
@@ -127,6 +131,29 @@ def document_of(design: GearPairDesign) -> dict[str, Any]:
             for name, value in design.limits.items()
         }
     return document
+
+
+def with_meshing(design: GearPairDesign, given: Mapping[str, Any]) -> GearPairDesign:
+    """Return a design with other settings of its meshing study.
+
+    Parameters
+    ----------
+    design : GearPairDesign
+        The design.
+    given : mapping of str to value
+        Keys of the table ``[meshing]`` and values, in the units of a file.
+
+    Returns
+    -------
+    GearPairDesign
+
+    Raises
+    ------
+    DesignError
+        If a value is not what the file may hold.
+    """
+    values = _values(design.meshing) | table("meshing").inward(given)
+    return dataclasses.replace(design, meshing=MeshingSpec(**values))
 
 
 def _values(owner: Any) -> dict[str, Any]:

@@ -19,6 +19,8 @@ from typing import Any, Final
 from gearcam.findings import CHECKS
 from gearcam.gears.spec import PairSpec, Rack
 from gearcam.laws.base import LAWS
+from gearcam.meshing.settings import KIND as MESHING_KIND
+from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts import Blank
 from gearcam.quantities import LENGTH, REQUIRED, TEXT, Param, param, params_of
 
@@ -199,7 +201,7 @@ def limits_table() -> Table:
     register_checks()
     entries = {}
     for check in CHECKS.values():
-        if check.kind == KIND and check.limit is not None:
+        if check.kind in (KIND, MESHING_KIND) and check.limit is not None:
             name, made_of, default = check.limit
             key = made_of.key(name)
             entries[key] = Entry(name, key, made_of, float, None, False, default)
@@ -209,7 +211,8 @@ def limits_table() -> Table:
 def register_checks() -> None:
     """Load the rooms whose checks register themselves."""
     # only here, as a file without limits does not need them
-    importlib.import_module("gearcam.gears.checks")
+    for room in ("gearcam.gears.checks", "gearcam.meshing.checks"):
+        importlib.import_module(room)
 
 
 TABLES: Final[dict[str, type]] = {
@@ -217,6 +220,7 @@ TABLES: Final[dict[str, type]] = {
     "rack": Rack,
     "blank": Blank,
     "output": OutputSpec,
+    "meshing": MeshingSpec,
 }
 """The tables with fixed keys, by their name in a file; ``law`` and ``limits`` follow registries."""
 

@@ -25,7 +25,12 @@ _GIVEN: Final[Mapping[str, Mapping[str, Any]]] = {
 
 _NOTES: Final = {"pair": "exactly one of center_distance_mm and module_mm; the other is solved"}
 
-_EXAMPLES: Final = {"module_mm": 2.5, "chord_tolerance_mm": 0.001}
+_EXAMPLES: Final = {
+    "module_mm": 2.5,
+    "chord_tolerance_mm": 0.001,
+    "teeth": [1, 27],
+    "center_distance_mm": 120.1,
+}
 """Values for comments where a key has no default."""
 
 

@@ -10,7 +10,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from gearcam.design import GearPairDesign
 from gearcam.errors import InfeasibleError
-from gearcam.findings import Finding, run_checks
+from gearcam.findings import Finding, in_order, run_checks
 from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
 from gearcam.gears.rolling import Wheel
@@ -29,6 +29,9 @@ from gearcam.parts import Part, timing_mark
 from gearcam.tolerances import DEFAULT, Tolerances
 
 Progress = Callable[[str, int, int], None]
+
+MESHING = "meshing.csv"
+"""The rows of a meshing study."""
 
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
@@ -46,12 +49,18 @@ class Written:
         Names of the files written, and of the stale ones removed.
     summary : dict
         As in ``summary.json``.
+    findings : tuple of Finding
+        What the checks found.
+    complete : bool
+        Whether nothing was interrupted.
     """
 
     directory: Path
     files: tuple[str, ...]
     removed: tuple[str, ...]
     summary: dict[str, Any]
+    findings: tuple[Finding, ...]
+    complete: bool = True
 
 
 class GearPairJob:
@@ -208,6 +217,49 @@ class GearPairJob:
         folder = Path(directory) / self.design.name
         return self._finish(folder, {}, self.summary(previous_files(folder)), keep=True)
 
+    def mesh(self, directory: str | Path = "output", progress: Progress | None = None) -> Written:
+        """Turn the pair step by step and write what is found; files of a build stay.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+        progress : callable, optional
+            Called with a stage's name, the stages or steps done and their number.
+
+        Returns
+        -------
+        Written
+            With ``meshing.csv``; not complete where it was interrupted after some steps.
+
+        Raises
+        ------
+        InfeasibleError
+            If the design, or its study, cannot be made; nothing is written then.
+        WriteError
+            If the disk refuses.
+        """
+        from gearcam.export.table import table_bytes
+        from gearcam.export.write import SUMMARY, previous_files
+        from gearcam.meshing.checks import KIND as MESHING_KIND
+        from gearcam.meshing.study import study
+
+        gears = self.gears
+        with self._stage("meshing"):
+            meshing = study(gears, self.design.meshing, progress)
+        if not meshing.blocks:
+            raise KeyboardInterrupt
+        with self._stage("checks"):
+            extra = run_checks(MESHING_KIND, meshing, self.design.limits)
+        findings = in_order((*self.findings, *extra))
+        folder = Path(directory) / self.design.name
+        contents = {MESHING: table_bytes(meshing.columns)}
+        others = [name for name in previous_files(folder) if name not in (MESHING, SUMMARY)]
+        summary = self.summary((*others, MESHING), {"meshing": meshing.summary})
+        summary["findings"] = [finding.as_dict() for finding in findings]
+        written = self._finish(folder, contents, summary, keep=True)
+        return replace(written, findings=findings, complete=meshing.complete)
+
     def write(
         self,
         directory: str | Path = "output",
@@ -277,5 +329,9 @@ class GearPairJob:
         everything = {**contents, SUMMARY: (text + "\n").encode()}
         removed = write_all(folder, everything, keep=keep)
         return Written(
-            directory=folder, files=tuple(everything), removed=tuple(removed), summary=summary
+            directory=folder,
+            files=tuple(everything),
+            removed=tuple(removed),
+            summary=summary,
+            findings=self.findings,
         )

@@ -30,7 +30,7 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
     files : sequence of str
         Files written beside the summary.
     extras : dict
-        What exporters measured: ``dxf``, ``solids``.
+        What exporters measured: ``dxf``, ``solids``; the numbers of a ``meshing`` study.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
         "files": list(files),
         "findings": findings,
         "accuracy": _accuracy(job, extras),
-        **{name: extras[name] for name in ("solids",) if name in extras},
+        **{name: extras[name] for name in ("solids", "meshing") if name in extras},
         "timings_s": {name: round(value, 6) for name, value in job.timings.items()},
         "versions": _versions(),
     }

@@ -9,18 +9,16 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from gearcam.findings import Finding, check
 from gearcam.meshing.contact import DRIVE, stretches
 from gearcam.meshing.rows import on_side
+from gearcam.meshing.settings import KIND
 from gearcam.meshing.study import Meshing
 from gearcam.quantities import NUMBER, Param
 
 Array = NDArray[np.float64]
-
-KIND = "gear-pair-meshing"
 
 _CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 _CLEARANCE = (
@@ -224,6 +222,5 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
         # the + half of a tooth begins in the middle of its tip
         tips = own.points[own.starts[np.arange(toothing.wheel - 1, own.count, 2)]]
         seen = tips * turn + shift if toothing.wheel == 1 else (tips - shift) / turn
-        nearest = shapely.distance(mate.union, shapely.points(seen.real, seen.imag))
-        result.append(nearest)
+        result.append(mate.distance(seen))
     return result[0], result[1]

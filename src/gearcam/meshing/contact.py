@@ -13,14 +13,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.flank import Toothing
-from gearcam.gears.outline import Flanks
-from gearcam.gears.pair import Gear
 from gearcam.gears.rolling import Plane, Wheel
+
+if TYPE_CHECKING:  # what cuts wheels needs more than numpy
+    from gearcam.gears.outline import Flanks
+    from gearcam.gears.pair import Gear
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -62,12 +62,10 @@ class Halves:
         shapely.prepare(polygons)
         return polygons
 
-    @cached_property
-    def union(self) -> Any:
-        """All halves together, prepared."""
+    def distance(self, points: Plane) -> Array:
+        """Return the distances of points from the halves, mm; 0 inside."""
         union = shapely.MultiPolygon(self.polygons.tolist())
-        shapely.prepare(union)
-        return union
+        return shapely.distance(union, shapely.points(points.real, points.imag))
 
     @cached_property
     def outmost(self) -> Array:

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 
+KIND = "gear-pair-meshing"
+"""The kind of design that the checks of a study belong to."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class MeshingSpec:
