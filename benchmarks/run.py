@@ -31,7 +31,13 @@ def page(results: list[Result]) -> str:
 
 def main() -> int:
     results = []
-    for case in (cases.whole_process, cases.growth, cases.against_sweep, cases.against_ncgears):
+    for case in (
+        cases.whole_process,
+        cases.growth,
+        cases.against_whole_outlines,
+        cases.against_sweep,
+        cases.against_ncgears,
+    ):
         result = case()
         results.append(result)
         print(f"{'pass' if result.passed else 'FAIL'}  {result.title}: {result.found}", flush=True)

@@ -85,6 +85,8 @@ def test_a_formula_agrees_with_the_same_text_in_math(text: str, angle: float) ->
         expected = eval(text, words)  # noqa: S307  (the text was made here)
     except (ArithmeticError, ValueError):
         return
+    except TypeError:  # a power of a negative number has become complex
+        return
     if isinstance(expected, complex) or not abs(expected) < 1e12:
         return
     value = float(expression.evaluate(np.float64(angle)))

@@ -38,6 +38,8 @@ class Written:
     files: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
     summary: dict[str, Any] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()
+    complete: bool = True
 
 
 class Job:
@@ -86,7 +88,8 @@ class Job:
         for name in names:
             (folder / name).write_text("x" * 1234)
         pair = {"center_distance_mm": 40.0, "module_mm": 2.0, "teeth": [20, 20]}
-        return Written(folder, names, ("old.stl",), {"name": self.design.name, "pair": pair})
+        summary = {"name": self.design.name, "pair": pair}
+        return Written(folder, names, ("old.stl",), summary, self.findings)
 
     def write(self, directory: str, files: Any = None, progress: Any = None) -> Written:
         self.calls.append(("write", directory, files, progress))

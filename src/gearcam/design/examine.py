@@ -101,11 +101,10 @@ def _said_of_splines(fault: Fault) -> Fault:
 
 def _home(key: str) -> str:
     """Return where a key that its table does not know belongs, if any other place has it."""
-    homes = {
-        known: f"this key belongs under [{name}]"
-        for name in TABLES
-        for known in table(name).entries
-    }
+    homes: dict[str, str] = {}
+    for name in TABLES:  # of two tables the first is the likelier
+        for known in table(name).entries:
+            homes.setdefault(known, f"this key belongs under [{name}]")
     homes |= {"type": "this key belongs under [law]"}
     homes |= dict.fromkeys(("kind", "name"), "this key belongs above all tables")
     laws: dict[str, list[str]] = {}

@@ -20,7 +20,6 @@ from gearcam.quantities import NUMBER, Param
 
 Array = NDArray[np.float64]
 
-_CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 _CLEARANCE = (
     "tip_clearance",
     Param(NUMBER, ge=0, le=1, doc="least clearance of tips from the mate's root, in modules"),
@@ -61,26 +60,6 @@ def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
 
 def _side(meshing: Meshing) -> str:
     return "driving" if meshing.setup.side == DRIVE else "holding back"
-
-
-@check(
-    "meshing-contact-ratio",
-    kind=KIND,
-    doc="smallest contact ratio of any flank on the side that is pressed together",
-    limit=_CONTACT_RATIO,
-)
-def contact_ratio(meshing: Meshing, limit: float) -> Iterator[Finding]:
-    """Warn of a low contact ratio."""
-    ratios = meshing.setup.pairs[meshing.setup.side].contact_ratios
-    if ratios.min() < limit:
-        yield Finding(
-            code="meshing-contact-ratio",
-            severity="warning",
-            message="Few teeth carry at a time; a larger rack.addendum or more teeth help.",
-            value=float(ratios.min()),
-            limit=limit,
-            where=f"{_side(meshing)}, wheel 1, tooth {int(ratios.argmin()) + 1}",
-        )
 
 
 @check("nothing-drives", kind=KIND, doc="arcs of the driver's turn on which no pair carries")

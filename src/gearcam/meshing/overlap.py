@@ -65,12 +65,12 @@ class Halves:
     def distance(self, points: Plane) -> Array:
         """Return the distances of points from the halves, mm; 0 inside."""
         union = shapely.MultiPolygon(self.polygons.tolist())
-        return shapely.distance(union, shapely.points(points.real, points.imag))
+        return np.asarray(shapely.distance(union, shapely.points(points.real, points.imag)))
 
     @cached_property
     def outmost(self) -> Array:
         """Largest distance of each half from the axis, mm, (2z,)."""
-        return np.maximum.reduceat(np.abs(self.points), self.starts[:-1])
+        return np.asarray(np.maximum.reduceat(np.abs(self.points), self.starts[:-1]))
 
     def gather(self, halves: Ints) -> tuple[Ints, Ints]:
         """Return the indices into `points` of some `halves`, and which of these each belongs to."""

@@ -150,7 +150,7 @@ def study(gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None
 
 
 def run(setup: Setup, progress: Progress | None = None) -> Meshing:
-    """Study a pair as mounted (see `study`)."""
+    """Return the study of a pair as mounted (see `study`)."""
     phi1 = phases(setup)
     blocks: list[Block] = []
     done = 0

@@ -1,0 +1,183 @@
+"""The command mesh: settings from file and command line, files, codes, interruption."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+import gearcam
+from gearcam.cli import main
+from gearcam.design import loads, with_meshing
+from gearcam.errors import DesignError
+from gearcam.jobs import gear_pair
+from gearcam.meshing import study as room
+
+TEXT = """
+kind = "gear-pair"
+name = "pair"
+law = { type = "ellipse", eccentricity = 0.2 }
+pair = { module_mm = 2, teeth = [20, 20] }
+output = { files = ["csv"], chord_tolerance_mm = 0.01 }
+meshing = { steps = 12, to_deg = 36 }
+"""
+
+
+@pytest.fixture
+def design(tmp_path: Path) -> str:
+    path = tmp_path / "pair.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return str(path)
+
+
+def run(design: str, *options: str) -> tuple[int, Path]:
+    folder = Path(design).parent / "out"
+    return main(["mesh", design, "-o", str(folder), *options]), folder / "pair"
+
+
+def summary(folder: Path) -> dict[str, object]:
+    return json.loads((folder / "summary.json").read_text("utf-8"))
+
+
+def test_rows_and_numbers_are_written(design: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, folder = run(design)
+    assert code == 0
+    told = capsys.readouterr().out
+    assert "12 phases at centre distance" in told
+    assert "meshing.csv" in told
+    found = summary(folder)["meshing"]
+    assert isinstance(found, dict)
+    assert found["steps"] == found["steps_done"] == 12
+    assert found["complete"] is True
+    with (folder / "meshing.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    seen = sorted({float(row["phi1_deg"]) for row in rows})
+    assert seen == pytest.approx([3.0 * k for k in range(12)])
+    carrying = [row for row in rows if row["carries"] == "1.0"]
+    assert all(row["pressure_angle_deg"] and float(row["area_mm2"]) > 0.0 for row in carrying)
+    idle = [row for row in rows if row["carries"] == "0.0"]
+    assert all(row["pressure_angle_deg"] == "" for row in idle)
+
+
+def test_options_stand_before_the_file(design: str) -> None:
+    code, folder = run(design, "--steps", "5", "--from", "-3", "--to", "7", "--advance", "-0.01")
+    found = summary(folder)["meshing"]
+    assert code == 0
+    assert isinstance(found, dict)
+    assert (found["steps"], found["advance_deg"]) == (5, pytest.approx(-0.01))
+
+
+def test_a_close_mounting_ends_with_an_error(design: str) -> None:
+    pair = gearcam.build(gearcam.load(design)).pair
+    code, folder = run(design, "--center", f"{pair.center_distance - 0.05}")
+    assert code == 1
+    findings = summary(folder)["findings"]
+    assert isinstance(findings, list)
+    assert findings[0]["code"] == "interference"
+    assert findings[0]["severity"] == "error"
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--steps", "0"], "meshing.steps"),
+        (["--advance", "0"], "without an advance"),
+        (["--advance", "nan"], "meshing.advance_deg"),
+        (["--from", "40"], "before it begins"),
+        (["--teeth", "21"], "no tooth 21"),
+        (["--teeth", "2,2"], "listed twice"),
+        (["--teeth", "two"], "no list of teeth"),
+        (["--center", "-1"], "meshing.center_distance_mm"),
+    ],
+)
+def test_a_wrong_setting_is_refused(
+    design: str, options: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, folder = run(design, *options)
+    assert code == 2
+    assert words in capsys.readouterr().err
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--center", "500"], "do not mesh"),
+        (["--teeth", "12"], "take more steps or another range"),
+        (["--advance", "1e-9"], "at least"),
+    ],
+)
+def test_an_impossible_setting_says_what_is_possible(
+    design: str, options: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, folder = run(design, *options)
+    assert code == 3
+    assert words in " ".join(capsys.readouterr().err.split())
+    assert not folder.exists()
+
+
+def test_the_files_of_a_build_stay_and_a_build_removes_the_rows(design: str) -> None:
+    out = str(Path(design).parent / "out")
+    assert main(["build", design, "-o", out]) == 0
+    _, folder = run(design)
+    assert (folder / "gear1_outline.csv").exists()
+    listed = summary(folder)["files"]
+    assert isinstance(listed, list)
+    assert {"gear1_outline.csv", "meshing.csv"} <= set(listed)
+    assert main(["check", design, "-o", out]) == 0
+    assert (folder / "meshing.csv").exists()
+    assert main(["build", design, "-o", out]) == 0
+    assert not (folder / "meshing.csv").exists()
+
+
+def test_an_interruption_keeps_the_steps_done(
+    design: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    natural = room._block
+
+    def stop(setup: room.Setup, phi1: room.Array, first: int) -> room.Block:
+        if first:
+            raise KeyboardInterrupt
+        return natural(setup, phi1, first)
+
+    monkeypatch.setattr(room, "_block", stop)
+    monkeypatch.setattr(room, "_BLOCK", 5)
+    code, folder = run(design)
+    assert code == 130
+    assert "5 of 12 steps are kept" in capsys.readouterr().err
+    found = summary(folder)["meshing"]
+    assert isinstance(found, dict)
+    assert (found["complete"], found["steps_done"]) == (False, 5)
+    last = (folder / "meshing.csv").read_text("ascii").splitlines()[-1]
+    assert float(last.split(",")[1]) == pytest.approx(12.0)
+
+
+def test_an_interruption_before_the_first_step_writes_nothing(
+    design: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(room, "_block", stop)
+    code, folder = run(design)
+    assert code == 130
+    assert not folder.exists()
+
+
+def test_settings_from_python_meet_the_same_rules() -> None:
+    design = with_meshing(loads(TEXT), {"advance_deg": -0.5, "teeth": [3, 4]})
+    assert design.meshing.advance == pytest.approx(math.radians(-0.5))
+    assert design.meshing.teeth == (3, 4)
+    assert design.meshing.steps == 12
+    with pytest.raises(DesignError, match=r"meshing\.advance_deg"):
+        with_meshing(design, {"advance_deg": 2})
+
+
+def test_progress_is_told(design: str) -> None:
+    calls: list[tuple[str, int, int]] = []
+    job = gear_pair.GearPairJob(gearcam.load(design))
+    job.mesh(Path(design).parent / "out", progress=lambda *call: calls.append(call))
+    assert calls[0] == ("meshing", 0, 12)
