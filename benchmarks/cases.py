@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -56,9 +57,9 @@ GROWTH_NOTE = """\
 Both outlines of ellipses of eccentricity 0.3 and module 2 mm at 1 um. Exponents by least squares
 over all; the last doubling may cost 10 % more than twice, for the noise."""
 OVERLAP_NOTE = """\
-Driver 0.005 degrees ahead. The whole outlines are turned and intersected by shapely at every phase; that
-gives one number, gearcam's rows say the tooth pair, length and place of every piece as well. Both give
-the same area. How many times faster: {listed}."""
+Driver 0.005 degrees ahead. The whole outlines are turned and intersected by shapely at every
+phase, which gives one number; gearcam's rows say the tooth pair, length and place of every piece.
+Both give the same area. How many times faster: {listed}."""
 CHILD = """
 import json, resource, statistics, sys, time, tracemalloc
 import gearcam
@@ -269,12 +270,12 @@ def against_whole_outlines(tries: int = 3) -> Result:
         )
         phases = {n: np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (360, 1440)}
         mine = [
-            measure(f"gearcam, {name}, {n} steps", lambda p=p: turning.overlaps(p, advance), 7)
+            measure(f"gearcam, {name}, {n} steps", partial(turning.overlaps, p, advance), 7)
             for n, p in phases.items()
         ]
         whole = measure(
             f"whole outlines, {name}, 360 steps",
-            lambda o=outlines, t=turning: _whole(o, t, phases[360], advance),
+            partial(_whole, outlines, turning, phases[360], advance),
             tries,
         )
         rows += [*mine, whole]

@@ -86,13 +86,16 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
     hit = meshing.every("interferes").astype(bool)
     if not hit.any():
         return
-    deepest, where = 0.0, ""
+    backlash = meshing.every("backlash")
+    worst = int(np.where(np.isfinite(backlash), backlash, np.inf).argmin())
+    deepest = -float(backlash[worst])
+    where = f"no room between both sides, phi1 = {math.degrees(meshing.phi1[worst]):.6g} deg"
     for block in meshing.blocks:
         found, count = block.overlaps, meshing.setup.turning.driver.count
-        bad = block.interferes[found.step]
-        if bad.any() and found.depth[bad].max() > deepest:
-            k = np.flatnonzero(bad)[found.depth[bad].argmax()]
-            deepest = float(found.depth[k])
+        bad = np.where(block.interferes[found.step], found.depth, 0.0)
+        if bad.size and bad.max() > deepest:
+            k = int(bad.argmax())
+            deepest = float(bad[k])
             one, two = (found.half[0][k] + 1) // 2 % (count // 2) + 1, found.half[1][k] // 2 + 1
             angle = math.degrees(block.phi1[found.step[k]])
             where = f"deepest at phi1 = {angle:.6g} deg, tooth {one} in tooth {two}"

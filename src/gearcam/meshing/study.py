@@ -290,20 +290,23 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     r2 = np.abs(turning.rolling.frames(2, phi1).p)
     tangent = turning.rolling.frames(1, phi1).t * np.exp(-1j * phi1)
     play = extreme[COAST] - extreme[DRIVE]
+    backlash = play * r2 * tangent.imag
+    # too little room for both sides is hidden from the outlines by the advance
+    tight = backlash < -setup.noise
     return Block(
         first=first,
         phi1=phi1,
         phi2=turning.rolling.law.phi2(phi1),
         side=side,
         error=extreme[side],
-        backlash=play * r2 * tangent.imag,
+        backlash=backlash,
         play=play,
         edge=edge,
         held_back=held,
         overlaps=ahead,
         contacts=contacts(setup.pairs[side], phi1),
         lenses=lenses(setup.pairs[side], phi1, spec.advance, distance, lead),
-        interferes=_interferes(setup, ahead, len(phi1)),
+        interferes=_interferes(setup, ahead, len(phi1)) | tight,
     )
 
 

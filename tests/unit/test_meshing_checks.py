@@ -1,0 +1,113 @@
+"""Each check of a meshing study: an input that just triggers it, and one that just does not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from gearcam.findings import CHECKS, Finding, run_checks
+from gearcam.gears.spec import Rack
+from gearcam.laws.constant import Constant
+from gearcam.meshing.checks import KIND, clearances, spans
+from gearcam.meshing.contact import DRIVE
+from gearcam.meshing.settings import MeshingSpec
+from gearcam.meshing.study import Meshing, mount, run, study
+from helpers_pairs import job, profile
+
+FEW = MeshingSpec(steps=24, end=math.radians(36.0))
+
+
+def found(meshing: Meshing, limits: dict[str, float] | None = None) -> dict[str, Finding]:
+    return {finding.code: finding for finding in run_checks(KIND, meshing, limits or {})}
+
+
+@cache
+def wheels(distance_more: float = 0.0) -> Meshing:
+    made = job(Constant(), (20, 20), module=2.0)
+    return study(made.gears, replace(FEW, center_distance=40.0 + distance_more))
+
+
+def test_all_checks_are_here() -> None:
+    codes = {code for code, check in CHECKS.items() if check.kind == KIND}
+    assert codes == {
+        "nothing-drives",
+        "interference",
+        "edge-contact",
+        "contact-off-flank",
+        "tip-clearance",
+    }
+
+
+def test_a_good_pair_has_no_findings() -> None:
+    assert found(wheels()) == {}
+
+
+@pytest.mark.parametrize(("more", "bad"), [(-0.0005, True), (0.0005, False)])
+def test_interference(more: float, bad: bool) -> None:
+    finding = found(wheels(more)).get("interference")
+    assert (finding is not None) == bad
+    if finding is not None:
+        assert finding.severity == "error"
+        assert finding.value is not None
+        # along the pitch line 2*tan(alpha) of the missing distance; less than the advance, so that
+        # the outlines cannot show it
+        assert finding.value == pytest.approx(0.001 * math.tan(math.radians(20.0)), rel=1e-3)
+
+
+@pytest.mark.parametrize(("limit", "bad"), [(0.2505, True), (0.2495, False)])
+def test_tip_clearance(limit: float, bad: bool) -> None:
+    """The rack leaves a quarter of a module."""
+    assert ("tip-clearance" in found(wheels(), {"tip_clearance": limit})) == bad
+
+
+def test_tip_clearance_follows_the_mounting() -> None:
+    for more in (-0.0005, 0.0, 0.0005):
+        for distances in clearances(wheels(more)):
+            assert distances == pytest.approx(0.5 + more, abs=2e-4)
+
+
+def test_nothing_drives_tells_the_arcs() -> None:
+    """Short teeth: their arcs of contact leave gaps."""
+    short = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.5, dedendum=0.7))
+    finding = found(study(short.gears, FEW))["nothing-drives"]
+    assert finding.severity == "error"
+    assert "phi1 = " in finding.where
+    ratio = mount(short.gears, FEW).pairs[DRIVE].contact_ratios[0]
+    assert ratio < 1.0
+    assert finding.value == pytest.approx(360.0 * (1.0 - ratio), rel=1e-9)
+    longer = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.7, dedendum=0.9))
+    assert "nothing-drives" not in found(study(longer.gears, FEW))
+
+
+def test_edge_contact_where_only_an_edge_is_left() -> None:
+    """Teeth too short to carry all the way: between their arcs their edges touch."""
+    short = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.5, dedendum=0.7))
+    finding = found(study(short.gears, FEW))["edge-contact"]
+    assert finding.severity == "warning"
+    assert finding.value is not None
+    assert 0 < finding.value < 24
+
+
+def test_contact_off_the_flanks() -> None:
+    """So close that tips touch fillets; half as close they do not."""
+    gears = profile("nail_machine_two_phase").gears
+    codes = [
+        set(found(study(gears, MeshingSpec(steps=60, center_distance=180.0 - less))))
+        for less in (1.1, 0.3)
+    ]
+    assert "contact-off-flank" in codes[0]
+    assert "contact-off-flank" not in codes[1]
+
+
+def test_a_tooth_that_lags_leaves_arcs_without_contact_but_no_interference() -> None:
+    meshing = run(mount(job(Constant(), (20, 20), module=2.0).gears, FEW))
+    assert np.all(meshing.every("interferes") == 0)
+
+
+def test_phases_are_told_as_ranges() -> None:
+    angles = np.radians([0.0, 1.0, 2.0, 5.0, 8.0, 9.0, 20.0, 30.0])
+    assert spans(angles, math.radians(1.0)) == "phi1 = 0 to 2, 5, 8 to 9 deg and 2 more"
