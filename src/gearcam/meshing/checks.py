@@ -15,7 +15,7 @@ from gearcam.findings import Finding, check
 from gearcam.meshing.contact import DRIVE, stretches
 from gearcam.meshing.rows import on_side
 from gearcam.meshing.settings import KIND
-from gearcam.meshing.study import Meshing
+from gearcam.meshing.study import Meshing, trespasses
 from gearcam.quantities import NUMBER, Param
 
 Array = NDArray[np.float64]
@@ -92,7 +92,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
     where = f"no room between both sides, phi1 = {math.degrees(meshing.phi1[worst]):.6g} deg"
     for block in meshing.blocks:
         found, count = block.overlaps, meshing.setup.turning.driver.count
-        bad = np.where(block.interferes[found.step], found.depth, 0.0)
+        bad = np.where(trespasses(meshing.setup, found), found.depth, 0.0)
         if bad.size and bad.max() > deepest:
             k = int(bad.argmax())
             deepest = float(bad[k])

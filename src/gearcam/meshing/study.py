@@ -292,7 +292,8 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     play = extreme[COAST] - extreme[DRIVE]
     backlash = play * r2 * tangent.imag
     # too little room for both sides is hidden from the outlines by the advance
-    tight = backlash < -setup.noise
+    interferes = backlash < -setup.noise
+    interferes[ahead.step[trespasses(setup, ahead)]] = True
     return Block(
         first=first,
         phi1=phi1,
@@ -306,14 +307,24 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
         overlaps=ahead,
         contacts=contacts(setup.pairs[side], phi1),
         lenses=lenses(setup.pairs[side], phi1, spec.advance, distance, lead),
-        interferes=_interferes(setup, ahead, len(phi1)) | tight,
+        interferes=interferes,
     )
 
 
-def _interferes(setup: Setup, found: Overlaps, count: int) -> NDArray[np.bool_]:
-    """Whether flanks overlap at a phase that should not, or deeper than the advance explains."""
+def trespasses(setup: Setup, found: Overlaps) -> NDArray[np.bool_]:
+    """Return which overlaps should not be, or are deeper than the advance explains.
+
+    Parameters
+    ----------
+    setup : Setup
+        The pair as mounted.
+    found : Overlaps
+        Pieces.
+
+    Returns
+    -------
+    (n,) bool array
+    """
     expected = on_side(found, setup.side)
     limit = np.where(expected, DEEPER * abs(setup.spec.advance) * setup.lever, 0.0) + setup.noise
-    result = np.zeros(count, dtype=bool)
-    result[found.step[found.depth > limit]] = True
-    return result
+    return found.depth > limit
