@@ -1,0 +1,153 @@
+"""The exact contact and gap of non-circular wheels against dense points and finite differences."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearcam.gears.pair import Gear
+from gearcam.jobs import GearPairJob
+from gearcam.laws.ellipse import Ellipse
+from gearcam.meshing.contact import (
+    COAST,
+    DRIVE,
+    FlankPairs,
+    contacts,
+    count,
+    flank_pairs,
+    stretches,
+)
+from gearcam.meshing.gap import touches
+from helpers_pairs import job, profile
+
+
+def samples() -> list[GearPairJob]:
+    return [
+        profile("nail_machine_two_phase"),
+        profile("nail_machine_three_phase"),
+        job(Ellipse(eccentricity=0.3), (24, 24), module=2.0),
+    ]
+
+
+NAMES = ["two phases", "three phases", "ellipse"]
+
+
+def dense(gear: Gear, tooth: int, sigma: int, points: int) -> np.ndarray:
+    """Points of one flank, root first, as complex numbers in the wheel's frame."""
+    flanks, toothing = gear.profile.flanks, gear.toothing
+    number = tooth - 1 + (0 if sigma > 0 else toothing.teeth)
+    reach = np.linspace(flanks.lowest[number], flanks.highest[number], points)
+    sf = flanks.sf[number]
+    frames = toothing.frames(toothing.rolling.angle(sf - sigma * reach))
+    return toothing.flank_points(frames, np.full(points, sf), np.full(points, float(sigma)))
+
+
+def first_touch(made: GearPairJob, side: int, phi: float, distance: float) -> float:
+    """The driven wheel's turn at first touch: all flanks near the pitch point, dense points."""
+    gears, law = made.gears, made.law
+    z = made.pair.teeth[0]
+    near = round(float(made.pair.rolling.arc_length(phi)) / gears[0].toothing.pitch)
+    ahead = []
+    for j in range(near - 2, near + 3):
+        one = dense(gears[0], j % z + 1, side, 6001) * np.exp(-1j * phi) - distance
+        k = j if side > 0 else j - 1
+        two = dense(gears[1], k % z + 1, -side, 6001) * np.exp(1j * float(law.phi2(phi)))
+        order = np.argsort(np.abs(two))
+        radius = np.abs(two)[order]
+        inside = (np.abs(one) >= radius[0]) & (np.abs(one) <= radius[-1])
+        if np.count_nonzero(inside) < 3:
+            continue
+        # angles about the middle of the mate, far from the cut of the angle
+        middle = np.exp(-1j * np.angle(two.mean()))
+        mate = np.interp(np.abs(one)[inside], radius, np.angle(two * middle)[order])
+        turn = np.angle(one[inside] * middle) - mate
+        ahead.append((-side * turn).max())
+    return -side * max(ahead)
+
+
+@pytest.mark.parametrize("made", samples(), ids=NAMES)
+@pytest.mark.parametrize("side", [DRIVE, COAST])
+@pytest.mark.parametrize("more", [0.0, 0.1, -0.1])
+def test_first_touch_is_that_of_dense_points(made: GearPairJob, side: int, more: float) -> None:
+    phases = np.linspace(0.1, 6.2, 23)
+    distance = made.pair.center_distance + more
+    found = touches(flank_pairs(made.gears, side), phases, distance=distance)
+    outward = np.full(len(phases), -np.inf)
+    np.maximum.at(outward, found.step, -side * found.turn)
+    expected = [first_touch(made, side, phi, distance) for phi in phases]
+    assert -side * outward == pytest.approx(expected, abs=1e-7)
+    if more == 0.0:
+        assert np.abs(outward).max() < 1e-9
+
+
+def shifted(pairs: FlankPairs, tooth: int, by: float) -> FlankPairs:
+    flanks = pairs.flanks[0]
+    sf = flanks.sf.copy()
+    sf[[tooth - 1, pairs.toothings[0].teeth + tooth - 1]] += by
+    return replace(pairs, flanks=(replace(flanks, sf=sf), pairs.flanks[1]))
+
+
+@pytest.mark.parametrize("side", [DRIVE, COAST])
+def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(side: int) -> None:
+    made = profile("nail_machine_two_phase")
+    pairs = flank_pairs(made.gears, side)
+    phi = made.pair.rolling.angle(pairs.toothings[0].tooth_places[9:10])
+    moved = touches(shifted(pairs, 10, side * 0.02), phi)
+    exact = contacts(pairs, phi)
+    lever = exact.lever[1][exact.pair == 9]
+    assert len(lever) == 1
+    turn = moved.turn[moved.pair == 9]
+    normal = 0.02 * math.cos(made.pair.rack.pressure_angle)
+    assert turn == pytest.approx(-side * normal / lever, rel=2e-3)
+
+
+@pytest.mark.parametrize("made", samples(), ids=NAMES)
+@pytest.mark.parametrize("side", [DRIVE, COAST])
+def test_sliding_is_the_difference_of_the_arcs_travelled(made: GearPairJob, side: int) -> None:
+    pairs = flank_pairs(made.gears, side)
+    phases, step = np.linspace(0.1, 6.2, 41), 1e-5
+    middle = contacts(pairs, phases)
+    before, after = (contacts(pairs, phases + d) for d in (-step, step))
+    keys = [list(zip(c.step.tolist(), c.pair.tolist(), strict=True)) for c in (before, after)]
+    checked = 0
+    for k, key in enumerate(zip(middle.step.tolist(), middle.pair.tolist(), strict=True)):
+        if not all(key in known for known in keys):
+            continue
+        (a, b), phi = (known.index(key) for known in keys), phases[key[0]]
+        tangent = middle.force[k] * 1j  # along the flanks
+        arcs = []
+        for wheel in (1, 2):
+            ends = []
+            for found, n, angle in ((before, a, phi - step), (after, b, phi + step)):
+                axis = 0.0 if wheel == 1 else made.pair.center_distance
+                turn = angle if wheel == 1 else -float(made.law.phi2(angle))
+                now = phi if wheel == 1 else -float(made.law.phi2(phi))
+                ends.append((found.point[n] - axis) * np.exp(1j * (turn - now)))
+            arcs.append(float(np.real((ends[1] - ends[0]) * np.conj(tangent))) / (2.0 * step))
+        outward = np.sign(np.real(tangent * np.conj(middle.point[k])))
+        difference = outward * (arcs[0] - arcs[1])
+        assert middle.sliding[k] == pytest.approx(difference, abs=2e-4)
+        for wheel in (0, 1):
+            own = (arcs[0] - arcs[1]) * (1.0 if wheel == 0 else -1.0) / arcs[wheel]
+            if abs(arcs[wheel]) > 1.0:
+                assert middle.specific[wheel, k] == pytest.approx(own, abs=2e-4)
+        checked += 1
+    assert checked > 40
+
+
+@pytest.mark.parametrize("made", samples(), ids=NAMES)
+@pytest.mark.parametrize("side", [DRIVE, COAST])
+def test_counts_arcs_and_contacts_agree(made: GearPairJob, side: int) -> None:
+    pairs = flank_pairs(made.gears, side)
+    phases = np.random.default_rng(7).uniform(0.0, 2.0 * math.pi, 500)
+    number = count(pairs, phases)
+    assert np.array_equal(number, np.bincount(contacts(pairs, phases).step, minlength=500))
+    start, end, carrying = stretches(pairs)
+    place = np.searchsorted(start, phases, side="right") - 1
+    assert np.array_equal(number, carrying[place])
+    rolling = made.pair.rolling
+    weighted = (rolling.arc_length(end) - rolling.arc_length(start)) @ carrying
+    assert weighted == pytest.approx(pairs.contact_ratios.sum() * pairs.pitch, rel=1e-9)
