@@ -142,6 +142,15 @@ def test_a_tooth_moved_by_20_um_is_found(by: float) -> None:
         assert whole.summary["pairs_in_contact"]["min"] == 1
 
 
+def test_a_tooth_that_only_the_outline_moves_is_found_by_its_depth() -> None:
+    spec = MeshingSpec(start=math.radians(-8.0), end=math.radians(8.0), steps=64)
+    setup = mount(profile(NAILS[0]).gears, spec)
+    broken = run(replace(moved(setup, 1, -0.02), pairs=setup.pairs))
+    finding = next(f for f in run_checks(KIND, broken, {}) if f.code == "interference")
+    assert finding.value == pytest.approx(0.02 * math.cos(math.radians(20.0)) + 0.009, rel=0.1)
+    assert "tooth 1 in tooth" in finding.where
+
+
 def test_half_a_pitch_off_phase_is_found() -> None:
     made = profile(NAILS[0])
     setup = mount(made.gears, MeshingSpec())
@@ -169,6 +178,8 @@ def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
     # to first order: the force lines of both sides cut the line of centres at alpha +- tilt
     expected = 0.1 * (np.tan(alpha + tilt) + np.tan(alpha - tilt)) / radius
     assert np.all(np.abs(play / expected - 1.0) < 0.01)
+    along = 0.1 * (np.tan(alpha + tilt) + np.tan(alpha - tilt)) * np.cos(tilt)
+    assert np.all(np.abs(wide.every("backlash") / along - 1.0) < 0.01)
     # and the outlines say the same: turned by all of the play, the other flanks touch
     turning, error = wide.setup.turning, wide.every("error")
     for share, free in ((0.999, True), (1.001, False)):
