@@ -147,7 +147,9 @@ def test_a_tooth_that_only_the_outline_moves_is_found_by_its_depth() -> None:
     setup = mount(profile(NAILS[0]).gears, spec)
     broken = run(replace(moved(setup, 1, -0.02), pairs=setup.pairs))
     finding = next(f for f in run_checks(KIND, broken, {}) if f.code == "interference")
-    assert finding.value == pytest.approx(0.02 * math.cos(math.radians(20.0)) + 0.009, rel=0.1)
+    assert finding.value == pytest.approx(
+        0.02 * math.cos(math.radians(20.0)) + 0.009, rel=0.2
+    )  # a clipped lens is blunter
     assert "tooth 1 in tooth" in finding.where
 
 
