@@ -142,31 +142,34 @@ def trace(
     points, tangents = np.empty((2, len(phi)), dtype=np.complex128)
 
     flank = np.flatnonzero(kind == Kind.FLANK)
-    frames = toothing.frames(phi[flank], curved=False)
-    sf, sigma = rows.sf[index[flank]], rows.sigma[index[flank]]
-    normal = frames.t * (np.cos(cutter.alpha) + sigma * np.sin(cutter.alpha) * w)
-    points[flank] = frames.p + (sf - frames.s) * np.cos(cutter.alpha) * normal
-    tangents[flank] = -sigma * w * normal
+    if flank.size:
+        frames = toothing.frames(phi[flank], curved=False)
+        sf, sigma = rows.sf[index[flank]], rows.sigma[index[flank]]
+        normal = frames.t * (np.cos(cutter.alpha) + sigma * np.sin(cutter.alpha) * w)
+        points[flank] = frames.p + (sf - frames.s) * np.cos(cutter.alpha) * normal
+        tangents[flank] = -sigma * w * normal
 
     fillet = np.flatnonzero(kind == Kind.FILLET)
-    frames = toothing.frames(phi[fillet], curved=False)
-    sf, sigma = rows.sf[index[fillet]], rows.sigma[index[fillet]]
-    arm = _tip_center(cutter, frames, sf + sigma * cutter.offset, w)
-    length = np.abs(arm)
-    unit = np.where(length > 0.0, arm, -w * frames.t) / np.where(length > 0.0, length, 1.0)
-    points[fillet] = frames.p + arm + cutter.tip_radius * unit
-    tangents[fillet] = w * unit
+    if fillet.size:
+        frames = toothing.frames(phi[fillet], curved=False)
+        sf, sigma = rows.sf[index[fillet]], rows.sigma[index[fillet]]
+        arm = _tip_center(cutter, frames, sf + sigma * cutter.offset, w)
+        length = np.abs(arm)
+        unit = np.where(length > 0.0, arm, -w * frames.t) / np.where(length > 0.0, length, 1.0)
+        points[fillet] = frames.p + arm + cutter.tip_radius * unit
+        tangents[fillet] = w * unit
 
     parallel = np.flatnonzero(kind >= Kind.LAND)
-    frames, row = toothing.frames(phi[parallel]), index[parallel]
-    span = rows.end[row] - rows.start[row]
-    fraction = (phi[parallel] - rows.start[row]) / np.where(span == 0.0, 1.0, span)
-    rise = rows.high[row] - rows.low[row]
-    height = rows.low[row] + fraction * rise
-    points[parallel] = frames.p + height * w * frames.t
-    slope = np.where(span == 0.0, 0.0, rise / np.where(span == 0.0, 1.0, span)) / frames.speed
-    direction = frames.t * (1.0 + frames.kappa * height + slope * w)
-    tangents[parallel] = direction / np.abs(direction)
+    if parallel.size:
+        frames, row = toothing.frames(phi[parallel]), index[parallel]
+        span = rows.end[row] - rows.start[row]
+        width = np.where(span == 0.0, 1.0, span)
+        rise = rows.high[row] - rows.low[row]
+        height = rows.low[row] + (phi[parallel] - rows.start[row]) / width * rise
+        points[parallel] = frames.p + height * w * frames.t
+        slope = np.where(span == 0.0, 0.0, rise / width) / frames.speed
+        direction = frames.t * (1.0 + frames.kappa * height + slope * w)
+        tangents[parallel] = direction / np.abs(direction)
     return points, tangents
 
 

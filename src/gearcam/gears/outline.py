@@ -283,9 +283,8 @@ def _demand_simple(outline: Outline) -> None:
 
 def _demand_shaft(outline: Outline) -> None:
     """Refuse a wheel whose root passes its own shaft."""
-    x, y = outline.points.T
-    angles = np.unwrap(np.arctan2(y, x))
-    if angles[-1] - angles[0] > np.pi:
+    points = outline.sampler.chords[1]
+    if abs(float(np.angle(points[1:] * np.conj(points[:-1])).sum())) > np.pi:
         return
     toothing = outline.toothing
     turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)

@@ -61,7 +61,10 @@ class Piecewise:
         flat = x.ravel()
         if len(self.pieces) == 1:
             jet = self.pieces[0](Jet.variable(flat, order)) + self.offsets[0]
-            return [np.broadcast_to(v, flat.shape).reshape(x.shape) for v in jet.derivatives()]
+            return [
+                v if v.shape == x.shape else np.broadcast_to(v, flat.shape).reshape(x.shape)
+                for v in jet.derivatives()
+            ]
         index = np.searchsorted(self.knots[1:-1], flat, side="right")
         result = np.empty((order + 1, flat.size))
         for number, piece in enumerate(self.pieces):
