@@ -12,6 +12,8 @@ import shapely
 
 from gearcam.findings import run_checks
 from gearcam.gears.outline import build_outline
+from gearcam.gears.subject import Subject
+from gearcam.jobs import GearPairJob
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.contact import COAST, DRIVE, count, flank_pairs, stretches
 from gearcam.meshing.numbers import pairs_in_contact
@@ -228,3 +230,21 @@ def test_both_sides_are_those_of_the_motion() -> None:
     for advance, side in ((ADVANCE, DRIVE), (-ADVANCE, COAST)):
         columns = full_turn(NAILS[0], advance).columns
         assert set(columns["side"].tolist()) == {float(side)}
+
+
+def test_the_pair_s_own_check_names_the_sides_alike() -> None:
+    """The three-phase pair carries worse driving than holding back."""
+    made = profile(NAILS[1])
+    limits = {"contact_ratio": 1.4}
+    found = [f for f in made.findings if f.code == "contact-ratio"]
+    assert found == []
+    strict = run_checks("gear-pair", subject_of(made), limits)
+    worse = [f for f in strict if f.code == "contact-ratio"]
+    assert [f.where.partition(",")[0] for f in worse] == ["driving forward"]
+    ratios = {side: flank_pairs(made.gears, side).contact_ratios.min() for side in (DRIVE, COAST)}
+    assert ratios[DRIVE] < 1.4 < ratios[COAST]
+    assert worse[0].value == pytest.approx(ratios[DRIVE], rel=1e-12)
+
+
+def subject_of(made: GearPairJob) -> Subject:
+    return Subject(pair=made.pair, gears=made.gears, bores=made.bores, backlash=0.0)

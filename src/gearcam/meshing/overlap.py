@@ -39,7 +39,8 @@ class Halves:
     Parameters
     ----------
     points : complex array, mm
-        Vertices of all halves in the wheel's frame, one half after another.
+        Vertices of all halves in the wheel's frame, one half after another: each from the middle
+        of the tip to the middle of the root, below that, and below the tip.
     starts : (2z + 1,) int array
         Where each half begins, and the end.
     chord_error : float, mm
@@ -107,7 +108,7 @@ def halve(outline: Outline) -> Halves:
         front, back = np.arange(before, root + 1) % size, np.arange(root, tip + 1) % size
         following = (tooth + 1) % toothing.teeth
         halves.append(np.concatenate([points[front], [low[tooth], deep[tooth]]]))
-        halves.append(np.concatenate([points[back], [deep[following], low[tooth]]]))
+        halves.append(np.concatenate([points[back[::-1]], [low[tooth], deep[following]]]))
     if toothing.wheel == 2:
         halves = halves[-1:] + halves[:-1]
     starts = np.concatenate([[0], np.cumsum([len(half) for half in halves])])
@@ -238,10 +239,10 @@ class Turning:
     def overlaps(self, phi1: Array, advance: float, lead: Array | float = 0.0) -> Overlaps:
         """Return all pieces of overlap at phases (see `pose`)."""
         turn, shift = self.pose(phi1, advance, lead)
-        step, half = self._near(phi1, turn, shift)
+        step, half, reach = self._near(phi1, turn, shift)
         index, owner = self.driver.gather(half)
         points = self.driver.points[index] * turn[step][owner] + shift[step][owner]
-        polygons = _polygons(points, np.diff(self.driver.starts)[half])
+        polygons = _polygons(*_within(points, np.bincount(owner), reach[owner]))
         one, two = self._tree.query(polygons)
         mates = self.driven.polygons[two]
         # the prepared ones first: twice as fast as the tree's own test
@@ -319,13 +320,29 @@ class Turning:
             least = np.minimum(least, distance)
         return least
 
-    def _near(self, phi1: Array, turn: Plane, shift: Plane) -> tuple[Ints, Ints]:
-        """Phases and driver's halves that come within the driven wheel's tips."""
+    def _near(self, phi1: Array, turn: Plane, shift: Plane) -> tuple[Ints, Ints, Array]:
+        """Phases and driver's halves that come within the driven wheel's tips, and their radius."""
         half = np.arange(self.driver.count)
         facing = self._unroll(phi1[:, None], half) % self.driven.count
         distance = np.abs(self._tops * turn[:, None] + shift[:, None])
-        step, near = np.nonzero(distance <= self._reach[facing])
-        return step, near
+        reach = self._reach[facing]
+        step, near = np.nonzero(distance <= reach)
+        return step, near, reach[step, near]
+
+
+def _within(points: Plane, sizes: Ints, reach: Array) -> tuple[Plane, Ints]:
+    """Leave out what the mate cannot reach: roots beyond the first vertex outside.
+
+    The point below the tip always stays, so that what is left is the rest of the same half.
+    """
+    inside = points.real**2 + points.imag**2 <= reach * reach
+    keep = inside.copy()
+    keep[1:] |= inside[:-1]
+    keep[:-1] |= inside[1:]
+    ends = np.cumsum(sizes)
+    keep[ends - 2] = keep[ends - 3]
+    keep[ends - 1] = True
+    return points[keep], np.add.reduceat(keep.astype(np.int64), ends - sizes)
 
 
 def _polygons(points: Plane, sizes: Ints) -> Any:
