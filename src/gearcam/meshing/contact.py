@@ -229,19 +229,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
 
 
 def count(pairs: FlankPairs, phi1: ArrayLike) -> Ints:
-    """Return how many pairs of a side carry at phases.
-
-    Parameters
-    ----------
-    pairs : FlankPairs
-        The side.
-    phi1 : (n,) array, rad
-        Phases.
-
-    Returns
-    -------
-    (n,) int array
-    """
+    """Return how many pairs of a side carry at phases (see `contacts`)."""
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     s = pairs.toothings[0].rolling.arc_length(phi1)
     candidates = pairs.near(s)

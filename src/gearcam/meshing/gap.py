@@ -29,34 +29,6 @@ _SAMPLES = 13
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Touches:
-    """Where the flanks of pairs come nearest at phases, one entry a pair that faces its mate.
-
-    Parameters
-    ----------
-    step, pair : (n,) int arrays
-        Index of the phase; j.
-    turn : (n,) array, rad
-        The driven wheel's turn from its nominal place at which the pair touches: it must lie above
-        on the driving side and below on the other.
-    angle : (n,) array, rad
-        Driver angle that names the touching point of the driver's flank.
-    edge : (n,) bool array
-        Whether an end of a flank touches first.
-    low, high : (n,) arrays, rad
-        Driver angles of the ends of the common range on the driver's flank, root first.
-    """
-
-    step: Ints
-    pair: Ints
-    turn: Array
-    angle: Array
-    edge: NDArray[np.bool_]
-    low: Array
-    high: Array
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
 class Facing:
     """Pairs of flanks at phases, compared at equal distance from the driven axis.
 
@@ -191,6 +163,43 @@ class Facing:
         return np.angle(point * np.conj(other)), slope
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Touches:
+    """Where the flanks of pairs come nearest at phases, one entry a pair that faces its mate.
+
+    Parameters
+    ----------
+    facing : Facing
+        The pairs.
+    turn : (n,) array, rad
+        The driven wheel's turn from its nominal place at which the pair touches: it must lie above
+        on the driving side and below on the other.
+    angle : (n,) array, rad
+        Driver angle that names the touching point of the driver's flank.
+    edge : (n,) bool array
+        Whether an end of a flank touches first.
+    low, high : (n,) arrays, rad
+        Driver angles of the ends of the common range on the driver's flank, root first.
+    """
+
+    facing: Facing
+    turn: Array
+    angle: Array
+    edge: NDArray[np.bool_]
+    low: Array
+    high: Array
+
+    @property
+    def step(self) -> Ints:
+        """Index of the phase."""
+        return self.facing.step
+
+    @property
+    def pair(self) -> Ints:
+        """Number j of the pair."""
+        return self.facing.pair
+
+
 def facing(
     pairs: FlankPairs, phi1: ArrayLike, *, advance: float = 0.0, distance: float | None = None
 ) -> tuple[Facing, Array, Array]:
@@ -250,24 +259,7 @@ def facing(
 def touches(
     pairs: FlankPairs, phi1: ArrayLike, *, advance: float = 0.0, distance: float | None = None
 ) -> Touches:
-    """Find where the flanks of a side come nearest at phases.
-
-    Parameters
-    ----------
-    pairs : FlankPairs
-        The side.
-    phi1 : (n,) array, rad
-        Phases.
-    advance : float, rad
-        How far the driver is ahead.
-    distance : float, mm, optional
-        Distance of the shafts as mounted; as designed if left out.
-
-    Returns
-    -------
-    Touches
-        Pairs without a common range of distance from the driven axis are left out.
-    """
+    """Return where the flanks of a side come nearest at phases (see `facing`)."""
     found, low, high = facing(pairs, phi1, advance=advance, distance=distance)
     root, tip = found.end(2, tip=False), found.end(2, tip=True)
     many = found.select(np.repeat(np.arange(len(low)), _SAMPLES))
@@ -296,8 +288,7 @@ def touches(
     edge = np.ones(len(low), dtype=bool)
     edge[inner] = False
     return Touches(
-        step=found.step,
-        pair=found.pair,
+        facing=found,
         turn=-pairs.side * extreme,
         angle=at,
         edge=edge,

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.meshing.contact import FlankPairs, Ints, contacts
-from gearcam.meshing.gap import Facing, facing, touches
+from gearcam.meshing.gap import Facing, touches
 from gearcam.numeric.roots import bracketed_root
 
 Array = NDArray[np.float64]
@@ -80,11 +80,10 @@ def lenses(
         Only pairs that overlap.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-    every, _, _ = facing(pairs, phi1, advance=advance, distance=distance)
     found = touches(pairs, phi1, advance=advance, distance=distance)
     lead = np.broadcast_to(lead, phi1.shape)
     over = -pairs.side * (found.turn - lead[found.step]) > 0.0
-    some, middle = every.select(over), found.angle[over]
+    some, middle = found.facing.select(over), found.angle[over]
     root, tip = some.end(2, tip=False), some.end(2, tip=True)
     ahead = lead[some.step]
 
