@@ -144,7 +144,7 @@ def test_an_interruption_keeps_the_steps_done(
         return natural(setup, phi1, first)
 
     monkeypatch.setattr(room, "_block", stop)
-    monkeypatch.setattr(room, "_BLOCK", 5)
+    monkeypatch.setattr(room, "BLOCK", 5)
     code, folder = run(design)
     assert code == 130
     assert "5 of 12 steps are kept" in capsys.readouterr().err

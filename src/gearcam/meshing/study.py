@@ -31,7 +31,7 @@ Progress = Callable[[str, int, int], None]
 _SHARE = 1.0 / 200.0
 """Chord error of each outline over the penetration: both together are a hundredth."""
 
-_BLOCK = 120
+BLOCK = 120
 """Phases that are studied at once: few enough for progress, many enough to be fast."""
 
 _BESIDE = 0.15
@@ -155,11 +155,11 @@ def run(setup: Setup, progress: Progress | None = None) -> Meshing:
     blocks: list[Block] = []
     done = 0
     try:
-        for start in range(0, len(phi1), _BLOCK):
+        for start in range(0, len(phi1), BLOCK):
             if progress is not None:
                 progress("meshing", start, len(phi1))
-            blocks.append(_block(setup, phi1[start : start + _BLOCK], start))
-            done = min(start + _BLOCK, len(phi1))
+            blocks.append(_block(setup, phi1[start : start + BLOCK], start))
+            done = min(start + BLOCK, len(phi1))
     except KeyboardInterrupt:
         pass
     return Meshing(setup=setup, phi1=phi1[:done], asked=len(phi1), blocks=blocks)
