@@ -58,9 +58,9 @@ GROWTH_NOTE = """\
 Both outlines of ellipses of eccentricity 0.3 and module 2 mm at 1 um. Exponents by least squares
 over all; the last doubling may cost 10 % more than twice, for the noise."""
 OVERLAP_NOTE = """\
-Driver 0.005 degrees ahead; blocks of phases as in the study. The whole outlines are turned and intersected by shapely at every
-phase, which gives one number; gearcam's rows say the tooth pair, length and place of every piece.
-Both give the same area. How many times faster: {listed}."""
+Driver 0.005 degrees ahead; gearcam in blocks of phases, as in the study. The whole outlines are
+turned and intersected by shapely at every phase, which gives one number; gearcam's rows say the
+tooth pair, length and place of every piece. Both give the same area. How many times faster: {listed}."""
 CHILD = """
 import json, resource, statistics, sys, time, tracemalloc
 import gearcam
