@@ -60,7 +60,8 @@ over all; the last doubling may cost 10 % more than twice, for the noise."""
 OVERLAP_NOTE = """\
 Driver 0.005 degrees ahead; gearcam in blocks of phases, as in the study. The whole outlines are
 turned and intersected by shapely at every phase, which gives one number; gearcam's rows say the
-tooth pair, length and place of every piece. Both give the same area. How many times faster: {listed}."""
+tooth pair, length and place of every piece. Both give the same area. How many times faster:
+{listed}."""
 CHILD = """
 import json, resource, statistics, sys, time, tracemalloc
 import gearcam
