@@ -18,7 +18,8 @@ import shapely
 
 import gearcam
 import peers
-from gearcam.meshing.overlap import Turning, halve
+from gearcam.meshing.halves import halve
+from gearcam.meshing.overlap import Turning
 from gearcam.meshing.study import BLOCK
 from measuring import ROOT, Result, Timing, commands, measure, show, table
 from witness import laws, sweep

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
-import shapely
 
 from gearcam.findings import run_checks
 from gearcam.gears.outline import build_outline
@@ -17,7 +17,6 @@ from gearcam.jobs import GearPairJob
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.contact import COAST, DRIVE, count, flank_pairs, stretches
 from gearcam.meshing.numbers import pairs_in_contact
-from gearcam.meshing.overlap import Turning, halve
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, Setup, mount, run, study
 from gearcam.tolerances import DEFAULT
@@ -40,17 +39,21 @@ def codes(meshing: Meshing) -> dict[str, str]:
 def moved(setup: Setup, tooth: int, by: float) -> Setup:
     """The pair with a tooth of the driver moved along the pitch curve, outline and flanks."""
     halves, count = setup.turning.driver, setup.turning.driver.count
+    parts: list[Any] = []
     angle = by / float(np.abs(setup.turning.rolling.frames(1, np.array([0.0])).p[0]))
-    points = halves.points.copy()
-    for half in (2 * tooth - 2, (2 * tooth - 3) % count):
-        points[halves.starts[half] : halves.starts[half + 1]] *= np.exp(1j * angle)
+    for some in (halves, halves.edges):
+        points = some.points.copy()
+        for half in (2 * tooth - 2, (2 * tooth - 3) % count):
+            points[some.starts[half] : some.starts[half + 1]] *= np.exp(1j * angle)
+        parts.append(replace(some, points=points))
+    driver = replace(parts[0], edges=parts[1])
     sf = setup.pairs[DRIVE].flanks[0].sf.copy()
     sf[[tooth - 1, count // 2 + tooth - 1]] += by
     pairs = {
         side: replace(found, flanks=(replace(found.flanks[0], sf=sf), found.flanks[1]))
         for side, found in setup.pairs.items()
     }
-    turning = replace(setup.turning, driver=replace(halves, points=points))
+    turning = replace(setup.turning, driver=driver)
     return replace(setup, pairs=pairs, turning=turning)
 
 
@@ -105,24 +108,6 @@ def test_held_back_the_flanks_come_apart_by_the_advance(name: str) -> None:
     setup = full_turn(name).setup
     assert held["min"] == pytest.approx(setup.penetration, rel=0.02)
     assert held["max"] <= ADVANCE * setup.lever * 1.01
-
-
-def test_all_overlap_is_that_of_the_whole_outlines() -> None:
-    made = profile(NAILS[1])
-    first, second = (halve(gear.profile) for gear in made.gears)
-    rolling, distance = made.pair.rolling, made.pair.center_distance
-    turning = Turning(rolling=rolling, driver=first, driven=second, distance=distance)
-    angles = TURN[::17]
-    for lead in (0.0, 2e-4, -0.03):
-        found = turning.overlaps(angles, ADVANCE, lead)
-        areas = np.bincount(found.step, found.area, minlength=len(angles))
-        for area, phi in zip(areas, angles, strict=True):
-            turned = (
-                made.gear1.outline @ [1, 1j] * np.exp(-1j * (phi + ADVANCE)),
-                made.gear2.outline @ [1, 1j] * np.exp(1j * (made.law.phi2(phi) + lead)) + distance,
-            )
-            one, two = (shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in turned)
-            assert area == pytest.approx(one.intersection(two).area, rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("by", [0.02, -0.02])

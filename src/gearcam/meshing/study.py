@@ -20,8 +20,9 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.pair import FINEST, Gear
 from gearcam.meshing.contact import COAST, DRIVE, FlankPairs, contacts, flank_pairs
 from gearcam.meshing.gap import touches
+from gearcam.meshing.halves import halve
 from gearcam.meshing.lens import lenses
-from gearcam.meshing.overlap import Overlaps, Turning, halve
+from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
 
