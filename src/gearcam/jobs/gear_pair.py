@@ -25,6 +25,7 @@ from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
 from gearcam.gears.rolling import Wheel
 from gearcam.laws.base import RatioLaw
+from gearcam.numeric.memory import keep_freed_memory
 from gearcam.parts import Part, timing_mark
 from gearcam.tolerances import DEFAULT, Tolerances
 
@@ -78,6 +79,7 @@ class GearPairJob:
         self.design = design
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
+        keep_freed_memory()
 
     @contextmanager
     def _stage(self, name: str) -> Iterator[None]:

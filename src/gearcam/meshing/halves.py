@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence, Sized
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,7 +28,7 @@ Array = NDArray[np.float64]
 _BELOW = 0.5
 """Depth of the halves below the root, in dedendums: more than any overlap that is worth a name."""
 
-_THINNED = 16.0
+_THINNED = 24.0
 """Deviation of thinned edges over the chord error: a quarter of the vertices."""
 
 _FORWARD = 0.7
@@ -51,12 +50,18 @@ class Halves:
         Largest distance of the curve from its chords.
     edges : Edges
         What the halves have of the outline.
+    tips : (2z,) complex array, mm
+        Middle of the tip of each half's tooth.
+    width : (2z,) array, mm
+        Largest distance of its corners from there.
     """
 
     points: Plane
     starts: Ints
     chord_error: float
     edges: Edges
+    tips: Plane
+    width: Array
 
     @property
     def count(self) -> int:
@@ -107,26 +112,32 @@ def halve(outline: Outline) -> Halves:
         In the order of rising s from the middle of tooth 1 (wheel 1) or from the middle of the
         space before tooth 1 (wheel 2).
     """
-    toothing, points = outline.toothing, outline.sampler.chords[1]
+    toothing = outline.toothing
+    points, chains = _chains(outline)
     depth = -(1.0 + _BELOW) * toothing.cutter.dedendum
     places = toothing.tooth_places
     deep = _below(outline, toothing.rolling.angle(places), depth)
     low = _below(outline, toothing.rolling.angle(places + 0.5 * toothing.pitch), depth)
     halves: list[Plane] = []
     edges: list[_Edge] = []
-    for k, chain in enumerate(_chains(outline)):
+    tips: list[tuple[complex, float]] = []
+    for k, chain in enumerate(chains):
         tooth, side = divmod(k, 2)
         own, under = points[chain[1]], deep[(tooth + side) % toothing.teeth]
         halves.append(np.concatenate([own, [low[tooth], under]]))
         edges.append(_edge(toothing.wheel, [points[part] for part in chain], under, low[tooth]))
+        tips.append((own[0], np.abs(points[chain[0]] - own[0]).max(initial=0.0)))
     if toothing.wheel == 2:
-        halves, edges = halves[-1:] + halves[:-1], edges[-1:] + edges[:-1]
+        halves, tips = halves[-1:] + halves[:-1], tips[-1:] + tips[:-1]
+        edges = edges[-1:] + edges[:-1]
         edges = [_covered(k, edges) for k in range(len(edges))]
     return Halves(
         points=np.concatenate(halves),
         starts=_starts(halves),
         chord_error=outline.sampler.chords[2],
         edges=_join(edges),
+        tips=np.array([tip for tip, _ in tips]),
+        width=np.array([width for _, width in tips]),
     )
 
 
@@ -134,27 +145,48 @@ def _starts(parts: Sequence[Sized]) -> Ints:
     return np.concatenate([[0], np.cumsum([len(part) for part in parts])])
 
 
-def _chains(outline: Outline) -> list[tuple[Ints, Ints, Ints]]:
+class _Middles:
+    """The middles of lands between the vertices `begin` and `end`, themselves vertices or between.
+
+    A middle between two vertices has a number of its own, from `extra` on.
+    """
+
+    def __init__(self, begin: Ints, end: Ints, size: int, extra: int) -> None:
+        self.low, self.high = (begin + end) // 2, (begin + end + 1) // 2
+        self.at = np.where(self.low == self.high, self.low % size, extra + np.arange(len(begin)))
+
+
+def _chains(outline: Outline) -> tuple[Plane, list[tuple[Ints, Ints, Ints]]]:
     """Vertices of each half from tip to root: its own, between those of its neighbours' lands.
 
     Half 0 is the front of the first tooth, half 1 the back of the second, which ends in the same
-    root, and so on.
+    root, and so on. Returns the outline's vertices and the middles after them.
     """
-    size = len(outline.points)
+    points = outline.sampler.chords[1]
+    size, z = len(points), outline.toothing.teeth
     (front, front_end), (back, back_end) = _flanks(outline)
-    roots = (front_end + back) // 2
     following = np.append(front[1:], size)
-    tips = (back_end + following) // 2
+    tips, roots = (
+        _Middles(back_end, following, size, size),
+        _Middles(front_end, back, size, size + z),
+    )
     chains: list[tuple[Ints, Ints, Ints]] = []
-    for k, root in enumerate(roots):
+    for k in range(z):
         last = size if k == 0 else 0
-        for way, cuts in (
-            (1, (back_end[k - 1] - last, tips[k - 1] - last, root + 1, back[k] + 1)),
-            (-1, (following[k], tips[k], root - 1, front_end[k] - 1)),
-        ):
-            before, own, after = (np.arange(*cut, way) % size for cut in pairwise(cuts))
-            chains.append((before, own, after))
-    return chains
+        tip, root, after = (
+            tips.at[[k - 1, k]],
+            roots.at[k],
+            np.arange(roots.low[k] + 1, back[k] + 1),
+        )
+        own = np.arange(tips.low[k - 1] + 1 - last, roots.high[k]) % size
+        before = np.arange(back_end[k - 1] - last, tips.high[k - 1] - last)
+        chains.append((before % size, np.concatenate([tip[:1], own, [root]]), after))
+        own = np.arange(tips.high[k] - 1, roots.low[k], -1)
+        after = np.arange(roots.high[k] - 1, front_end[k] - 1, -1)
+        before = np.arange(following[k], tips.low[k], -1)
+        chains.append((before % size, np.concatenate([tip[1:], own, [root]]), after))
+    middles = [0.5 * (points[land.low % size] + points[land.high % size]) for land in (tips, roots)]
+    return np.concatenate([points, *middles]), chains
 
 
 def _flanks(outline: Outline) -> Ints:
@@ -184,7 +216,7 @@ def _below(outline: Outline, angle: Array, height: float) -> Plane:
 _COVER = np.radians(22.5)
 """Angle of the cover to the direction of an edge: between level and the line of the tips."""
 
-_COVERED = 2
+_COVERED = 3
 """Number of neighbours that the cover reaches over."""
 
 
@@ -205,7 +237,8 @@ def _edge(wheel: int, chain: list[Plane], under: complex, low: complex) -> _Edge
     along = down * (1.0 + 1j * hand) / np.sqrt(2.0)
     if wheel == 1:
         # the driver's is seen from its mate: it rises from the root
-        return _Edge(own[::-1], (own[-1], own[0]), -along, hand)
+        more = _forward(np.append(own[0], before[::-1]), -along)[1:]
+        return _Edge(np.concatenate([own[::-1], more]), (own[-1], own[0]), -along, hand)
     ends = own[0], own[-1]
     more = _forward(np.append(own[-1], after), along)[1:]
     less = _forward(np.append(own[0], before[::-1]), -along)[:0:-1]

@@ -25,6 +25,9 @@ from gearcam.meshing.staircase import Facing, overlap
 
 Array = NDArray[np.float64]
 
+_GROUP = 16
+"""Halves of the driver that are first looked at together."""
+
 _BESIDE = 4
 """Halves on both sides of the facing one whose tips are taken for the driven wheel's reach."""
 
@@ -86,13 +89,20 @@ class Turning:
         return shapely.STRtree(self.driven.polygons)
 
     @cached_property
-    def _tops(self) -> Plane:
-        """Outmost point of each half of the driver, as its whole half is seen from far."""
-        outmost = self.driver.outmost
-        index, owner = self.driver.gather(np.arange(self.driver.count))
-        best = np.flatnonzero(np.abs(self.driver.points[index]) == outmost[owner])
-        _, first = np.unique(owner[best], return_index=True)
-        return self.driver.points[index[best[first]]]
+    def _land(self) -> Array:
+        """Largest distance of a tip's corners from its middle, for each half of the driver."""
+        width, half = self.driver.width, np.arange(self.driver.count)
+        other = (half + np.where(half % 2 == 0, -1, 1)) % len(half)
+        return np.maximum(width, width[other])
+
+    @cached_property
+    def _groups(self) -> tuple[Plane, Array]:
+        """Centres and radii of circles about the tips of groups of the driver's halves."""
+        tips, starts = self.driver.tips, np.arange(0, self.driver.count, _GROUP)
+        sizes = np.diff(np.append(starts, len(tips)))
+        center: Plane = np.asarray(np.add.reduceat(tips, starts) / sizes, dtype=complex)
+        apart = np.abs(tips - np.repeat(center, sizes)) + self._land
+        return center, np.maximum.reduceat(apart, starts)
 
     @cached_property
     def _reach(self) -> Array:
@@ -185,11 +195,14 @@ class Turning:
         -------
         (n,) bool array
         """
-        return (self._unroll(phi1, one) - two) % self.driven.count == 0
+        return (self._unroll(self._halves_past(phi1), one) - two) % self.driven.count == 0
 
-    def _unroll(self, phi1: Array, half: Ints) -> Ints:
+    def _halves_past(self, phi1: Array) -> Array:
+        """How many halves have passed the pitch point."""
+        return 2.0 * self.rolling.arc_length(phi1) / self._pitch
+
+    def _unroll(self, at: Array, half: Ints) -> Ints:
         """Count halves of the driver, known within the first turn, over all turns."""
-        at = 2.0 * self.rolling.arc_length(phi1) / self._pitch
         turns = np.rint((at - 0.5 - half) / self.driver.count).astype(np.int64)
         return half + turns * self.driver.count
 
@@ -227,18 +240,24 @@ class Turning:
 
     def _near(self, phi1: Array, turn: Plane, shift: Plane) -> tuple[Ints, Ints, Ints, Array]:
         """Phases, driver's halves within the driven wheel's tips, their mates and its radius."""
-        half = np.arange(self.driver.count)
-        facing = self._unroll(phi1[:, None], half) % self.driven.count
-        distance = np.abs(self._tops * turn[:, None] + shift[:, None])
-        reach = self._reach[facing]
-        step, near = np.nonzero(distance <= reach)
-        return step, near, facing[step, near], reach[step, near]
+        center, radius = self._groups
+        far = np.abs(center * turn[:, None] + shift[:, None])
+        step, group = np.nonzero(far <= radius + self.driven.outmost.max())
+        step = np.repeat(step, _GROUP)
+        half = (group[:, None] * _GROUP + np.arange(_GROUP)).ravel()
+        real = half < self.driver.count
+        step, half = step[real], half[real]
+        facing = self._unroll(self._halves_past(phi1)[step], half) % self.driven.count
+        distance = np.abs(self.driver.tips[half] * turn[step] + shift[step])
+        near = distance <= self._reach[facing] + self._land[half]
+        step, half, facing = step[near], half[near], facing[near]
+        return step, half, facing, self._reach[facing]
 
 
 def _within(points: Plane, sizes: Ints, reach: Array) -> tuple[Plane, Ints]:
     """Leave out what the mate cannot reach: roots beyond the first vertex outside.
 
-    The point below the tip always stays, so that what is left is the rest of the same half.
+    The tip and the point below it always stay: what is left is the rest of the same half.
     """
     inside = points.real**2 + points.imag**2 <= reach * reach
     keep = inside.copy()
@@ -246,7 +265,8 @@ def _within(points: Plane, sizes: Ints, reach: Array) -> tuple[Plane, Ints]:
     keep[:-1] |= inside[1:]
     ends = np.cumsum(sizes)
     keep[ends - 2] = keep[ends - 3]
-    keep[ends - 1] = True
+    for kept in (ends - 1, ends - sizes, ends - sizes + 1):
+        keep[kept] = True
     return points[keep], np.add.reduceat(keep.astype(np.int64), ends - sizes)
 
 

@@ -8,8 +8,9 @@ that cannot touch.
 
 What a graph cannot say is left to the polygons and only marked here: an edge that turns back, an
 overlap that goes beyond the middle of a tip or root, a half that stands beside its mate. To see
-these, the driven wheel's edges go on over the neighbour's half of tip and root land, and a cover
-is laid over the tips of the teeth behind.
+these, edges go on over the other half of the tip, the driven wheel's also of the root, and a cover
+is laid over the tips of its teeth behind. What stands beyond the root's end belongs to the other
+half of its tooth, whose edge goes on over it.
 """
 
 from __future__ import annotations
@@ -149,9 +150,11 @@ def overlap(one: tuple[Edges, Edges], two: tuple[Edges, Edges], facing: Facing) 
         first = _cut(one[0], windows[0], frame, (part.turn, part.shift))
         second = _cut(two[0], windows[1], frame)
         merged = _merge(first, second)
-        core = (two[0].ends[:, part.two] * np.conj(frame[0])).real
+        core = _core(one[0], two[0], part, frame[0])
         area[near], length[near], radius[:, near], odd = _measure(merged, frame, part.shift, core)
-        beyond[near] |= odd | _turns_back(first, len(near)) | _turns_back(second, len(near))
+        for graph in (first, second):
+            odd[graph.owner[_wrong(graph)]] = True
+        beyond[near] |= odd
     return Steps(area=area, length=length, radius=radius, beyond=beyond)
 
 
@@ -180,6 +183,13 @@ def _cut(
     return _Graph(points.real, hand[owner] * points.imag, owner, index)
 
 
+def _core(one: Edges, two: Edges, facing: Facing, along: Plane) -> Array:
+    """Where along u both halves are, first and last."""
+    driver = one.ends[:, facing.one] * facing.turn + facing.shift
+    first, last = (driver / along).real, (two.ends[:, facing.two] / along).real
+    return np.stack([np.maximum(first[0], last[0]), np.minimum(first[1], last[1])])
+
+
 def _look(one: Edges, two: Edges, facing: Facing) -> tuple[Ints, list[tuple[Ints, Ints]], Bools]:
     """Find halves that come so near that thinning may hide their touch.
 
@@ -191,9 +201,14 @@ def _look(one: Edges, two: Edges, facing: Facing) -> tuple[Ints, list[tuple[Ints
     full = [(e.starts[h], e.starts[h + 1] - 1) for e, h in ((one, facing.one), (two, facing.two))]
     first = _within(_cut(one, full[0], frame, (facing.turn, facing.shift)), facing)
     second = _cut(two, full[1], frame)
-    beyond = _turns_back(first, count, _STEEPEST) | _turns_back(second, count, _STEEPEST)
     (over, after), (under, before) = _across(first, second)
-    beyond[first.owner[np.isnan(over)]] = True
+    beyond = np.zeros(count, dtype=bool)
+    beyond[first.owner[after == second.first[first.owner]]] = True
+    beyond[first.owner[_wrong(first, _STEEPEST)]] = True
+    wrong = _wrong(second, _STEEPEST)
+    # where the driver is, or between two vertices of its mate
+    there = ~np.isnan(under[wrong - 1] + under[wrong]) | (before[wrong] > before[wrong - 1])
+    beyond[second.owner[wrong[there]]] = True
     near = -np.hypot(1.0, _STEEPEST) * (one.deviation + two.deviation)
     hot = [np.flatnonzero(over - first.v > near), np.flatnonzero(second.v - under > near)]
     touched = np.zeros(count, dtype=bool)
@@ -224,12 +239,11 @@ def _within(graph: _Graph, facing: Facing) -> _Graph:
     return _Graph(graph.u[keep], graph.v[keep], graph.owner[keep], graph.index[keep])
 
 
-def _turns_back(graph: _Graph, count: int, steepest: float = np.inf) -> Bools:
-    """Whether each of `count` edges turns back, or is steeper than allowed."""
+def _wrong(graph: _Graph, steepest: float = np.inf) -> Ints:
+    """Vertices up to which an edge turns back, or is steeper than allowed."""
     step = np.diff(graph.u)
     wrong = (step <= 0.0) | (np.abs(np.diff(graph.v)) > steepest * step)
-    wrong &= graph.owner[1:] == graph.owner[:-1]
-    return np.bincount(graph.owner[1:][wrong], minlength=count) > 0
+    return np.flatnonzero(wrong & (graph.owner[1:] == graph.owner[:-1])) + 1
 
 
 def _across(first: _Graph, second: _Graph) -> tuple[tuple[Array, Ints], tuple[Array, Ints]]:
