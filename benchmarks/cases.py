@@ -21,7 +21,7 @@ import peers
 from gearcam.meshing.halves import halve
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.study import BLOCK
-from measuring import ROOT, Result, Timing, commands, measure, show, table
+from measuring import ROOT, Result, Timing, commands, in_turns, measure, show, table
 from witness import laws, sweep
 from witness.kinematics import Basic, Rolling
 
@@ -253,7 +253,7 @@ def growth() -> Result:
     )
 
 
-def against_whole_outlines(tries: int = 3) -> Result:
+def against_whole_outlines(tries: int = 7) -> Result:
     """(e) Overlap by pair of teeth against the intersection of the whole outlines."""
     advance, rows, linear = math.radians(0.005), [], {}
     designs = {"nail machine": gearcam.load(NAIL)} | {
@@ -272,15 +272,14 @@ def against_whole_outlines(tries: int = 3) -> Result:
             distance=job.pair.center_distance,
         )
         phases = {n: np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (360, 1440)}
-        mine = [
-            measure(f"gearcam, {name}, {n} steps", partial(_by_blocks, turning, p, advance), 7)
+        cases = {
+            f"gearcam, {name}, {n} steps": partial(_by_blocks, turning, p, advance)
             for n, p in phases.items()
-        ]
-        whole = measure(
-            f"whole outlines, {name}, 360 steps",
-            partial(_whole, outlines, turning, phases[360], advance),
-            tries,
+        }
+        cases[f"whole outlines, {name}, 360 steps"] = partial(
+            _whole, outlines, turning, phases[360], advance
         )
+        *mine, whole = in_turns(cases, tries)
         rows += [*mine, whole]
         ratios[name] = whole.median / mine[0].median
         linear[name] = mine[1].median / mine[0].median

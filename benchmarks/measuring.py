@@ -66,6 +66,19 @@ def measure(name: str, function: Callable[[], object], count: int, *, warm: bool
     return Timing(name, tuple(samples))
 
 
+def in_turns(functions: dict[str, Callable[[], object]], count: int) -> list[Timing]:
+    """Call functions `count` times, in turns: a busy moment hits them alike."""
+    samples: dict[str, list[float]] = {name: [] for name in functions}
+    for function in functions.values():
+        function()
+    for _ in range(count):
+        for name, function in functions.items():
+            start = time.perf_counter()
+            function()
+            samples[name].append(time.perf_counter() - start)
+    return [Timing(name, tuple(values)) for name, values in samples.items()]
+
+
 def commands(cases: dict[str, Sequence[str]], count: int) -> list[Timing]:
     """Whole processes, in turns: a busy moment hits them alike. The first round does not count."""
     samples: dict[str, list[float]] = {name: [] for name in cases}
