@@ -21,12 +21,32 @@ CLAIMS = [
 ]
 
 
+NAMES = {
+    "phases",
+    "constant",
+    "ellipse",
+    "formula",
+    "three-phase-polynomial",
+    "eccentric-circle",
+    "limacon",
+    "lobed",
+    "log-spiral",
+    "bspline",
+    "rounded-polygon",
+    "multispeed",
+    "fourier",
+    "table",
+    "motion",
+}
+"""Every law of the sources and of the field that the program promises."""
+
+
 def built(claim: Claim) -> RatioLaw:
     return claim.parameters.build(claim.lobes, DEFAULT)
 
 
 def test_the_registry_holds_exactly_the_laws_that_are_documented() -> None:
-    assert set(LAWS) == {"phases", "constant", "ellipse", "formula"}
+    assert set(LAWS) == NAMES
     for entry in LAWS.values():
         assert len(entry.claims()) >= 1
         assert entry.source
@@ -48,6 +68,8 @@ def test_values_are_those_of_the_closed_form(claim: Claim) -> None:
 def test_it_closes_and_repeats(claim: Claim) -> None:
     law = built(claim)
     assert abs(law.closure_error) < 1e-13
+    if not law.lobes.closed:
+        return
     assert law.motion.last == pytest.approx(2 * math.pi / claim.lobes.n2, abs=1e-13)
     phi = np.linspace(0.01, law.lobes.period - 0.01, 7)
     shifted = phi + 3 * law.lobes.period
@@ -88,9 +110,9 @@ def test_the_driven_angle_is_the_integral_of_the_ratio(claim: Claim) -> None:
 @pytest.mark.parametrize("claim", CLAIMS)
 def test_continuity_is_as_claimed_and_seen_from_both_sides(claim: Claim) -> None:
     law = built(claim)
-    assert min(law.ratio.continuity) == claim.continuity
+    assert min((order for _, order in law.continuity), default=3) == claim.continuity
     h = 1e-7
-    for knot in law.knots[1:]:
+    for knot in law.knots[1:] if law.lobes.closed else law.knots[1:-1]:
         before, after = law.derivatives(np.array([knot - h, knot + h]), 1)[1]
         scale = max(1.0, float(np.abs(law.derivatives(law.knots[:-1] + 0.1, 2)[2]).max()))
         assert abs(after - before) < 50 * h * scale

@@ -8,6 +8,7 @@ tooth, a wheel off phase, another centre distance.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -103,7 +104,8 @@ def test_unequal_wheels_run_without_overlap_or_play(law: str, teeth: tuple[int, 
     from helpers_pairs import job
 
     name, text = law.split(" = ")
-    assembly = Assembly(job(Formula(**{name: text}), teeth, module=2.0, tolerance=FINE))
+    shape: dict[str, Any] = {name: text}
+    assembly = Assembly(job(Formula(**shape), teeth, module=2.0, tolerance=FINE))
     phases = np.linspace(0.0, 4 * math.pi, 97)
     assert max(assembly.overlap(phi) for phi in phases) <= allowance(FINE)
     hair = 8 * FINE / 15.0

@@ -87,7 +87,8 @@ def formula_laws(draw: st.DrawFn, teeth: tuple[int, int]) -> Formula:
         a, b = a / n1 * teeth[0] / teeth[1], b / (more * n1) * teeth[0] / teeth[1]
         return Formula(phi2=f"phi1*{teeth[0]}/{teeth[1]} + {a}*{first} + {b}*{second}")
     scale = 0.5 if kind == "r1" else 1.0
-    return Formula(**{kind: f"1 + {scale * a}*{first} + {scale * b}*{second}"})
+    shape: dict[str, Any] = {kind: f"1 + {scale * a}*{first} + {scale * b}*{second}"}
+    return Formula(**shape)
 
 
 @st.composite

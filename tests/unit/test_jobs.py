@@ -159,7 +159,7 @@ def test_a_summary_is_json_without_nan_and_reads_back_the_same() -> None:
 )
 def test_what_was_left_to_the_program_is_named(given: dict[str, float], solved: str) -> None:
     pair = small(**given).summary()["pair"]
-    assert set(pair["solved"]) == {solved}
+    assert set(pair["solved"]) == {solved, "center_distance_over_semi_latus_rectum"}
     assert pair["solved"][solved] == pair[solved]
 
 
@@ -257,7 +257,10 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"law": Phases(knots=(0.0, 3.0, 2 * math.pi), ratios=(1.5, 0.9, 1.5))},
         "do not close",
     ),
-    "ellipse on unequal teeth": ({"teeth": (20, 40)}, "equal"),
+    "lobes beside the teeth": (
+        {"teeth": (20, 40), "law": Ellipse(eccentricity=0.1, lobes=(2, 3))},
+        "in the ratio of the tooth counts",
+    ),
     "ratio not positive": ({"law": Formula(ratio="0.9 + cos(phi1)")}, "positive"),
 }
 

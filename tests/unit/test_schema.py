@@ -137,7 +137,7 @@ def test_reader_and_schema_refuse_the_same_files(edits: list[tuple[tuple[str, ..
         (("pair", "teeth"), [36, 2]),
         (("law", "knots_deg"), [0]),
         (("law", "ratios"), [1, 0, 1]),
-        (("law", "shape"), "sine"),
+        (("law", "shape"), "line"),
         (("law", "type"), None),
         (("law",), None),
         (("blank", "bore_diameter_mm"), 20),

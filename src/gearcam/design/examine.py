@@ -30,7 +30,6 @@ _COARSEST: Final = 50
 
 _TOP: Final = ("kind", "name", "law", "pair", "rack", "blank", "limits", "output", "meshing")
 _REQUIRED_TABLES: Final = ("law", "pair")
-_OPEN_PAIRS: Final = "open pairs (driven_travel_deg) are not built by this version yet"
 
 
 @dataclass
@@ -218,19 +217,8 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
 
 
 def _law_faults(known: Table, raw: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield the faults of the law's table; what belongs to open pairs is said once."""
-    is_open = "driven_travel_deg" in raw and "knots_deg" in known.entries
-    if is_open:
-        value = raw["driven_travel_deg"]
-        yield Fault(("law", "driven_travel_deg"), _OPEN_PAIRS, value, ", ".join(known.entries))
-        raw = {key: value for key, value in raw.items() if key != "driven_travel_deg"}
-    for fault in faults_of(known, raw, home=_home):
-        if fault.path[1:2] == ("knots_deg",) and fault.value == "solve":
-            if is_open:
-                continue
-            hint = f'a knot that is left to "solve" belongs to an open pair; {_OPEN_PAIRS}'
-            fault = replace(fault, hint=hint)
-        yield fault
+    """Yield the faults of the law's table."""
+    yield from faults_of(known, raw, home=_home)
 
 
 def _own_problems(law: Any, known: Table, raw: Mapping[str, Any]) -> Iterator[Fault]:

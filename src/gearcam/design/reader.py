@@ -90,10 +90,18 @@ def loads(text: str, *, file: str = "") -> GearPairDesign:
         For everything that is wrong in it, each with its line.
     """
     document = _document(text, file)
+    _find_table(document, file)
     found = examine(document, stem=Path(file).stem)
     if found.faults:
         raise DesignError(_problems(found.faults, text, file))
     return GearPairDesign(source=file, **found.parts)
+
+
+def _find_table(document: dict[str, Any], file: str) -> None:
+    """Look for a law's table beside the design file."""
+    law = document.get("law")
+    if isinstance(law, dict) and isinstance(law.get("file"), str) and law["file"]:
+        law["file"] = os.fspath(Path(file).parent / law["file"])
 
 
 def _problems(faults: list[Fault], text: str, file: str) -> list[Problem]:

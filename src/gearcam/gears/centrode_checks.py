@@ -9,7 +9,7 @@ import numpy as np
 
 from gearcam.findings import Finding, check
 from gearcam.gears.subject import KIND, Subject
-from gearcam.laws.base import angle_text
+from gearcam.laws.span import angle_text
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
 CLOSURE = math.radians(1e-7)
@@ -72,7 +72,7 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
 def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn at knots where a derivative jumps that the limit wants continuous."""
     law = subject.pair.law
-    for number, order in enumerate(law.ratio.continuity, start=1):
+    for number, order in law.continuity:
         if order < limit:
             yield Finding(
                 code="ratio-continuity",
@@ -80,7 +80,7 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
                 message=f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
                 value=float(order),
                 limit=limit,
-                where=angle_text(float(law.knots[number])),
+                where=angle_text(float(law.ratio.knots[number])),
             )
 
 
@@ -146,7 +146,7 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa:
     """Warn if the pinion cutter would cut a tooth far from the space it is in."""
     for gear in subject.gears:
         cutter = gear.toothing.cutter
-        if cutter.kc == 0.0:
+        if cutter.kc == 0.0 or not gear.toothing.closed:
             continue
         length, count = gear.pair.rolling.length(gear.wheel), 180
         s = length * np.arange(count) / count

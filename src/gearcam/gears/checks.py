@@ -68,7 +68,7 @@ def contact_ratio(subject: Subject, limit: float) -> Iterator[Finding]:
         worst = float(arcs.ratios.min())
         if not arcs.gaps and worst >= limit:
             continue
-        tooth = int(arcs.ratios.argmin()) + 1
+        tooth = int(arcs.tooth[arcs.ratios.argmin()])
         message = "Few teeth carry at a time; a larger rack.addendum or more teeth help."
         if arcs.gaps:
             places = [math.degrees(float(subject.pair.rolling.angle(s))) for s in arcs.gaps[0]]
@@ -162,8 +162,7 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Finding]:
 def short_flank(subject: Subject, limit: float) -> Iterator[Finding]:
     """Note flanks that stop well below the tip curve."""
     for gear in subject.gears:
-        z, tips = gear.toothing.teeth, gear.profile.flanks.tips
-        height = np.minimum(tips.height[:z], tips.height[z:]) / gear.toothing.cutter.addendum
+        height = gear.profile.tip_height / gear.toothing.cutter.addendum
         short = np.flatnonzero(height < limit)
         if short.size:
             yield Finding(

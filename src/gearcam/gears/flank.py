@@ -43,15 +43,18 @@ class Toothing:
     wheel : {1, 2}
         Which wheel.
     teeth : int
-        Its number of teeth.
+        Its number of teeth: pitches along its centrode.
     cutter : Cutter
         Its cutter.
+    closed : bool
+        Whether its teeth go all around; else its blank ends half a pitch beyond them.
     """
 
     rolling: Rolling
     wheel: Wheel
     teeth: int
     cutter: Cutter
+    closed: bool = True
 
     @property
     def turn(self) -> complex:
@@ -63,11 +66,32 @@ class Toothing:
         """Pitch along the centrode, pi*m, mm."""
         return 4.0 * self.cutter.half_space
 
+    @property
+    def length(self) -> float:
+        """Length of its centrode, mm."""
+        return self.pitch * self.teeth
+
+    @property
+    def numbers(self) -> range:
+        """Numbers of the teeth that are formed.
+
+        An open wheel's blank goes from half a pitch before s = 0 to half a pitch behind s = L. On
+        wheel 1 the first and last tooth formed lie outside it, on wheel 2 half in it.
+        """
+        if self.closed:
+            return range(1, self.teeth + 1)
+        return range(self.teeth + (3 if self.wheel == 1 else 2))
+
+    @property
+    def whole(self) -> slice:
+        """Places in `numbers` of the teeth that are whole."""
+        return slice(None) if self.closed else slice(1, -1)
+
     @cached_property
     def tooth_places(self) -> Array:
-        """Arc length of each tooth's middle, mm: (k - 1) pitches, on wheel 2 (k - 1/2)."""
-        first = 0.0 if self.wheel == 1 else 0.5
-        return self.pitch * np.arange(first, first + self.teeth)
+        """Arc length of each formed tooth's middle, mm: (k - 1) pitches, on wheel 2 (k - 1/2)."""
+        first = self.numbers[0] - (1.0 if self.wheel == 1 else 0.5)
+        return self.pitch * np.arange(first, first + len(self.numbers))
 
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
         """Return the frames of this wheel at driver angles, rad (see `Rolling.frames`)."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Kind, Rows, Toothing
 from gearcam.gears.sampling import Sampler, as_pairs
 from gearcam.gears.spaces import (
@@ -23,7 +24,7 @@ from gearcam.gears.spaces import (
 )
 from gearcam.gears.tips import TipEnds, feet, find_tips
 from gearcam.gears.undercut import Undercut, find_cusps
-from gearcam.numeric.contour import Contour, polygon_area
+from gearcam.numeric.contour import Contour, Run, polygon_area
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -32,7 +33,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Flanks:
-    """Every flank of a wheel and where it ends: sigma = +1 of teeth 1 to z, then sigma = -1.
+    """Every flank of a wheel and where it ends: sigma = +1 of all teeth formed, then sigma = -1.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ class Outline:
     toothing : Toothing
         The wheel.
     rows : Rows
-        Its curves, loops taken out, closed, rising s.
+        Its curves, loops taken out, rising s.
     flanks : Flanks
         Where each flank ends.
     tolerance : float, mm
@@ -86,13 +87,38 @@ class Outline:
     @cached_property
     def sampler(self) -> Sampler:
         """The curves with the density of points that the tolerance asks for."""
-        return Sampler(toothing=self.toothing, rows=self.rows, tolerance=self.tolerance)
+        return Sampler(
+            toothing=self.toothing,
+            rows=self.rows,
+            tolerance=self.tolerance,
+            closed=self.toothing.closed,
+        )
+
+    @property
+    def _reversed(self) -> bool:
+        """Whether rising s runs clockwise."""
+        return self.toothing.wheel == 2
+
+    @cached_property
+    def toothed(self) -> Array:
+        """Vertices of the teeth, (n, 2), mm, counter-clockwise."""
+        points = as_pairs(self.sampler.chords[1])
+        return points[::-1] if self._reversed else points
+
+    @cached_property
+    def body(self) -> tuple[Run, ...]:
+        """What joins the ends of an open wheel around its shaft; nothing for a closed one."""
+        if self.toothing.closed:
+            return ()
+        return body_runs(self.toothing, self.toothed, self.chord_error, self.oversampling)
 
     @cached_property
     def points(self) -> Array:
         """Vertices of the adaptive polygon, (n, 2), mm, counter-clockwise."""
-        points = as_pairs(self.sampler.chords[1])
-        return points[::-1] if self.toothing.wheel == 2 else points
+        if self.toothing.closed:
+            return self.toothed
+        sparse = [run.points[: -1 : self.oversampling] for run in self.body]
+        return np.vstack([self.toothed[:-1], *sparse])
 
     @cached_property
     def area(self) -> float:
@@ -108,7 +134,7 @@ class Outline:
     def contour(self) -> Contour:
         """The outline with dense points and tangents, for arcs, and its polygon."""
         return Contour(
-            runs=self.sampler.runs(self.oversampling, reverse=self.toothing.wheel == 2),
+            runs=self.sampler.runs(self.oversampling, reverse=self._reversed) + self.body,
             vertices=self.points,
             tolerance=self.tolerance,
             chord_error=self.chord_error,
@@ -116,18 +142,25 @@ class Outline:
 
     @cached_property
     def tip_thickness(self) -> Array:
-        """Distance between the upper ends of each tooth's flanks, (z,), mm."""
-        z = self.toothing.teeth
+        """Distance between the upper ends of each whole tooth's flanks, (z,), mm."""
+        z = len(self.toothing.numbers)
         frames = self.toothing.frames(self.flanks.tips.phi)
         ends = self.toothing.flank_points(frames, self.flanks.sf, self.flanks.sigma)
-        return np.abs(ends[:z] - ends[z:])
+        return np.abs(ends[:z] - ends[z:])[self.toothing.whole]
+
+    @property
+    def tip_height(self) -> Array:
+        """Distance of each whole tooth's lower flank end from the centrode, (z,), mm."""
+        z, height = len(self.toothing.numbers), self.flanks.tips.height
+        return np.minimum(height[:z], height[z:])[self.toothing.whole]
 
     @cached_property
     def undercut_teeth(self) -> tuple[int, ...]:
         """Numbers of the teeth with an undercut flank on either side."""
-        z = self.toothing.teeth
+        z = len(self.toothing.numbers)
         either = self.flanks.undercut[:z] | self.flanks.undercut[z:]
-        return tuple(int(k) + 1 for k in np.flatnonzero(either))
+        numbers = np.array(self.toothing.numbers)[self.toothing.whole]
+        return tuple(numbers[either[self.toothing.whole]].tolist())
 
 
 def build_outline(
@@ -174,7 +207,7 @@ def build_outline(
 
 
 def _find_flanks(toothing: Toothing, mate_reach: float) -> Flanks:
-    half, z = toothing.cutter.half_space, toothing.teeth
+    half, z = toothing.cutter.half_space, len(toothing.numbers)
     sf = np.concatenate([toothing.tooth_places + half, toothing.tooth_places - half])
     sigma = np.repeat([1.0, -1.0], z)
     cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
@@ -196,7 +229,7 @@ def _find_flanks(toothing: Toothing, mate_reach: float) -> Flanks:
 
 def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipEnds:
     """End the flanks of pointed teeth where they cross."""
-    z = toothing.teeth
+    z = len(toothing.numbers)
     pointed = np.flatnonzero(tips.foot[:z] <= tips.foot[z:])
     if pointed.size == 0:
         return tips
@@ -213,7 +246,7 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
         low=zero,
         high=zero,
         corner=zero.astype(bool),
-        tooth=np.tile(np.arange(z) + 1, 2),
+        tooth=np.tile(toothing.numbers, 2),
     )
     for tooth in pointed:
         found = meet(toothing, rows, int(tooth), int(z + tooth))
@@ -243,18 +276,20 @@ def _assemble(
         _trim(toothing, rows, lowest, crossings)
     parts.append(select(rows, np.arange(done, len(rows.kind))))
     joined = join(parts)
+    if not toothing.closed:
+        joined = cut_ends(toothing, joined, flanks.tips)
     pointed = (joined.kind == Kind.TIP) & (joined.start == joined.end)
     return select(joined, np.flatnonzero(~pointed)), replace(flanks, lowest=lowest)
 
 
 def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossing]) -> None:
     """Write down how far the flanks of an untangled space still reach."""
-    z = toothing.teeth
+    z, first = len(toothing.numbers), toothing.numbers[0]
     for crossing in crossings:
         for number, phi in ((crossing.before, crossing.leaves), (crossing.after, crossing.enters)):
             if rows.kind[number] == Kind.FLANK:
                 sf, sigma = rows.sf[number], rows.sigma[number]
-                flank = int(rows.tooth[number]) - 1 + (0 if sigma > 0 else z)
+                flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
                 reach = sigma * (sf - float(toothing.rolling.arc_length(phi)))
                 # A flank that crosses itself counts down to its first loop only.
                 lowest[flank] = max(lowest[flank], reach)
@@ -283,6 +318,8 @@ def _demand_simple(outline: Outline) -> None:
 
 def _demand_shaft(outline: Outline) -> None:
     """Refuse a wheel whose root passes its own shaft."""
+    if not outline.toothing.closed:
+        return
     points = outline.sampler.chords[1]
     if abs(float(np.angle(points[1:] * np.conj(points[:-1])).sum())) > np.pi:
         return

@@ -20,7 +20,8 @@ from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, Wheel, roll
 from gearcam.gears.sampling import as_pairs
 from gearcam.gears.spec import PairSpec, Rack
-from gearcam.laws.base import Lobes, RatioLaw
+from gearcam.laws.base import RatioLaw
+from gearcam.laws.span import Lobes
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -197,7 +198,13 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
     def toothing(wheel: Wheel) -> Toothing:
         concave = -float(rolling.curvature_extremes(wheel)[1].min())
         cutter = choose_cutter(rack, module, concave, f"wheel {wheel}")
-        return Toothing(rolling=rolling, wheel=wheel, teeth=spec.teeth[wheel - 1], cutter=cutter)
+        return Toothing(
+            rolling=rolling,
+            wheel=wheel,
+            teeth=spec.teeth[wheel - 1],
+            cutter=cutter,
+            closed=law.lobes.closed,
+        )
 
     return GearPair(
         rolling=rolling,
@@ -294,14 +301,20 @@ class ContactArcs:
     ----------
     start, end : (q,) arrays, mm
         Roll s between which the flank is in contact, start < end; empty where start >= end.
+    tooth : (q,) int array
+        Number of its tooth.
     pitch, lobe_length : float, mm
-        Pitch and length of the lobe.
+        Pitch and length of the lobe, or of an open pair's centrode.
+    closed : bool
+        Whether it repeats.
     """
 
     start: Array
     end: Array
+    tooth: NDArray[np.int64]
     pitch: float
     lobe_length: float
+    closed: bool
 
     @property
     def ratios(self) -> Array:
@@ -311,8 +324,12 @@ class ContactArcs:
     @cached_property
     def gaps(self) -> tuple[tuple[float, float], ...]:
         """Stretches of roll within the lobe on which no flank touches, mm."""
-        lengths = np.concatenate([self.end - self.start] * 3)
-        starts = np.concatenate([self.start + k * self.lobe_length for k in (-1, 0, 1)])
+        shifts = (-1, 0, 1) if self.closed else (0,)
+        lengths = np.concatenate([self.end - self.start] * len(shifts))
+        starts = np.concatenate([self.start + k * self.lobe_length for k in shifts])
+        if not self.closed:  # nothing is asked for beyond the ends
+            outside = self.lobe_length * np.array([-1.0, 1.0])
+            starts, lengths = np.append(starts, outside), np.append(lengths, [self.lobe_length] * 2)
         alive = lengths > 0.0
         order = np.argsort(starts[alive])
         low, high = starts[alive][order], (starts + lengths)[alive][order]
@@ -340,18 +357,38 @@ def contact_arcs(gear1: Gear, gear2: Gear, sigma: int) -> ContactArcs:
         Over one lobe.
     """
     first, second = gear1.profile.flanks, gear2.profile.flanks
-    z1, z2 = gear1.pair.teeth
-    count = math.gcd(z1, z2)
-    one = np.arange(count) + (0 if sigma > 0 else z1)
-    # sf = (j + sigma/4) pitches on wheel 1 is (k + 1/2 - sigma/4) pitches on wheel 2.
-    two = (np.arange(count) + (0 if sigma > 0 else -1)) % z2 + (z2 if sigma > 0 else 0)
+    one, two = _mates(gear1, gear2, sigma)
     low = np.maximum(first.lowest[one], -second.highest[two])
     high = np.minimum(first.highest[one], -second.lowest[two])
     ends = np.stack([first.sf[one] - sigma * low, first.sf[one] - sigma * high])
     start, end = (ends[1], ends[0]) if sigma > 0 else (ends[0], ends[1])
+    numbers = np.array(gear1.toothing.numbers)
     return ContactArcs(
         start=start,
         end=end,
+        tooth=numbers[one % len(numbers)],
         pitch=gear1.toothing.pitch,
         lobe_length=gear1.pair.rolling.lobe_length,
+        closed=gear1.toothing.closed,
     )
+
+
+def _mates(gear1: Gear, gear2: Gear, sigma: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Numbers of the flanks of both wheels that touch each other, by wheel 1's teeth."""
+    z1, z2 = len(gear1.toothing.numbers), len(gear2.toothing.numbers)
+    if gear1.toothing.closed:
+        count = math.gcd(z1, z2)
+        one = np.arange(count) + (0 if sigma > 0 else z1)
+        # sf = (j + sigma/4) pitches on wheel 1 is (k + 1/2 - sigma/4) pitches on wheel 2.
+        two = (np.arange(count) + (0 if sigma > 0 else -1)) % z2 + (z2 if sigma > 0 else 0)
+        return one, two
+    pitch, sides = gear1.toothing.pitch, (sigma, -sigma)
+    mine, other = (
+        np.rint(4.0 * gear.profile.flanks.sf[gear.profile.flanks.sigma == side] / pitch)
+        for gear, side in zip((gear1, gear2), sides, strict=True)
+    )
+    _, one, two = np.intersect1d(mine, other, return_indices=True)
+    # on the blanks: up to half a pitch, two quarters, beyond the ends
+    inside = (mine[one] > -2.0) & (mine[one] < 4.0 * gear1.toothing.teeth + 2.0)
+    one, two = one[inside], two[inside]
+    return one + (0 if sigma > 0 else z1), two + (z2 if sigma > 0 else 0)

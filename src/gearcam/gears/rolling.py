@@ -9,7 +9,7 @@ and the curvature kappa, so that ``dT/ds = -kappa*N`` and ``dN/ds = +kappa*T`` o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -26,6 +26,9 @@ from gearcam.tolerances import Tolerances
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]
 Wheel = Literal[1, 2]
+
+_MARGIN = 2.0
+"""Pitches beyond an open pair's end in which its last teeth are formed, fillets included."""
 
 TURN = {1: -1j, 2: 1j}
 """N = TURN[wheel] * T."""
@@ -70,17 +73,26 @@ class Rolling:
     center_distance : float, mm
         Distance of the shafts, A.
     unit_arc : Expansion
-        Arc length over one lobe for A = 1.
+        Arc length over one lobe for A = 1, zero at phi1 = 0; of an open pair also beyond its ends.
+    margin : float, mm
+        Length beyond each end of an open pair in which its teeth are formed.
     """
 
     law: RatioLaw
     center_distance: float
     unit_arc: Expansion
+    margin: float = 0.0
+
+    @cached_property
+    def unit_length(self) -> float:
+        """Length of one lobe, or of the way of an open pair, for A = 1."""
+        lobes = self.law.lobes
+        return self.unit_arc.last if lobes.closed else float(self.unit_arc(lobes.period))
 
     @property
     def lobe_length(self) -> float:
         """Length of one lobe, mm; the same on both wheels."""
-        return self.center_distance * self.unit_arc.last
+        return self.center_distance * self.unit_length
 
     def lobe_count(self, wheel: Wheel) -> int:
         """Return the number of lobes of a wheel."""
@@ -92,19 +104,19 @@ class Rolling:
 
     def arc_length(self, phi: ArrayLike) -> Array:
         """Return s, mm, at driver angles, rad."""
-        phi, period = np.asarray(phi, dtype=float), self.law.lobes.period
-        turns = np.floor(phi / period)
-        return (self.unit_arc(phi - turns * period) + turns * self.unit_arc.last) * (
-            self.center_distance
-        )
+        turns, x = self.law.within(np.asarray(phi, dtype=float))
+        return (self.unit_arc(x) + turns * self.unit_length) * self.center_distance
 
     def angle(self, s: ArrayLike) -> Array:
         """Return the driver angles, rad, at arc lengths, mm: a table, then Newton bracketed."""
-        lobe, period = self.unit_arc.last, self.law.lobes.period
+        lobe, period = self.unit_length, self.law.lobes.period
         unit = np.asarray(s, dtype=float) / self.center_distance
-        turns = np.floor(unit / lobe)
-        rest = unit - turns * lobe
         angles, arcs, slopes = self._table
+        if self.law.lobes.closed:
+            turns = np.floor(unit / lobe)
+            rest = unit - turns * lobe
+        else:
+            turns, rest = np.zeros(unit.shape), np.clip(unit, arcs[0], arcs[-1])
         index = np.clip(np.searchsorted(arcs, rest, side="right") - 1, 0, len(arcs) - 2)
         low, high = angles[index], angles[index + 1]
         width = arcs[index + 1] - arcs[index]
@@ -124,8 +136,8 @@ class Rolling:
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
-        """Driver angles, unit arc lengths and dphi/ds over one lobe."""
-        angles = np.linspace(0.0, self.law.lobes.period, 1025)
+        """Driver angles, unit arc lengths and dphi/ds over one lobe, or all that is known."""
+        angles = np.linspace(self.unit_arc.knots[0], self.unit_arc.knots[-1], 1025)
         arcs = np.append(self.unit_arc(angles[:-1]), self.unit_arc.last)
         return angles, arcs, 1.0 / self._unit_speed(angles)
 
@@ -155,15 +167,13 @@ class Rolling:
         that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
-        lobes = self.law.lobes
-        turns = np.floor(phi / lobes.period)
-        x = phi - turns * lobes.period
+        turns, x = self.law.within(phi)
         i, di, *more = self.law.ratio.derivatives(x, 2 if curved else 1)
         a = 1.0 / (1.0 + i)
         r = self.center_distance * i * a
         dr = self.center_distance * a * a * di
         speed = np.sqrt(r * r + dr * dr)
-        turned = phi if wheel == 1 else -(self.law.motion(x) + turns * lobes.advance)
+        turned = phi if wheel == 1 else -(self.law.motion(x) + turns * self.law.lobes.advance)
         pole = _complex(np.cos(turned), np.sin(turned))
         point = (r if wheel == 1 else r - self.center_distance) * pole
         tangent = _complex(dr / speed, r / speed) * pole
@@ -175,7 +185,7 @@ class Rolling:
             else:
                 top = i * r * r + r * ddr + (i - 1.0) * dr * dr
             kappa = top / (speed * speed * speed)
-        arc = (self.unit_arc(x) + turns * self.unit_arc.last) * self.center_distance
+        arc = (self.unit_arc(x) + turns * self.unit_length) * self.center_distance
         return Frames(point, tangent, kappa, speed, arc)
 
     def curvature_extremes(self, wheel: Wheel) -> tuple[Array, Array]:
@@ -197,9 +207,17 @@ class Rolling:
             both = [k.derivatives() for k in (kappa, (1.0 + i0) / speed - kappa)]
             return np.stack([k[0] for k in both]), np.stack([k[1] for k in both])
 
-        found = extremes(curvatures, self.law.knots)
+        found = extremes(curvatures, self._tooth_knots)
         first, second = ((x, kappa / self.center_distance) for x, kappa in found)
         return first, second
+
+    @property
+    def _tooth_knots(self) -> Array:
+        """The knots between which teeth are formed, ends included."""
+        if self.law.lobes.closed:
+            return self.law.knots
+        low, high = self.angle(np.array([-self.margin, self.lobe_length + self.margin]))
+        return np.concatenate([[low], self.law.knots, [high]])
 
     @cached_property
     def arc_error(self) -> float:
@@ -268,12 +286,16 @@ def roll(
     ValueError
         If not exactly one of the two sizes is given.
     """
-    arc = expand(lambda phi: unit_speed(law, phi), law.knots, tolerances.expansion)
+    arc = expand(lambda phi: unit_speed(law, phi), law.ratio.knots, tolerances.expansion)
     unit_arc = arc.antiderivative()
+    if not law.lobes.closed:
+        unit_arc = unit_arc.shifted(-float(unit_arc(0.0)))
+    rolling = Rolling(law=law, center_distance=1.0, unit_arc=unit_arc)
     if center_distance is not None and module is None:
         size = center_distance
     elif module is not None and center_distance is None:
-        size = module * np.pi * teeth[0] / (unit_arc.last * law.lobes.n1)
+        size = module * np.pi * teeth[0] / rolling.length(1)
     else:
         raise ValueError("give exactly one of center_distance and module")
-    return Rolling(law=law, center_distance=size, unit_arc=unit_arc)
+    margin = 0.0 if law.lobes.closed else _MARGIN * size * rolling.length(1) / teeth[0]
+    return replace(rolling, center_distance=size, margin=margin)

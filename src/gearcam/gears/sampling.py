@@ -54,14 +54,17 @@ class Sampler:
     toothing : Toothing
         The wheel.
     rows : Rows
-        Its curves, in order, closed.
+        Its curves, in order.
     tolerance : float, mm
         Largest chord error.
+    closed : bool
+        Whether the last curve ends where the first begins.
     """
 
     toothing: Toothing
     rows: Rows
     tolerance: float
+    closed: bool = True
 
     @cached_property
     def density(self) -> Array:
@@ -131,7 +134,8 @@ class Sampler:
             new = bad + 1 + np.arange(bad.size)
             halves = np.concatenate([new - 1, new])
             errors[halves] = self._measure(vertices, ends[0], halves)
-        return vertices, ends[0, :-1], float(errors.max())
+        points = ends[0, :-1] if self.closed else ends[0]
+        return vertices, points, float(errors.max())
 
     def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
         """Spread vertices evenly over `effort` (known at `places`) between `ends`: their J."""
@@ -144,7 +148,9 @@ class Sampler:
         return vertices
 
     def _ends(self, vertices: Array) -> Plane:
-        """Points and tangents, (2, n), of a closed polygon, the first repeated."""
+        """Points and tangents, (2, n), at the vertices; of a closed polygon the first repeated."""
+        if not self.closed:
+            return np.stack(self.at(vertices))
         ends = np.stack(self.at(vertices[:-1]))
         return np.append(ends, ends[:, :1], axis=1)
 
@@ -203,10 +209,9 @@ class Sampler:
         """J where the curvature jumps: at the ends of rows, and at the law's knots inside them."""
         law, rows = self.toothing.rolling.law, self.rows
         low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
-        period = law.lobes.period
-        phi = law.knots[:-1, None] + period * np.ceil((low - law.knots[:-1, None]) / period)
-        _, row = np.nonzero(phi < high)
-        share = (phi[phi < high] - rows.start[row]) / (rows.end - rows.start)[row]
+        phi = law.knots_near(0.5 * (low + high))
+        row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]))
+        share = (phi[row, knot] - rows.start[row]) / (rows.end - rows.start)[row]
         steps = np.arange(len(self.density)) / _PROBES
         return np.append(self.density[::_PROBES], np.interp(row + share, steps, self.density))
 

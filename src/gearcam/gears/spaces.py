@@ -63,13 +63,22 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     Returns
     -------
     Rows
-        Row ``6*j + k`` is curve k of the space after tooth j + 1; k = 5 is the tip of the tooth
-        after it.
+        Row ``6*j + k`` is curve k of the space after the tooth formed as number j; k = 5 is the
+        tip of the tooth after it.
     """
-    cutter, z = toothing.cutter, toothing.teeth
-    half, length = cutter.half_space, toothing.rolling.length(toothing.wheel)
-    plus = toothing.tooth_places + half
-    minus = np.append(toothing.tooth_places[1:], toothing.tooth_places[0] + length) - half
+    cutter, z, places = toothing.cutter, len(toothing.numbers), toothing.tooth_places
+    half = cutter.half_space
+    # Flank and tip ends are known for all teeth; a closed wheel's last space ends at its first
+    # tooth, one turn on, an open one's at its last tooth.
+    following, count = np.append(np.arange(1, z), 0), z
+    wrap, around = np.zeros(z), np.zeros(z)
+    if toothing.closed:
+        wrap[-1] = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+        around[-1] = toothing.length
+    else:
+        following, wrap, around, count = following[:-1], wrap[:-1], around[:-1], z - 1
+    plus = places[:count] + half
+    minus = places[following] + around - half
     joints = toothing.rolling.angle(
         np.stack(
             [
@@ -80,15 +89,12 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
             ]
         )
     )
-    # Flank and tip ends are known for tooth 1 to z; the last space ends at tooth 1, one turn on.
-    turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
-    following = np.append(np.arange(1, z), 0)
-    wrap = np.append(np.zeros(z - 1), turn)
-    top_plus = tips.phi[:z]
+    top_plus = tips.phi[:count]
     top_minus = tips.phi[z + following] + wrap
     tip_start, tip_end = tips.foot[z + following] + wrap, tips.foot[following] + wrap
-    zero, one = np.zeros(z), np.ones(z)
-    land = np.full(z, -cutter.dedendum)
+    zero, one = np.zeros(count), np.ones(count)
+    land = np.full(count, -cutter.dedendum)
+    number = np.array(toothing.numbers)
     table = {
         "kind": [Kind.FLANK, Kind.FILLET, Kind.LAND, Kind.FILLET, Kind.FLANK, Kind.TIP],
         "sf": [plus, plus, zero, minus, minus, zero],
@@ -98,10 +104,10 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         "low": [zero, zero, land, zero, zero, tips.height[z + following]],
         "high": [zero, zero, land, zero, zero, tips.height[following]],
         "corner": [True, False, False, False, False, True],
-        "tooth": [*[np.arange(z) + 1] * 3, *[following + 1] * 3],
+        "tooth": [*[number[:count]] * 3, *[number[following]] * 3],
     }
     columns = {
-        name: np.stack([np.broadcast_to(value, z) for value in values], axis=1).ravel()
+        name: np.stack([np.broadcast_to(value, count) for value in values], axis=1).ravel()
         for name, values in table.items()
     }
     return Rows(**columns)
@@ -124,9 +130,10 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
     (k,) int array
         Spaces with an undercut flank, with a root sharper than the dedendum, or without a land.
     """
-    z = toothing.teeth
+    z = len(toothing.numbers)
     undercut = np.isfinite(cusps.dedendum)
     loops = undercut[:z] | np.roll(undercut[z:], -1)
+    loops = loops if toothing.closed else loops[:-1]
     kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
     if kappa.max() * toothing.cutter.dedendum >= 0.9:
         start, end = rows.start[1::ROWS_PER_TOOTH], rows.end[3::ROWS_PER_TOOTH]

@@ -93,11 +93,12 @@ def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Arr
     """Driver angles from w = 0 to `reach`, a flank a row, both sides of every knot among them."""
     law = toothing.rolling.law
     start, end = toothing.rolling.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
-    span, period = end - start, law.lobes.period
+    span = end - start
     columns = [np.broadcast_to(np.linspace(0.0, 1.0, 33), (len(sf), 33))]
-    for knot in law.knots[:-1]:
-        nearest = knot + period * np.round((0.5 * (start + end) - knot) / period)
-        columns += [np.clip((nearest - start) / span + side, 0.0, 1.0) for side in (-1e-9, 1e-9)]
+    for nearest in np.moveaxis(law.knots_near(0.5 * (start + end)[:, 0]), -1, 0):
+        columns += [
+            np.clip((nearest[:, None] - start) / span + side, 0.0, 1.0) for side in (-1e-9, 1e-9)
+        ]
     return start + span * np.sort(np.concatenate(columns, axis=1), axis=1)
 
 

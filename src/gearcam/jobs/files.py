@@ -64,11 +64,12 @@ def _pair_drawing(job: GearPairJob) -> Drawing:
     from gearcam.drawings import pair_drawing
 
     lobes = job.law.lobes
+    last = -1 if lobes.closed else None
     centrodes = [
-        gear.centrode(np.linspace(0.0, count * lobes.period, 721)[:-1])
+        gear.centrode(np.linspace(0.0, count * lobes.period, 721)[:last])
         for gear, count in zip(job.gears, (lobes.n1, lobes.n2), strict=True)
     ]
-    return pair_drawing(job.parts, job.pair.center_distance, centrodes)
+    return pair_drawing(job.parts, job.pair.center_distance, centrodes, closed=lobes.closed)
 
 
 def _drawings(job: GearPairJob, extras: dict[str, Any]) -> dict[str, bytes]:

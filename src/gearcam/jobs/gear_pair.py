@@ -176,6 +176,8 @@ class GearPairJob:
     def centrode_angles(self) -> NDArray[np.float64]:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
         lobes = self.law.lobes
+        if not lobes.closed:
+            return np.linspace(0.0, lobes.period, CENTRODE_POINTS + 1)
         turns = lobes.n1 * lobes.n2 / math.gcd(lobes.n1, lobes.n2)
         count = CENTRODE_POINTS * max(1, round(turns / lobes.n1))
         return np.linspace(0.0, turns * lobes.period, count + 1)
@@ -247,6 +249,12 @@ class GearPairJob:
         from gearcam.meshing.study import study
 
         gears = self.gears
+        if not self.law.lobes.closed:
+            raise InfeasibleError(
+                "an open pair cannot be studied step by step by this version",
+                where="law.driven_travel_deg",
+                nearest="build and check cover open pairs: contact ratios and undercut are there",
+            )
         with self._stage("meshing"):
             meshing = study(gears, self.design.meshing, progress)
         if not meshing.blocks:

@@ -79,7 +79,7 @@ def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
             "length_mm": gear.pair.rolling.length(gear.wheel),
             "min_convex_radius_mm": gear.convex_radius,
             "max_concave_curvature_per_mm": gear.concave_curvature,
-            "closed": True,
+            "closed": gear.toothing.closed,
         },
         "cutter": cutter.kind,
         **tool,

@@ -3,6 +3,28 @@
 Depends on numpy alone. Importing this package fills the registry `gearcam.laws.base.LAWS`.
 """
 
-from gearcam.laws import constant, ellipse, formula, phases
+from gearcam.laws import (
+    centrodes,
+    constant,
+    ellipse,
+    formula,
+    motion,
+    phases,
+    programs,
+    shapes,
+    spiral,
+    table,
+)
 
-__all__ = ["constant", "ellipse", "formula", "phases"]
+__all__ = [
+    "centrodes",
+    "constant",
+    "ellipse",
+    "formula",
+    "motion",
+    "phases",
+    "programs",
+    "shapes",
+    "spiral",
+    "table",
+]

@@ -19,91 +19,91 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.laws.span import ONE_LOBE, Lobes, Span, angle_text, continued
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
-from gearcam.numeric.piecewise import Piece, Piecewise, extremes, integrate, piecewise
+from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Lobes:
-    """How often the ratio repeats in a turn: n1 times of the driver, n2 of the driven wheel.
-
-    Parameters
-    ----------
-    n1, n2 : int
-        The tooth counts' ratio in lowest terms.
-    """
-
-    n1: int
-    n2: int
-
-    @property
-    def period(self) -> float:
-        """Driver angle of one lobe, rad."""
-        return 2.0 * math.pi / self.n1
-
-    @property
-    def advance(self) -> float:
-        """Driven angle of one lobe, rad."""
-        return 2.0 * math.pi / self.n2
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RatioLaw:
-    """A transmission ratio over one lobe, continued periodically.
+    """A transmission ratio over one lobe, continued periodically, or over the way of an open pair.
 
     Parameters
     ----------
-    lobes : Lobes
-        Periods of driver and driven wheel.
+    lobes : Lobes or Travel
+        Periods of driver and driven wheel, or how far both turn.
     ratio : Piecewise
-        i21 over ``[0, lobes.period]``.
+        i21 over ``[0, lobes.period]``; of an open pair also beyond both ends.
     motion : Piecewise or Expansion
         phi2 over the same interval, rad, zero at zero.
     solved : mapping of str to float
         What was left to the program, by name.
     """
 
-    lobes: Lobes
+    lobes: Span
     ratio: Piecewise
     motion: Piecewise | Expansion
     solved: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def knots(self) -> Array:
-        """Knots over one lobe, rad, ends included."""
-        return self.ratio.knots
+        """Knots over one lobe or the way of an open pair, rad, ends included."""
+        knots = self.ratio.knots
+        return knots if self.lobes.closed else knots[1:-1]
+
+    def within(self, phi1: Array) -> tuple[Array, Array]:
+        """Return how many lobes lie before driver angles, and the angles within theirs, rad."""
+        if not self.lobes.closed:
+            return np.zeros(np.shape(phi1)), phi1
+        turns = np.floor(phi1 / self.lobes.period)
+        return turns, phi1 - turns * self.lobes.period
+
+    def knots_near(self, phi1: Array) -> Array:
+        """Return for each angle the place of every knot that is nearest to it: (..., n), rad.
+
+        The ends of a lobe are one knot; the ends of an open pair, where it is continued, are two.
+        """
+        phi1 = np.asarray(phi1, dtype=float)[..., None]
+        if not self.lobes.closed:
+            return np.broadcast_to(self.knots, (*phi1.shape[:-1], len(self.knots)))
+        knots, period = self.knots[:-1], self.lobes.period
+        return knots + period * np.round((phi1 - knots) / period)
 
     def derivatives(self, phi1: ArrayLike, order: int) -> list[Array]:
         """Return ``[i, i', ..., i^(order)]`` at any driver angles `phi1`, rad."""
-        phi1 = np.asarray(phi1, dtype=float)
-        period = self.lobes.period
-        return self.ratio.derivatives(phi1 - np.floor(phi1 / period) * period, order)
+        return self.ratio.derivatives(self.within(np.asarray(phi1, dtype=float))[1], order)
 
     def phi2(self, phi1: ArrayLike) -> Array:
         """Return the driven angle, rad, at any driver angles, rad (turns are counted)."""
-        phi1 = np.asarray(phi1, dtype=float)
-        turns = np.floor(phi1 / self.lobes.period)
-        return self.motion(phi1 - turns * self.lobes.period) + turns * self.lobes.advance
+        turns, x = self.within(np.asarray(phi1, dtype=float))
+        return self.motion(x) + turns * self.lobes.advance
+
+    @property
+    def travelled(self) -> float:
+        """Driven angle over a lobe, or over the way of an open pair, rad."""
+        return self.motion.last if self.lobes.closed else float(self.motion(self.lobes.period))
 
     @property
     def closure_error(self) -> float:
         """Miss of the driven angle over a lobe, rad."""
-        return self.motion.last - self.lobes.advance
+        return self.travelled - self.lobes.advance
+
+    @property
+    def continuity(self) -> list[tuple[int, int]]:
+        """Knots by their number in ``ratio.knots``, with the ratio's order of continuity there.
+
+        The ends of an open pair are no knots.
+        """
+        found = list(enumerate(self.ratio.continuity, start=1))
+        return found if self.lobes.closed else found[1:-2]
 
     @cached_property
     def ratio_range(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Smallest and largest ratio, each as (driver angle in rad, value)."""
-
-        def slope(x: Array) -> tuple[Array, Array]:
-            value, derivative = self.ratio.derivatives(x, 1)
-            return value[None], derivative[None]
-
-        ((places, values),) = extremes(slope, self.knots)
-        low, high = int(np.argmin(values)), int(np.argmax(values))
-        return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
+        return self.ratio.extremes_over(self.knots)
 
     @cached_property
     def error(self) -> float:
@@ -119,7 +119,7 @@ class RatioLaw:
         half = 0.5 * np.diff(grid)
         x = 0.5 * (grid[:-1] + grid[1:]) + half * nodes[:, None]
         second = np.concatenate([[0.0], np.cumsum(half * (weights @ self.ratio(x)))])
-        first = np.append(self.motion(grid[:-1]), self.motion.last)
+        first = np.append(self.motion(grid[:-1]), self.travelled)
         return float(np.abs(first - second).max()) + np.finfo(float).eps * self.lobes.advance
 
 
@@ -150,7 +150,7 @@ class Claim:
     """
 
     parameters: LawParameters
-    lobes: Lobes = Lobes(1, 1)
+    lobes: Lobes = ONE_LOBE
     ratio: Mapping[float, float]
     motion: Mapping[float, float]
     continuity: int
@@ -202,7 +202,7 @@ def register(entry: LawEntry) -> None:
 
 
 def make_law(
-    lobes: Lobes,
+    lobes: Span,
     knots: ArrayLike,
     pieces: list[Piece],
     tolerances: Tolerances,
@@ -212,8 +212,8 @@ def make_law(
 
     Parameters
     ----------
-    lobes : Lobes
-        Periods.
+    lobes : Lobes or Travel
+        Periods, or how far an open pair turns.
     knots : (n + 1,) array, rad
         From 0 to ``lobes.period``.
     pieces : list of n Piece
@@ -226,7 +226,7 @@ def make_law(
     Returns
     -------
     RatioLaw
-        Positive, at least C1, closed.
+        Positive, at least C1, closed; an open one continued beyond its ends.
 
     Raises
     ------
@@ -235,13 +235,32 @@ def make_law(
     """
     try:
         motion = integrate(knots, pieces, tolerances.expansion)
+        ratio = piecewise(knots, pieces)
+        _demand_positive(ratio)
+        if not lobes.closed:
+            longer, more = continued(ratio, pieces)
+            ratio, motion = piecewise(longer, more), integrate(longer, more, tolerances.expansion)
+            motion = motion.shifted(-float(motion(0.0)))
     except NotSmoothError as error:
         state = "is not smooth" if error.finite else "is not finite"
         raise InfeasibleError(f"the ratio {state}", where=angle_text(error.place)) from error
-    law = RatioLaw(
-        lobes=lobes, ratio=piecewise(knots, pieces), motion=motion, solved=dict(solved or {})
-    )
-    (place, smallest), _ = law.ratio_range
+    law = RatioLaw(lobes=lobes, ratio=ratio, motion=motion, solved=dict(solved or {}))
+    _demand_smooth(law)
+    if abs(law.closure_error) > tolerances.refusal:
+        asks = "the tooth counts ask" if lobes.closed else "driven_travel_deg asks"
+        raise InfeasibleError(
+            "the law does not close" if lobes.closed else "the law misses the driven wheel's way",
+            value=math.degrees(law.travelled),
+            limit=math.degrees(lobes.advance),
+            unit="deg",
+            nearest=f"over {math.degrees(lobes.period):.10g} deg of the driver the driven wheel "
+            f"turns by the first; {asks} for the second",
+        )
+    return law
+
+
+def _demand_positive(ratio: Piecewise) -> None:
+    (place, smallest), _ = ratio.extremes
     if not smallest > 0.0:
         raise InfeasibleError(
             "the ratio must stay positive: the driven wheel would stand still or turn back",
@@ -249,27 +268,16 @@ def make_law(
             value=smallest,
             limit=0.0,
         )
-    _demand_smooth(law)
-    if abs(law.closure_error) > tolerances.refusal:
-        raise InfeasibleError(
-            "the law does not close",
-            value=math.degrees(law.motion.last),
-            limit=math.degrees(lobes.advance),
-            unit="deg",
-            nearest=f"over {math.degrees(lobes.period):.10g} deg of the driver the driven wheel "
-            "turns by the first; the tooth counts ask for the second",
-        )
-    return law
 
 
 def _demand_smooth(law: RatioLaw) -> None:
-    for number, order in enumerate(law.ratio.continuity, start=1):
+    for number, order in law.continuity:
         if order < 1:
-            ends = number == len(law.knots) - 1
+            ends = number == len(law.ratio.knots) - 1
             before = law.ratio.side(number, -1, 1)
             after = law.ratio.side(0 if ends else number, 1, 1)
             name, k = ("ratio", 0) if order < 0 else ("slope of the ratio", 1)
-            place = angle_text(law.knots[number])
+            place = angle_text(law.ratio.knots[number])
             if not math.isfinite(before[k] + after[k]):
                 raise InfeasibleError(f"the {name} has no value", where=place)
             raise InfeasibleError(
@@ -277,8 +285,3 @@ def _demand_smooth(law: RatioLaw) -> None:
                 f"before {place} and {after[k]:.6g} {'at 0 deg' if ends else 'after it'}",
                 where=place,
             )
-
-
-def angle_text(angle: float) -> str:
-    """Return a driver angle, rad, as a place for messages."""
-    return f"phi1 = {round(math.degrees(angle), 6) + 0.0:.6g} deg"

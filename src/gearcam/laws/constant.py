@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearcam.laws.base import Claim, LawEntry, Lobes, RatioLaw, make_law, register
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.span import Lobes
 from gearcam.numeric.piecewise import Piece
 from gearcam.tolerances import Tolerances
 

@@ -1,28 +1,30 @@
-"""Elliptical wheels turning about a focus: two equal ellipses roll on each other."""
+"""Elliptical wheels turning about a focus, and their kin of higher order with more lobes."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, Lobes, RatioLaw, make_law, register
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.driver import LOBES, demand_lobes
+from gearcam.laws.span import Lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin
 from gearcam.numeric.piecewise import Piece
-from gearcam.quantities import NUMBER, param
+from gearcam.quantities import COUNT, NUMBER, param
 from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
 class Ellipse:
-    """The driver's near vertex lies at phi1 = 0; the centre distance is the major axis 2a.
+    """The driver's near vertex lies at phi1 = 0: ``r1 = p/(1 + e*cos(n1*phi1))``.
 
-    With ``r1 = a*(1 - e^2)/(1 + e*cos(phi1))`` and ``r2 = 2*a - r1`` the ratio is
-    ``(1 - e^2)/(1 + e^2 + 2*e*cos(phi1))``, and ``tan(phi2/2) = (1-e)/(1+e)*tan(phi1/2)``, here in
-    the equal form without a pole, ``phi2 = phi1 - 2*atan(e*sin(phi1)/(1 + e*cos(phi1)))``.
+    With the semi-latus rectum p = 1 and the centre distance A the ratio is ``1/(b +
+    A*e*cos(n1*phi1))``, ``b = A - 1``, and its integral over a lobe is the driven wheel's where
+    ``b^2 - (A*e)^2 = (n2/n1)^2``. For one lobe each, ``A = 2*a``: two equal ellipses.
     """
 
     eccentricity: float = param(NUMBER, ge=0, lt=1, doc="eccentricity of the ellipse")
+    lobes: tuple[int, int] | None = param(COUNT, default=None, ge=1, le=100, doc=LOBES)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -30,29 +32,32 @@ class Ellipse:
         Raises
         ------
         InfeasibleError
-            For unequal tooth counts: an ellipse about its focus rolls on its like only.
+            If the lobes are not in the ratio of the tooth counts.
         """
-        if lobes != Lobes(1, 1):
-            raise InfeasibleError(
-                "an ellipse about its focus rolls on an equal ellipse only",
-                where="pair.teeth",
-                value=lobes.n1 / lobes.n2,
-                limit=1.0,
-                nearest="give equal tooth counts",
-            )
-        e = self.eccentricity
+        count, e = demand_lobes(self.lobes, lobes), self.eccentricity
+        k = lobes.n2 / lobes.n1
+        # A^2*(1 - e^2) - 2*A + 1 - k^2 = 0; its smaller root would be an internal pair's
+        distance = (1.0 + math.sqrt(e * e + (1.0 - e * e) * k * k)) / (1.0 - e * e)
+        b, swing = distance - 1.0, distance * e
 
         def ratio(x: Jet) -> Jet:
-            return (1.0 - e * e) / (2.0 * e * cos(x) + (1.0 + e * e))
+            return 1.0 / (swing * cos(count * x) + b)
 
         def motion(x: Jet) -> Jet:
-            return x - 2.0 * atan(e * sin(x) / (1.0 + e * cos(x)))
+            # tan(n2*phi2/2) = sqrt((b - A*e)/(b + A*e))*tan(n1*phi1/2) without its poles
+            turn = 2.0 * atan(swing * sin(count * x) / (swing * cos(count * x) + (b + k)))
+            return (x - turn / count) / k
 
-        return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances)
+        solved = {"center_distance_over_semi_latus_rectum": distance}
+        piece = Piece(ratio, motion)
+        return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 
 
 def _claims() -> tuple[Claim, ...]:
     half = 2.0 * math.atan(0.25 / 1.75 * math.tan(0.5))
+    # two lobes on three: A from the quadratic, then tan(3*phi2/2) = q*tan(phi1)
+    distance = (1 + math.sqrt(0.09 + 0.91 * 2.25)) / 0.91
+    q = math.sqrt((0.7 * distance - 1) / (1.3 * distance - 1))
     return (
         Claim(
             parameters=Ellipse(eccentricity=0.5),
@@ -66,6 +71,20 @@ def _claims() -> tuple[Claim, ...]:
             motion={1.0: half, 2 * math.pi + 1.0: 2 * math.pi + half},
             continuity=3,
         ),
+        Claim(
+            parameters=Ellipse(eccentricity=0.3, lobes=(2, 3)),
+            lobes=Lobes(2, 3),
+            ratio={0.0: 1 / (1.3 * distance - 1), math.pi / 2: 1 / (0.7 * distance - 1)},
+            motion={math.pi / 2: math.pi / 3, 0.6: 2 / 3 * math.atan(q * math.tan(0.6))},
+            continuity=3,
+        ),
+        Claim(
+            # equal two-lobed wheels: b = sqrt(1 + (A*e)^2) gives A = 2/(1 - e^2)
+            parameters=Ellipse(eccentricity=0.3, lobes=(2, 2)),
+            ratio={0.0: 0.7 / 1.3, math.pi / 2: 1.3 / 0.7, math.pi: 0.7 / 1.3},
+            motion={math.pi / 2: math.pi / 2, math.pi / 4: math.atan(0.7 / 1.3)},
+            continuity=3,
+        ),
     )
 
 
@@ -73,9 +92,9 @@ register(
     LawEntry(
         name="ellipse",
         parameters=Ellipse,
-        doc="equal ellipses about their foci, phi1 = 0 at the driver's near vertex",
+        doc="ellipses about their foci, or of more lobes, phi1 = 0 at the driver's near vertex",
         continuity="analytic",
-        source="classical; polar equation of the ellipse about its focus",
+        source="classical; polar equation of the ellipse about its focus, closure in closed form",
         claims=_claims,
     )
 )

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, Lobes, RatioLaw, angle_text, make_law, register
-from gearcam.laws.formula_syntax import FormulaError, parse
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.driver import law_of_centrode
+from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
+from gearcam.laws.span import Lobes, Span, angle_text, span_of, travel_problems
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import FUNCTIONS, Jet
 from gearcam.numeric.piecewise import Piece
-from gearcam.numeric.roots import newton_in_bracket
-from gearcam.quantities import TEXT, param
+from gearcam.quantities import ANGLE, TEXT, param
 from gearcam.tolerances import Tolerances
 
 _NAMES = ("phi2", "ratio", "r1")
@@ -28,6 +29,12 @@ class Formula:
     phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
     ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
     r1: str | None = param(TEXT, default=None, doc="driver centrode's radius at any scale")
+    driver_travel: float | None = param(
+        ANGLE, default=None, gt=0, le=360, doc="how far the driver of an open pair turns"
+    )
+    driven_travel: float | None = param(
+        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
+    )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -42,6 +49,7 @@ class Formula:
                 place = "" if error.column is None else f"column {error.column}: "
                 hint = f" ({error.hint})" if error.hint else ""
                 yield name, None, f"{place}{error.what}{hint}", error.allowed
+        yield from travel_problems(self.driver_travel, self.driven_travel)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -51,22 +59,25 @@ class Formula:
         InfeasibleError
             Where the formula is not finite, smooth, monotonic or periodic, or does not close.
         """
+        span = span_of(lobes, self.driver_travel, self.driven_travel)
         if self.phi2 is not None:
-            return _from_motion(_compile(self.phi2), lobes, tolerances)
+            return from_motion(compiled(self.phi2), span, tolerances)
         name = "ratio" if self.ratio is not None else "r1"
-        function = _compile(getattr(self, name) or "1")
-        _demand_positive(function, name, lobes)
-        _demand_repeats(function, name, lobes)
-        solve = _from_ratio if self.ratio is not None else _from_driver
+        function = compiled(getattr(self, name) or "1")
+        _demand_positive(function, name, span)
+        _demand_repeats(function, name, span)
+        if self.ratio is None:
+            return law_of_centrode([function], [0.0, span.period], span, tolerances)
         try:
-            return solve(function, lobes, tolerances)
+            return _from_ratio(function, span, tolerances)
         except NotSmoothError as error:
             state = "is not smooth" if error.finite else "is not finite"
             raise InfeasibleError(f"{name} {state}", where=angle_text(error.place)) from error
 
 
-def _compile(text: str) -> Callable[[Jet], Jet]:
-    expression = parse(text)
+def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
+    """Return a formula as a function of jets (see `parse`)."""
+    expression = parse(text, variable)
 
     def function(x: Jet) -> Jet:
         with np.errstate(all="ignore"):
@@ -76,7 +87,7 @@ def _compile(text: str) -> Callable[[Jet], Jet]:
     return function
 
 
-def _demand_positive(function: Callable[[Jet], Jet], name: str, lobes: Lobes) -> None:
+def _demand_positive(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
     x = np.linspace(0.0, lobes.period, 2049)
     values = function(Jet.variable(x, 0)).derivatives()[0]
     for bad, state in ((~np.isfinite(values), "is not finite"), (values <= 0, "is not positive")):
@@ -86,7 +97,7 @@ def _demand_positive(function: Callable[[Jet], Jet], name: str, lobes: Lobes) ->
             )
 
 
-def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Lobes) -> None:
+def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
     """Refuse a formula that is not the same in every lobe of the driver."""
     x = np.linspace(0.0, lobes.period, 257)
     first = function(Jet.variable(x, 0)).derivatives()[0]
@@ -105,8 +116,34 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Lobes) -> 
             )
 
 
-def _from_motion(motion: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-    """phi2 is given: the ratio is its derivative, and phi2 its integral in closed form."""
+def from_motion(
+    motion: Callable[[Jet], Jet],
+    lobes: Span,
+    tolerances: Tolerances,
+    solved: dict[str, float] | None = None,
+) -> RatioLaw:
+    """Make a law from phi2: the ratio is its derivative, and phi2 its integral in closed form.
+
+    Parameters
+    ----------
+    motion : callable
+        ``phi2(jet) -> jet``, rad, any constant.
+    lobes : Lobes or Travel
+        Over whose period.
+    tolerances : Tolerances
+        Accuracy.
+    solved : dict, optional
+        What was solved already.
+
+    Returns
+    -------
+    RatioLaw
+
+    Raises
+    ------
+    InfeasibleError
+        Where phi2 is not finite, smooth or rising, or does not close.
+    """
 
     def ratio(x: Jet) -> Jet:
         one_more = motion(Jet.variable(x.c[0], x.order + 1))
@@ -135,10 +172,10 @@ def _from_motion(motion: Callable[[Jet], Jet], lobes: Lobes, tolerances: Toleran
         )
     except NotSmoothError as error:
         raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
-    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances)
+    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances, solved)
 
 
-def _from_ratio(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances) -> RatioLaw:
     """Make a law from a ratio up to a factor, which closure decides."""
     total = expand(
         lambda t: shape(Jet.variable(t, 0)).derivatives()[0],
@@ -148,41 +185,6 @@ def _from_ratio(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerance
     factor = lobes.advance / total.last
     piece = Piece(lambda x: factor * shape(x))
     return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})
-
-
-def _from_driver(shape: Callable[[Jet], Jet], lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-    """Make a law from the driver centrode: i = r/(c - r), c the centre distance over r's scale.
-
-    The driven angle over a lobe falls as c grows, from infinity at the largest r, so that there is
-    one root, between the largest r and the c that would close a wheel of that radius all around.
-    """
-    ends = np.array([0.0, lobes.period])
-
-    def radius(t: np.ndarray) -> np.ndarray:
-        return shape(Jet.variable(t, 0)).derivatives()[0]
-
-    mean = expand(radius, ends, tolerances.expansion).antiderivative().last / lobes.period
-    largest = float(radius(np.linspace(0.0, lobes.period, 2049)).max())
-    ratio = lobes.period / lobes.advance
-
-    def excess(c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        center = float(c)
-        tolerance = tolerances.expansion
-        try:
-            driven = expand(lambda t: radius(t) / (center - radius(t)), ends, tolerance)
-            slope = expand(lambda t: radius(t) / (center - radius(t)) ** 2, ends, tolerance)
-        except NotSmoothError:
-            # Too close to the largest radius: the driven angle is lost in its peak, but large.
-            return np.asarray(-np.inf), np.asarray(np.inf)
-        miss = lobes.advance - driven.antiderivative().last
-        return np.asarray(miss), np.asarray(slope.antiderivative().last)
-
-    low, high = largest * (1.0 + 1e-9), largest * (1.0 + ratio) * (1.0 + 1e-9)
-    start = min(max(mean * (1.0 + ratio), 0.75 * low + 0.25 * high), high)
-    center = float(newton_in_bracket(excess, low, high, start, 1e-15 * high))
-    piece = Piece(lambda x: shape(x) / (center - shape(x)))
-    solved = {"center_distance_over_scale": center}
-    return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 
 
 def _claims() -> tuple[Claim, ...]:

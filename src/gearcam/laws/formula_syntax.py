@@ -183,13 +183,15 @@ class Expression:
         return stack.pop()
 
 
-def parse(text: str) -> Expression:
+def parse(text: str, variable: str = VARIABLE) -> Expression:
     """Read a formula.
 
     Parameters
     ----------
     text : str
         Such as ``phi1 - 0.08*sin(2*phi1)``; `ALLOWED` lists the words.
+    variable : str
+        Name of the variable, an identifier.
 
     Returns
     -------
@@ -208,7 +210,7 @@ def parse(text: str) -> Expression:
         raise FormulaError(
             f"the formula has {len(text)} characters", allowed=f"at most {MAX_LENGTH} characters"
         )
-    _check_words(text)
+    _check_words(text, variable)
     # Only the words above are left, all in ASCII, and blanks of any kind become spaces (the grammar
     # gives line ends a meaning); so columns of the tree are columns of the text.
     flat = re.sub(r"\s", " ", text)
@@ -217,14 +219,14 @@ def parse(text: str) -> Expression:
         tree = ast.parse(flat.lstrip(), mode="eval")
     except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
         raise FormulaError("this cannot be read as a formula", allowed=ALLOWED) from error
-    return Expression(text, tuple(_program(tree.body, lead)))
+    return Expression(text, tuple(_program(tree.body, lead, variable)))
 
 
-def _check_words(text: str) -> None:
+def _check_words(text: str, variable: str) -> None:
     """Check each word, its neighbours and the parentheses."""
     before = "start"
     opened: list[int] = []
-    for kind, word, column in _words(text):
+    for kind, word, column in _words(text, variable):
         _check_neighbours(before, kind, word, column)
         if kind == "open":
             opened.append(column)
@@ -243,7 +245,7 @@ def _check_words(text: str) -> None:
         raise FormulaError("this parenthesis is never closed", column=opened[-1])
 
 
-def _words(text: str) -> Iterator[tuple[str, str, int]]:
+def _words(text: str, variable: str) -> Iterator[tuple[str, str, int]]:
     """Split the text: kind (value, function, operator, open, close), word, column from 1."""
     position = 0
     while position < len(text):
@@ -261,7 +263,7 @@ def _words(text: str) -> Iterator[tuple[str, str, int]]:
         kind, word = str(match.lastgroup), match.group()
         position = match.end()
         if kind == "name":
-            _check_name(word, column)
+            _check_name(word, column, variable)
             yield "function" if word in NUMPY else "value", word, column
         elif kind == "number":
             _check_number(word, column)
@@ -270,18 +272,19 @@ def _words(text: str) -> Iterator[tuple[str, str, int]]:
             yield kind, word, column
 
 
-def _check_name(word: str, column: int) -> None:
-    known = (VARIABLE, *CONSTANTS, *NUMPY)
+def _check_name(word: str, column: int, variable: str) -> None:
+    known = (variable, *CONSTANTS, *NUMPY)
     if word in known:
         return
     near = _ALIASES.get(word) or _ALIASES.get(word.lower())
+    near = variable if near == VARIABLE else near
     if near is None:
         close = difflib.get_close_matches(word.lower(), known, n=1)
         near = close[0] if close else None
     raise FormulaError(
         f"unknown name {word!r}",
         column=column,
-        allowed=ALLOWED,
+        allowed=ALLOWED.replace(VARIABLE, variable),
         hint=f"did you mean {near}?" if near else "",
     )
 
@@ -317,7 +320,7 @@ def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
         raise FormulaError("nothing stands between these parentheses", column=column - 1)
 
 
-def _program(root: ast.expr, lead: int) -> list[_Step]:
+def _program(root: ast.expr, lead: int, variable: str) -> list[_Step]:
     """Turn a syntax tree into steps, without recursion; constant parts are computed here."""
     program: list[_Step] = []
     todo: list[ast.expr | _Step] = [root]
@@ -330,7 +333,7 @@ def _program(root: ast.expr, lead: int) -> list[_Step]:
         match item:
             case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
                 program.append(_Step("constant", column, float(value)))
-            case ast.Name(id=name) if name == VARIABLE:
+            case ast.Name(id=name) if name == variable:
                 program.append(_Step("variable", column))
             case ast.Name(id=name) if name in CONSTANTS:
                 program.append(_Step("constant", column, CONSTANTS[name]))

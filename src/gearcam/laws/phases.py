@@ -1,62 +1,43 @@
-"""Ratio in phases: values at knots, joined by cosine or cubic arcs with zero slope at each."""
+"""Ratio in phases: values at knots, joined by arcs, closed or over the way of an open pair."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, Lobes, RatioLaw, make_law, register
-from gearcam.numeric.jets import Jet, cos, sin
-from gearcam.numeric.piecewise import Piece
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.span import Lobes, Span, Travel, demand_equal
+from gearcam.laws.transitions import ARCS, Arc
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
 
 
-def _cosine(start: float, end: float, low: float, width: float) -> Piece:
-    """003 eqs. (2.1), (2.17) with Tables 2.2, 2.4."""
-    mean, half, speed = 0.5 * (start + end), 0.5 * (start - end), math.pi / width
-
-    def ratio(x: Jet) -> Jet:
-        return half * cos(speed * (x - low)) + mean
-
-    def motion(x: Jet) -> Jet:
-        return mean * x + (half / speed) * sin(speed * (x - low))
-
-    return Piece(ratio, motion)
-
-
-def _cubic(start: float, end: float, low: float, width: float) -> Piece:
-    """003 eq. (2.13) with Table 2.3, written on the unit interval."""
-    rise = end - start
-
-    def ratio(x: Jet) -> Jet:
-        t = (x - low) / width
-        return rise * (t * t * (3.0 - 2.0 * t)) + start
-
-    def motion(x: Jet) -> Jet:
-        t = (x - low) / width
-        return (t * (start + rise * (t * t * (1.0 - 0.5 * t)))) * width
-
-    return Piece(ratio, motion)
-
-
-_SHAPES = {"cosine": _cosine, "cubic": _cubic}
-
-
 @dataclass(frozen=True, kw_only=True)
 class Phases:
-    """Knots over one turn (or one lobe), a ratio at each; one ratio may be left to closure."""
+    """Knots over one turn (or one lobe), a ratio at each; one ratio may be left to closure.
 
-    shape: str = param(TEXT, default="cosine", choices=tuple(_SHAPES), doc="arc between the knots")
-    knots: tuple[float, ...] = param(
-        ANGLE, ge=0, le=360, min_length=2, doc="driver angles, from 0 to 360 or one lobe"
+    With `driven_travel` the pair is open: first and last ratio may differ, and either one ratio or
+    one knot may be left open, so that the driven wheel turns by its travel.
+    """
+
+    shape: str = param(TEXT, default="cosine", choices=tuple(ARCS), doc="arc between the knots")
+    knots: tuple[float | Solve, ...] = param(
+        ANGLE,
+        ge=0,
+        le=360,
+        min_length=2,
+        doc='driver angles, from 0 to 360 or one lobe; of an open pair one may be "solve"',
     )
     ratios: tuple[float | Solve, ...] = param(
         NUMBER, gt=0, min_length=2, doc='i21 at the knots; one may be "solve"'
+    )
+    driven_travel: float | None = param(
+        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
     )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
@@ -71,9 +52,22 @@ class Phases:
             return
         if self.knots[0] != 0.0:
             yield "knots", 0, "the first knot is not 0", "0"
-        for index in range(1, len(self.knots)):
-            if not self.knots[index] > self.knots[index - 1]:
+        known = [(k, value) for k, value in enumerate(self.knots) if value != "solve"]
+        for (_, before), (index, value) in pairwise(known):
+            if not value > before:
                 yield "knots", index, "knots must rise", "more than the knot before"
+        open_places = [("knots", k) for k, value in enumerate(self.knots) if value == "solve"]
+        open_places += [("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"]
+        if self.driven_travel is None:
+            yield from self._closed_problems()
+        elif len(open_places) > 1:
+            yield (*open_places[1], 'more than one "solve"', 'one "solve" among knots and ratios')
+
+    def _closed_problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        for index, value in enumerate(self.knots):
+            if value == "solve":
+                rule = "an angle (only an open pair, one with driven_travel_deg, solves a knot)"
+                yield "knots", index, "the knots of a closed pair are given", rule
         first, last = self.ratios[0], self.ratios[-1]
         if first != last:
             given = last if first == "solve" else first
@@ -91,83 +85,198 @@ class Phases:
             If the knots span neither a turn nor a lobe, or the law does not close (naming the
             closing value of each ratio), or no positive ratio closes it.
         """
-        knots, ratios = self._one_lobe(lobes)
-        values, solved = self._close(knots, ratios, lobes, tolerances)
-        shape = _SHAPES[self.shape]
-        pieces = [
-            shape(values[k], values[k + 1], float(knots[k]), float(knots[k + 1] - knots[k]))
-            for k in range(len(knots) - 1)
-        ]
-        return make_law(lobes, knots, pieces, tolerances, solved)
-
-    def _one_lobe(self, lobes: Lobes) -> tuple[np.ndarray, list[float | Solve]]:
-        knots = np.array(self.knots)
-        for repeats in (1, lobes.n1):
-            count = (len(knots) - 1) // repeats
-            if abs(knots[-1] * lobes.n1 / repeats - 2.0 * math.pi) > 1e-12:
-                continue
-            tiled = (lobes.period * np.arange(repeats)[:, None] + knots[:count]).ravel()
-            same = count * repeats == len(knots) - 1
-            if same and np.allclose(tiled, knots[:-1], rtol=0, atol=1e-12):
-                lobe = list(self.ratios[: count + 1])
-                if lobe[:-1] * repeats == list(self.ratios[:-1]) and lobe[0] == lobe[-1]:
-                    return np.append(knots[:count], lobes.period), lobe
-        spans = (
-            "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {360 / lobes.n1:g}"
+        if self.driven_travel is None:
+            knots, ratios = one_lobe(_angles(self.knots), self.ratios, lobes)
+            return arcs_law(ARCS[self.shape], knots, ratios, lobes, tolerances)
+        demand_equal(lobes)
+        knots, ratios, solved = _solve_way(
+            ARCS[self.shape], self.knots, self.ratios, self.driven_travel
         )
-        raise InfeasibleError(
-            f"the knots must span {spans} deg for these tooth counts",
-            where="law.knots_deg",
-            value=math.degrees(knots[-1]),
-            limit=360 / lobes.n1,
-            unit="deg",
-        )
+        way = Travel(knots[-1], self.driven_travel)
+        return arcs_law(ARCS[self.shape], np.array(knots), ratios, way, tolerances, solved)
 
-    def _close(
-        self,
-        knots: np.ndarray,
-        ratios: list[float | Solve],
-        lobes: Lobes,
-        tolerances: Tolerances,
-    ) -> tuple[list[float], dict[str, float]]:
-        """Solve the one ratio left open; both shapes have the mean of their end values."""
-        widths = np.diff(knots)
-        weights = 0.5 * (widths + np.roll(widths, 1))
-        given = np.array([0.0 if value == "solve" else value for value in ratios[:-1]], dtype=float)
-        rest = lobes.advance - float(weights @ given)
-        if "solve" in ratios[:-1]:
-            index = ratios.index("solve")
-            given[index] = rest / weights[index]
-            if not given[index] > 0.0:
-                raise InfeasibleError(
-                    "no positive ratio closes the law",
-                    where=f"law.ratios[{index}]",
-                    value=float(given[index]),
-                    limit=0.0,
-                    nearest="closure asks for this value; lower the other ratios",
-                )
-            return [*given, given[0]], {f"ratios[{index}]": float(given[index])}
-        if abs(rest) > tolerances.refusal:
+
+def _angles(knots: tuple[float | Solve, ...]) -> np.ndarray:
+    return np.array([value for value in knots if value != "solve"], dtype=float)
+
+
+def one_lobe(
+    knots: np.ndarray, ratios: Sequence[float | Solve], lobes: Lobes, where: str = "law.knots_deg"
+) -> tuple[np.ndarray, list[float | Solve]]:
+    """Return knots and ratios over one lobe.
+
+    Parameters
+    ----------
+    knots : (n,) array, rad
+        Over one lobe, or over a turn in which they repeat.
+    ratios : sequence of n floats or "solve"
+        i21 at the knots.
+    lobes : Lobes
+        Of the tooth counts.
+    where : str
+        The key, for messages.
+
+    Returns
+    -------
+    knots, ratios
+        From 0 to the period.
+
+    Raises
+    ------
+    InfeasibleError
+        If they span neither.
+    """
+    for repeats in (1, lobes.n1):
+        count = (len(knots) - 1) // repeats
+        if abs(knots[-1] * lobes.n1 / repeats - 2.0 * math.pi) > 1e-12:
+            continue
+        tiled = (lobes.period * np.arange(repeats)[:, None] + knots[:count]).ravel()
+        same = count * repeats == len(knots) - 1
+        if same and np.allclose(tiled, knots[:-1], rtol=0, atol=1e-12):
+            lobe = list(ratios[: count + 1])
+            if lobe[:-1] * repeats == list(ratios[:-1]) and lobe[0] == lobe[-1]:
+                return np.append(knots[:count], lobes.period), lobe
+    spans = "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {360 / lobes.n1:g}"
+    raise InfeasibleError(
+        f"the knots must span {spans} deg for these tooth counts",
+        where=where,
+        value=math.degrees(knots[-1]),
+        limit=360 / lobes.n1,
+        unit="deg",
+    )
+
+
+def arcs_law(
+    arc: Arc,
+    knots: np.ndarray,
+    ratios: list[float | Solve],
+    lobes: Span,
+    tolerances: Tolerances,
+    solved: dict[str, float] | None = None,
+    name: str = "",
+) -> RatioLaw:
+    """Return a law of arcs of one shape; one ratio may be left to closure.
+
+    Parameters
+    ----------
+    arc : Arc
+        Shape between the knots.
+    knots : (n,) array, rad
+        From 0 to the period.
+    ratios : list of n floats or "solve"
+        i21 at the knots; all that are left open are one and the same.
+    lobes : Lobes or Travel
+        What to close to.
+    tolerances : Tolerances
+        Accuracy.
+    solved : dict, optional
+        What was solved already.
+    name : str, optional
+        What the open ratio is called; by its place when left out.
+
+    Returns
+    -------
+    RatioLaw
+
+    Raises
+    ------
+    InfeasibleError
+        If it does not close (naming the closing value of each ratio), or no positive ratio closes
+        it.
+    """
+    widths = np.diff(knots)
+    weights = np.append((1.0 - arc.share) * widths, 0.0) + np.append(0.0, arc.share * widths)
+    values, found = _close(weights, ratios, lobes, tolerances, name)
+    pieces = [
+        arc.piece(values[k], values[k + 1], float(knots[k]), float(widths[k]))
+        for k in range(len(widths))
+    ]
+    return make_law(lobes, knots, pieces, tolerances, (solved or {}) | found)
+
+
+def _close(
+    weights: np.ndarray,
+    ratios: list[float | Solve],
+    lobes: Span,
+    tolerances: Tolerances,
+    name: str,
+) -> tuple[list[float], dict[str, float]]:
+    """Solve the ratio left open; every arc's mean is linear in its end values."""
+    if lobes.closed:  # first and last are one
+        weights = np.append(weights[0] + weights[-1], weights[1:-1])
+        ratios = ratios[:-1]
+    given = np.array([0.0 if value == "solve" else value for value in ratios], dtype=float)
+    rest = lobes.advance - float(weights @ given)
+    solved = {}
+    if "solve" in ratios:
+        unknown = np.array([value == "solve" for value in ratios])
+        closing = rest / float(weights[unknown].sum())
+        given[unknown] = closing
+        name = name or f"ratios[{ratios.index('solve')}]"
+        solved = {name: closing}
+        if not closing > 0.0:
             raise InfeasibleError(
-                "the phases do not close",
-                where="law.ratios",
-                value=math.degrees(lobes.advance - rest),
-                limit=math.degrees(lobes.advance),
-                unit="deg",
-                nearest=_closing_values(given, rest / weights),
+                "no positive ratio closes the law",
+                where=f"law.{name}",
+                value=closing,
+                limit=0.0,
+                nearest="closure asks for this value; lower the other ratios",
             )
-        return [*given, given[0]], {}
+    elif abs(rest) > tolerances.refusal:
+        raise InfeasibleError(
+            "the phases do not close",
+            where="law.ratios",
+            value=math.degrees(lobes.advance - rest),
+            limit=math.degrees(lobes.advance),
+            unit="deg",
+            nearest=_closing_values(given, rest / weights, lobes.closed),
+        )
+    values = given.tolist()
+    return [*values, values[0]] if lobes.closed else values, solved
 
 
-def _closing_values(given: np.ndarray, change: np.ndarray) -> str:
+def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> str:
     """Say which value each ratio must have for the law to close if only that one is changed."""
     lines = ["it closes with one of these"]
     for index, (value, step) in enumerate(zip(given, change, strict=True)):
         closing = value + step
-        name = f"ratios[{index}]" if index else f"ratios[0] and ratios[{len(given)}]"
+        both = closed and index == 0
+        name = f"ratios[0] and ratios[{len(given)}]" if both else f"ratios[{index}]"
         state = f"{closing:.10g}" if closing > 0 else f"none ({closing:.6g} is not positive)"
         lines.append(f"{name} = {state} instead of {value:.10g}")
     return "; ".join(lines)
+
+
+def _solve_way(
+    arc: Arc, knots: Sequence[float | Solve], ratios: Sequence[float | Solve], travel: float
+) -> tuple[list[float], list[float | Solve], dict[str, float]]:
+    """Solve the knot left open by an open pair: the driven angle is linear in it."""
+    if "solve" not in knots:
+        return [value for value in knots if value != "solve"], list(ratios), {}
+    index = knots.index("solve")
+    values = [value for value in ratios if value != "solve"]
+    means = [(1.0 - arc.share) * a + arc.share * b for a, b in pairwise(values)]
+
+    def driven(place: float) -> float:
+        filled = [place if value == "solve" else value for value in knots]
+        return sum(m * (b - a) for m, a, b in zip(means, filled[:-1], filled[1:], strict=True))
+
+    slope = driven(1.0) - driven(0.0)
+    place = (travel - driven(0.0)) / slope if slope else math.inf
+    filled = [place if value == "solve" else value for value in knots]
+    low = filled[index - 1]
+    high = filled[index + 1] if index + 1 < len(filled) else 2.0 * math.pi
+    if not low < place <= high or place == high < 2.0 * math.pi:
+        ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
+        raise InfeasibleError(
+            "no knot between its neighbours gives the driven wheel its way",
+            where=f"law.knots_deg[{index}]",
+            value=math.degrees(travel),
+            limit=ways[0] if math.degrees(travel) < ways[0] else ways[1],
+            unit="deg",
+            nearest=f"driven_travel_deg between {ways[0]:.10g} and {ways[1]:.10g} deg",
+        )
+    return filled, list(ratios), {f"knots_deg[{index}]": math.degrees(place)}
 
 
 def _claims() -> tuple[Claim, ...]:
@@ -193,6 +302,35 @@ def _claims() -> tuple[Claim, ...]:
             motion={mid: mid, 1.5 * math.pi: mid + math.radians(110) * 0.73, turn: turn},
             continuity=1,
         ),
+        *_open_claims(),
+    )
+
+
+def _open_claims() -> tuple[Claim, ...]:
+    """003 (3.26) and (3.12), which give the driver's way in closed form."""
+    u, v, way = math.radians(10), math.radians(60), math.radians(308.3)
+    three = 0.5 * way + 0.25 * (u + v)
+    two = ((math.pi - 2) * v + math.pi * way) / (2 * math.pi)
+    return (
+        Claim(
+            parameters=Phases(
+                shape="cosine",
+                knots=(0.0, u, v, "solve"),
+                ratios=(1.0, 1.0, 2.0, 2.0),
+                driven_travel=way,
+            ),
+            ratio={0.0: 1.0, u: 1.0, 0.5 * (u + v): 1.5, v: 2.0, 2.0: 2.0},
+            motion={u: u, v: u + 1.5 * (v - u), three: way},
+            continuity=1,
+        ),
+        Claim(
+            parameters=Phases(
+                shape="sine", knots=(0.0, v, "solve"), ratios=(1.0, 2.0, 2.0), driven_travel=way
+            ),
+            ratio={0.0: 1.0, v / 3: 1.5, v: 2.0, 2.5: 2.0},
+            motion={v: v + 2 * v / math.pi, two: way},
+            continuity=1,
+        ),
     )
 
 
@@ -200,9 +338,10 @@ register(
     LawEntry(
         name="phases",
         parameters=Phases,
-        doc="ratios at knots, joined by cosine or cubic arcs with zero slope at each knot",
-        continuity="C1 at the knots",
-        source="003 sections 2.2.2.1 to 2.2.2.3, eqs. (2.1), (2.13), (2.17), (2.22)",
+        doc="ratios at knots, joined by arcs with zero slope at each knot; closed or open",
+        continuity="C1 at the knots; C2 for quintic arcs",
+        source="003 sections 2.2.2.1 to 2.2.2.3, eqs. (2.1), (2.13), (2.17), (2.22); 3.2.2, eqs. "
+        "(3.1), (3.12), (3.14), (3.26)",
         claims=_claims,
     )
 )

@@ -8,7 +8,7 @@ smooth inside an interval is found by the cutting itself and refused with its pl
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 
@@ -91,6 +91,12 @@ class Expansion:
         half = 0.5 * np.diff(self.knots)
         powers = _powers_of_chebyshev(len(self.coefficients)).T @ self.coefficients
         return 0.5 * (self.knots[:-1] + self.knots[1:]), 1.0 / half, powers
+
+    def shifted(self, constant: float) -> Expansion:
+        """Return the function with a constant added."""
+        moved = self.coefficients.copy()
+        moved[0] += constant
+        return replace(self, coefficients=moved)
 
     def antiderivative(self) -> Expansion:
         """Return the integral from the first knot."""

@@ -8,7 +8,7 @@ integral in closed form. Between knots a piece is smooth; at a knot any derivati
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -78,6 +78,26 @@ class Piecewise:
     def __call__(self, x: ArrayLike) -> Array:
         """Return the values at `x`."""
         return self.derivatives(x, 0)[0]
+
+    def shifted(self, constant: float) -> Piecewise:
+        """Return the function with a constant added."""
+        return replace(self, offsets=self.offsets + constant)
+
+    @property
+    def extremes(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Smallest and largest value, each as (place, value)."""
+        return self.extremes_over(self.knots)
+
+    def extremes_over(self, knots: Array) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return smallest and largest value between some of the knots, each as (place, value)."""
+
+        def slope(x: Array) -> tuple[Array, Array]:
+            value, derivative = self.derivatives(x, 1)
+            return value[None], derivative[None]
+
+        ((places, values),) = extremes(slope, knots)
+        low, high = int(np.argmin(values)), int(np.argmax(values))
+        return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
 
     @property
     def last(self) -> float:

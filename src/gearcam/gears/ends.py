@@ -1,0 +1,164 @@
+"""The ends of open wheels: where their teeth stop, and the body that holds them.
+
+The blank ends half a pitch beyond both ends of the centrode: on wheel 1 in the middle of a space,
+on wheel 2 in the middle of a tooth. From there it goes inwards along the normal, below the roots,
+then straight to a hub around the shaft.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.gears.flank import Kind, Rows, Toothing
+from gearcam.gears.sampling import as_pairs
+from gearcam.gears.spaces import join, select
+from gearcam.gears.tips import TipEnds
+from gearcam.numeric.contour import Run
+
+Array = NDArray[np.float64]
+
+_BELOW = 1.0
+"""Depth of the end faces below the roots, in modules."""
+
+_GAP = 0.1
+"""Angle, rad, that the ends of a wheel leave free between them."""
+
+_HUB = 0.6
+"""Radius of the hub over the smallest radius that the body has room for."""
+
+
+def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
+    """Cut the chain of an open wheel at the ends of its blank.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        All curves from the first tooth formed to the last.
+    tips : TipEnds
+        Ends of its flanks.
+
+    Returns
+    -------
+    Rows
+        From half a pitch before the centrode to half a pitch behind it.
+    """
+    start, end = toothing.rolling.angle(_end_places(toothing))
+    if toothing.wheel == 1:
+        first, last = toothing.numbers[0], toothing.numbers[-1]
+        outside = ((rows.tooth == first) & (rows.sigma > 0.0)) | (rows.tooth == last)
+        kept = select(rows, np.flatnonzero(~outside))
+    else:
+        lead = select(rows, np.array([len(rows.kind) - 1]))
+        z = len(toothing.numbers)
+        kept = join(
+            [
+                replace(
+                    lead,
+                    start=tips.foot[z : z + 1],
+                    end=tips.foot[:1],
+                    low=tips.height[z : z + 1],
+                    high=tips.height[:1],
+                    tooth=np.array(toothing.numbers[:1]),
+                ),
+                rows,
+            ]
+        )
+    return _shortened(kept, float(start), float(end))
+
+
+def _shortened(rows: Rows, start: float, end: float) -> Rows:
+    """Begin the first row, a land or tip, at `start` and end the last at `end`.
+
+    Where a space has lost its land its fillets meet instead, and nothing is cut.
+    """
+    begin, finish = rows.start.copy(), rows.end.copy()
+    low, high, corner = rows.low.copy(), rows.high.copy(), rows.corner.copy()
+    corner[0] = True
+    for row, place, cut, height in ((0, start, begin, low), (-1, end, finish, high)):
+        span = rows.end[row] - rows.start[row]
+        if rows.kind[row] >= Kind.LAND and span > 0.0:
+            share = min(max((place - rows.start[row]) / span, 0.0), 1.0)
+            cut[row] = rows.start[row] + share * span
+            height[row] = rows.low[row] + share * (rows.high[row] - rows.low[row])
+    return replace(rows, start=begin, end=finish, low=low, high=high, corner=corner)
+
+
+def _end_places(toothing: Toothing) -> Array:
+    half = 0.5 * toothing.pitch
+    return np.array([-half, toothing.length + half])
+
+
+def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) -> tuple[Run, ...]:
+    """Return what joins the last tooth to the first around the shaft.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    toothed : (n, 2) array, mm
+        Its teeth, counter-clockwise.
+    tolerance : float, mm
+        Chord error of the hub's arc.
+    parts : int
+        Dense points for each chord.
+
+    Returns
+    -------
+    tuple of Run
+        End face, arm, hub, arm, end face, counter-clockwise.
+
+    Raises
+    ------
+    InfeasibleError
+        If the ends meet: the wheel would turn by a full turn or more.
+    """
+    points = toothed @ [1.0, 1j]
+    frames = toothing.frames(toothing.rolling.angle(_end_places(toothing)))
+    depth = toothing.cutter.dedendum + _BELOW * toothing.pitch / math.pi
+    inner = frames.p - depth * toothing.turn * frames.t
+    inner = inner if toothing.wheel == 1 else inner[::-1]
+    first, last = complex(points[0]), complex(points[-1])
+    radius = _HUB * min(abs(points).min(), abs(inner).min())
+    span = float(np.angle(points[1:] / points[:-1]).sum())
+    span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))
+    if span >= 2.0 * math.pi - _GAP:
+        name = ("driver", "driven wheel")[toothing.wheel - 1]
+        lobes = toothing.rolling.law.lobes
+        travel = math.degrees(lobes.period if toothing.wheel == 1 else lobes.advance)
+        over = math.degrees(span - 2.0 * math.pi + _GAP)
+        raise InfeasibleError(
+            f"the ends of the {name} meet behind its shaft",
+            where=f"wheel {toothing.wheel}",
+            value=travel,
+            limit=travel - over,
+            unit="deg",
+            nearest=f"this is how far the {name} turns, and with its end teeth it fills the "
+            "circle: shorten its way, or take more teeth",
+        )
+    hub = radius * inner / np.abs(inner)
+    sweep = 2.0 * math.pi - span
+    chords = max(2, math.ceil(sweep / math.sqrt(8.0 * tolerance / radius)))
+    turn = np.exp(1j * sweep * np.linspace(0.0, 1.0, chords * parts + 1))
+    arc = hub[1] * turn
+    arc[-1] = hub[0]
+    return (
+        _line(last, inner[1]),
+        _line(inner[1], hub[1]),
+        Run(points=as_pairs(arc), tangents=as_pairs(1j * arc / radius)),
+        _line(hub[0], inner[0]),
+        _line(inner[0], first),
+    )
+
+
+def _line(start: complex, end: complex) -> Run:
+    points = np.array([start, end])
+    return Run(
+        points=as_pairs(points), tangents=as_pairs(np.full(2, (end - start) / abs(end - start)))
+    )

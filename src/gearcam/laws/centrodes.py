@@ -1,0 +1,200 @@
+"""Centrodes given by one formula of the driver's radius: circles off centre, limacons, lobed ones.
+
+The radius is given at any scale; the centre distance over it follows from closure.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.driver import LOBES, demand_lobes, law_of_centrode
+from gearcam.laws.span import Lobes
+from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
+from gearcam.numeric.piecewise import Piece
+from gearcam.quantities import COUNT, NUMBER, param
+from gearcam.tolerances import Tolerances
+
+
+@dataclass(frozen=True, kw_only=True)
+class EccentricCircle:
+    """A circle of radius 1 whose shaft is `eccentricity` off its middle; far side at phi1 = 0.
+
+    ``r1 = e*cos(phi1) + sqrt(1 - (e*sin(phi1))^2)``.
+    """
+
+    eccentricity: float = param(
+        NUMBER, ge=0, lt=1, doc="distance of the shaft from the middle, in radii"
+    )
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            Unless the driver has one lobe.
+        """
+        e = self.eccentricity
+        _demand_one_lobe(lobes, "an eccentric circle")
+
+        def radius(x: Jet) -> Jet:
+            across = e * sin(x)
+            return e * cos(x) + sqrt(1.0 - across * across)
+
+        return law_of_centrode([radius], [0.0, lobes.period], lobes, tolerances)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limacon:
+    """Pascal's limacon, ``r1 = 1 + e*cos(phi1)``: a circle rolled around by its equal."""
+
+    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="swing of the radius over its mean")
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            Unless the driver has one lobe.
+        """
+        _demand_one_lobe(lobes, "a limacon")
+        return _lobed(self.eccentricity, 1, lobes, tolerances)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lobed:
+    """``r1 = 1 + e*cos(n1*phi1)`` with n1 lobes."""
+
+    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="swing of the radius over its mean")
+    lobes: tuple[int, int] | None = param(COUNT, default=None, ge=1, le=100, doc=LOBES)
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            If the lobes are not in the ratio of the tooth counts.
+        """
+        return _lobed(self.eccentricity, demand_lobes(self.lobes, lobes), lobes, tolerances)
+
+
+def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+    """``i = r/(c - r)`` with closed forms for centre distance and driven angle.
+
+    With ``b = c - 1`` the ratio is ``c/(b - e*cos(n*phi1)) - 1``, whose integral over a lobe gives
+    ``c = k*sqrt(b^2 - e^2)``, k = 1 + n1/n2, and so ``b``.
+    """
+    k = 1.0 + lobes.n1 / lobes.n2
+    # (b + 1)^2 = k^2*(b^2 - e^2): the greater root, the smaller one is below e
+    square = k * k - 1.0
+    b = (1.0 + k * math.sqrt(1.0 + square * e * e)) / square
+    c, root = b + 1.0, math.sqrt(b * b - e * e)
+
+    def ratio(x: Jet) -> Jet:
+        return c / (b - e * cos(count * x)) - 1.0
+
+    def motion(x: Jet) -> Jet:
+        # 2*atan(tan(x/2)*sqrt((b + e)/(b - e))) without its poles
+        turn = 2.0 * atan(e * sin(count * x) / (b + root - e * cos(count * x)))
+        return (c / root) * (x + turn / count) - x
+
+    piece = Piece(ratio, motion)
+    solved = {"center_distance_over_scale": c}
+    return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
+
+
+def _demand_one_lobe(lobes: Lobes, name: str) -> None:
+    if lobes.n1 != 1:
+        raise InfeasibleError(
+            f"{name} has one lobe",
+            where="pair.teeth",
+            value=float(lobes.n1),
+            limit=1.0,
+            nearest="give the driven wheel as many teeth as the driver, or a multiple of them",
+        )
+
+
+def _claims_eccentric() -> tuple[Claim, ...]:
+    # A/R = 2.04379288568712 by high-precision quadrature; at phi1 = 90 deg r1 = sqrt(1 - e^2)
+    a, b = 2.04379288568712, math.sqrt(1 - 0.3**2)
+    return (
+        Claim(
+            parameters=EccentricCircle(eccentricity=0.3),
+            ratio={0.0: 1.3 / (a - 1.3), math.pi: 0.7 / (a - 0.7), math.pi / 2: b / (a - b)},
+            motion={math.pi: math.pi, 2 * math.pi: 2 * math.pi},
+            continuity=3,
+        ),
+    )
+
+
+def _claims_limacon() -> tuple[Claim, ...]:
+    # with k = 2: b = (1 + 2*sqrt(1 + 3*e^2))/3
+    b = (1 + 2 * math.sqrt(1 + 3 * 0.4**2)) / 3
+    half = 2 * math.atan(math.sqrt((b + 0.4) / (b - 0.4)))
+    return (
+        Claim(
+            parameters=Limacon(eccentricity=0.4),
+            ratio={0.0: 1.4 / (b - 0.4), math.pi: 0.6 / (b + 0.4), math.pi / 2: 1 / b},
+            motion={math.pi: math.pi, math.pi / 2: 2 * half - math.pi / 2},
+            continuity=3,
+        ),
+    )
+
+
+def _claims_lobed() -> tuple[Claim, ...]:
+    # with k = 1 + 2/3 the centre distance is (1 + b) = k*sqrt(b^2 - e^2)
+    k, e = 5 / 3, 0.2
+    b = (1 + math.sqrt(1 + (k * k - 1) * (1 + k * k * e * e))) / (k * k - 1)
+    return (
+        Claim(
+            parameters=Lobed(eccentricity=e),
+            lobes=Lobes(2, 3),
+            ratio={0.0: 1.2 / (b - 0.2), math.pi / 2: 0.8 / (b + 0.2), math.pi / 4: 1 / b},
+            motion={math.pi / 2: math.pi / 3, 2 * math.pi: 4 * math.pi / 3},
+            continuity=3,
+        ),
+        Claim(
+            parameters=Lobed(eccentricity=0.1, lobes=(3, 3)),
+            lobes=Lobes(1, 1),
+            ratio={0.0: 1.1 / ((1 + 2 * math.sqrt(1.03)) / 3 - 0.1)},
+            motion={math.pi / 3: math.pi / 3, 2 * math.pi: 2 * math.pi},
+            continuity=3,
+        ),
+    )
+
+
+register(
+    LawEntry(
+        name="eccentric-circle",
+        parameters=EccentricCircle,
+        doc="a circle with its shaft off its middle, far side at phi1 = 0",
+        continuity="analytic",
+        source="classical; circle in polar form, centre distance by closure",
+        claims=_claims_eccentric,
+    )
+)
+register(
+    LawEntry(
+        name="limacon",
+        parameters=Limacon,
+        doc="limacon r1 = 1 + e*cos(phi1), far side at phi1 = 0",
+        continuity="analytic",
+        source="classical; Pascal's limacon, closure in closed form",
+        claims=_claims_limacon,
+    )
+)
+register(
+    LawEntry(
+        name="lobed",
+        parameters=Lobed,
+        doc="r1 = 1 + e*cos(n1*phi1): wheels with any numbers of lobes",
+        continuity="analytic",
+        source="classical; closure in closed form",
+        claims=_claims_lobed,
+    )
+)

@@ -1,0 +1,166 @@
+"""From the driver's centrode to the law: the centre distance that closes the driven wheel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import RatioLaw, make_law
+from gearcam.laws.span import Lobes, Span, angle_text
+from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import Piece, piecewise
+from gearcam.numeric.roots import newton_in_bracket
+from gearcam.tolerances import Tolerances
+
+Array = NDArray[np.float64]
+LOBES = "lobes of driver and driven wheel; in lowest terms as the tooth counts when left out"
+"""What the key ``lobes`` means."""
+
+Shape = Callable[[Jet], Jet]
+"""Radius of the driver's centrode, at any scale, over the driver angle."""
+
+
+def law_of_centrode(
+    shapes: list[Shape],
+    knots: ArrayLike,
+    lobes: Span,
+    tolerances: Tolerances,
+    solved: Mapping[str, float] | None = None,
+) -> RatioLaw:
+    """Make a law from the driver's centrode: ``i = r/(c - r)``, c the centre distance in its scale.
+
+    Parameters
+    ----------
+    shapes : list of n callables
+        The radius between the knots, at any scale.
+    knots : (n + 1,) array, rad
+        From 0 to the period.
+    lobes : Lobes or Travel
+        What to close to.
+    tolerances : Tolerances
+        Accuracy.
+    solved : mapping of str to float, optional
+        What was solved already.
+
+    Returns
+    -------
+    RatioLaw
+        With ``center_distance_over_scale`` among what was solved.
+
+    Raises
+    ------
+    InfeasibleError
+        Where the radius is not finite, smooth or positive.
+
+    Notes
+    -----
+    The driven angle falls as c grows, from infinity at the largest r, so that there is one root,
+    between the largest r and the c that would close a wheel of that radius all around.
+    """
+    radius = piecewise(knots, [Piece(shape) for shape in shapes])
+    _demand_positive(radius(np.linspace(0.0, lobes.period, 2049)), lobes)
+    try:
+        center = solve_center(radius, knots, lobes, tolerances)
+    except NotSmoothError as error:
+        state = "is not smooth" if error.finite else "is not finite"
+        raise InfeasibleError(f"r1 {state}", where=angle_text(error.place)) from error
+    pieces = [Piece(_ratio(shape, center)) for shape in shapes]
+    found = {**(solved or {}), "center_distance_over_scale": center}
+    return make_law(lobes, knots, pieces, tolerances, found)
+
+
+def _demand_positive(radii: Array, lobes: Span) -> None:
+    angles = np.linspace(0.0, lobes.period, len(radii))
+    for bad, state in ((~np.isfinite(radii), "is not finite"), (radii <= 0, "is not positive")):
+        if bad.any():
+            raise InfeasibleError(f"r1 {state}", where=angle_text(angles[bad][0]), limit=0.0)
+
+
+def _ratio(shape: Shape, center: float) -> Shape:
+    def ratio(x: Jet) -> Jet:
+        radius = shape(x)
+        return radius / (center - radius)
+
+    return ratio
+
+
+def solve_center(
+    radius: Callable[[Array], Array], knots: ArrayLike, lobes: Span, tolerances: Tolerances
+) -> float:
+    """Return the centre distance, in the radius's scale, that closes the driven wheel.
+
+    Parameters
+    ----------
+    radius : callable
+        ``radius(phi1) -> r1``, positive.
+    knots : (n + 1,) array, rad
+        From 0 to the period; between them it is smooth.
+    lobes : Lobes or Travel
+        What to close to.
+    tolerances : Tolerances
+        Accuracy.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    NotSmoothError
+        Where the radius is not finite or not smooth between the knots.
+    """
+    ends, tolerance = np.asarray(knots, dtype=float), tolerances.expansion
+    mean = expand(radius, ends, tolerance).antiderivative().last / lobes.period
+    largest = float(radius(np.append(np.linspace(0.0, lobes.period, 2049), ends)).max())
+    ratio = lobes.period / lobes.advance
+
+    def excess(c: Array) -> tuple[Array, Array]:
+        center = float(c)
+        try:
+            driven = expand(lambda t: radius(t) / (center - radius(t)), ends, tolerance)
+            slope = expand(lambda t: radius(t) / (center - radius(t)) ** 2, ends, tolerance)
+        except NotSmoothError:
+            # Too close to the largest radius: the driven angle is lost in its peak, but large.
+            return np.asarray(-np.inf), np.asarray(np.inf)
+        miss = lobes.advance - driven.antiderivative().last
+        return np.asarray(miss), np.asarray(slope.antiderivative().last)
+
+    low, high = largest * (1.0 + 1e-9), largest * (1.0 + ratio) * (1.0 + 1e-9)
+    start = min(max(mean * (1.0 + ratio), 0.75 * low + 0.25 * high), high)
+    return float(newton_in_bracket(excess, low, high, start, 1e-15 * high))
+
+
+def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
+    """Return how many lobes the driver has: as given, or as few as the tooth counts allow.
+
+    Parameters
+    ----------
+    given : (int, int) or None
+        Lobes of driver and driven wheel.
+    lobes : Lobes
+        Of the tooth counts.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InfeasibleError
+        If they are not in the ratio of the tooth counts.
+    """
+    if given is None:
+        return lobes.n1
+    if given[0] * lobes.n2 != given[1] * lobes.n1:
+        raise InfeasibleError(
+            "the lobes are not in the ratio of the tooth counts",
+            where="law.lobes",
+            value=given[0] / given[1],
+            limit=lobes.n1 / lobes.n2,
+            nearest=f"lobes = [{lobes.n1}, {lobes.n2}] or a multiple, or other tooth counts",
+        )
+    return given[0]

@@ -1,0 +1,159 @@
+"""Laws of motion: the driven element's way is given, and the ratio follows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.formula import compiled, from_motion
+from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
+from gearcam.laws.slider import crank_angle, make_slide
+from gearcam.laws.span import Lobes, Span, span_of, travel_problems
+from gearcam.numeric.jets import Jet
+from gearcam.quantities import ANGLE, NUMBER, TEXT, param
+from gearcam.tolerances import Tolerances
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """Either y(x) of the driven element, or the way of a slide that the driven wheel's crank moves.
+
+    With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =
+    k1*(x - x_from)``, ``phi2 = k2*(y - y(x_from))``, so that ``i21 = k2*y'/k1``. Both scales follow
+    from the travels, or from closure. With slide(phi1) the driven wheel's angle is the crank's.
+    """
+
+    y: str | None = param(TEXT, default=None, doc="y of the driven element over x, at any scale")
+    x_from: float | None = param(NUMBER, default=None, doc="x at the start")
+    x_to: float | None = param(NUMBER, default=None, doc="x at the end")
+    slide: str | None = param(
+        TEXT, default=None, doc="way of a slide over phi1, towards the crank's shaft, at any scale"
+    )
+    rod: float | None = param(
+        NUMBER, default=None, gt=1, le=1e6, doc="length of the slide's rod, in crank radii"
+    )
+    driver_travel: float | None = param(
+        ANGLE, default=None, gt=0, le=360, doc="how far the driver of an open pair turns"
+    )
+    driven_travel: float | None = param(
+        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
+    )
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        rule = "y with x_from and x_to, or slide with rod"
+        if (self.y is None) == (self.slide is None):
+            yield "y", None, "neither y nor slide is given" if self.y is None else "both", rule
+            return
+        asked = ("x_from", "x_to") if self.slide is None else ("rod",)
+        for name in ("x_from", "x_to", "rod"):
+            if (getattr(self, name) is None) == (name in asked):
+                yield name, None, "is missing" if name in asked else "does not belong here", rule
+        name, variable = ("y", "x") if self.slide is None else ("slide", VARIABLE)
+        try:
+            parse(getattr(self, name), variable)
+        except FormulaError as error:
+            place = "" if error.column is None else f"column {error.column}: "
+            hint = f" ({error.hint})" if error.hint else ""
+            yield name, None, f"{place}{error.what}{hint}", error.allowed
+        if self.x_from is not None and self.x_from == self.x_to:
+            yield "x_to", None, "is x_from", "another x"
+        if self.slide is not None and self.driven_travel is not None:
+            yield "driven_travel", None, "a slide's crank turns all the way", rule
+        yield from travel_problems(self.driver_travel, self.driven_travel)
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            Where the motion is not finite, smooth, monotonic or periodic.
+        """
+        if self.slide is not None:
+            return self._from_slide(lobes, tolerances)
+        span = span_of(lobes, self.driver_travel, self.driven_travel)
+        return self._from_y(span, tolerances)
+
+    def _from_y(self, span: Span, tolerances: Tolerances) -> RatioLaw:
+        start, end = float(self.x_from or 0.0), float(self.x_to or 0.0)
+        shape, per_angle = compiled(self.y or "", "x"), (end - start) / span.period
+        ends = shape(Jet.variable(np.array([start, end]), 0)).derivatives()[0]
+        rise = float(ends[1] - ends[0])
+        if not math.isfinite(rise) or rise == 0.0:
+            raise InfeasibleError(
+                "y is not finite" if rise else "y is the same at both ends",
+                where="law.y",
+                value=rise,
+            )
+        scale = span.advance / rise
+        solved = {
+            "k1_deg_per_x": math.degrees(1.0 / per_angle),
+            "k2_deg_per_y": math.degrees(scale),
+        }
+        return from_motion(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
+
+    def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        if lobes.n2 != 1:
+            raise InfeasibleError(
+                "a crank turns once for each motion of its slide",
+                where="pair.teeth",
+                value=float(lobes.n2),
+                limit=1.0,
+                nearest="give the driver as many teeth as the driven wheel, or a multiple of them",
+            )
+        slide, radius = make_slide(compiled(self.slide or ""), float(self.rod or 0.0), lobes.period)
+        knots, pieces, start = crank_angle(slide)
+        solved = {
+            "crank_radius_over_slide_unit": radius,
+            "crank_angle_at_start_deg": math.degrees(start),
+        }
+        return make_law(lobes, knots, pieces, tolerances, solved)
+
+
+def _claims() -> tuple[Claim, ...]:
+    turn = 2 * math.pi
+    # a slide that moves as its crank moves it when turning evenly: i = 1
+    even = "1 - cos(phi1) + 3*(1 - sqrt(1 - (sin(phi1)/3)**2))"
+    # the same crank led by phi1 - 0.2*sin(phi1)
+    led = even.replace("phi1", "(phi1 - 0.2*sin(phi1))")
+    return (
+        Claim(
+            # y = x + x^2/10 from 0 to 2 over half a turn each: i = (1 + x/5)/1.2
+            parameters=Motion(
+                y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
+            ),
+            ratio={0.0: 1 / 1.2, math.pi / 2: 1.0, math.pi: 1.4 / 1.2},
+            motion={math.pi: math.pi, math.pi / 2: math.pi * 1.1 / 2.4},
+            continuity=3,
+        ),
+        Claim(
+            parameters=Motion(slide=even, rod=3.0),
+            ratio={0.0: 1.0, 1.0: 1.0, math.pi: 1.0, 5.0: 1.0},
+            motion={1.0: 1.0, math.pi: math.pi, 6.0: 6.0, turn: turn},
+            continuity=3,
+        ),
+        Claim(
+            parameters=Motion(slide=led, rod=3.0),
+            ratio={0.0: 0.8, math.pi: 1.2, math.pi / 2: 1.0},
+            motion={math.pi: math.pi, 1.0: 1 - 0.2 * math.sin(1.0), turn: turn},
+            continuity=3,
+        ),
+    )
+
+
+register(
+    LawEntry(
+        name="motion",
+        parameters=Motion,
+        doc="the driven element's way y(x), or that of a slide moved by the driven wheel's crank",
+        continuity="analytic where the way is",
+        source="003 Table 1.1, second hypothesis; section 1.4.1",
+        claims=_claims,
+    )
+)

@@ -1,0 +1,305 @@
+"""Ratios by stretches: constant ratios with transitions, three phases of polynomials, harmonics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import zip_longest
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.phases import arcs_law, one_lobe
+from gearcam.laws.span import Lobes, Travel, demand_equal
+from gearcam.laws.transitions import ARCS, SMOOTH
+from gearcam.numeric.jets import Jet, cos, sin
+from gearcam.numeric.piecewise import Piece
+from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
+from gearcam.tolerances import Tolerances
+
+
+@dataclass(frozen=True, kw_only=True)
+class Multispeed:
+    """Constant ratios, each over an angle of the driver, joined by smooth transitions.
+
+    A closed law goes back to its first ratio by a last transition; an open one (with
+    `driven_travel`) ends with its last constant ratio.
+    """
+
+    ratios: tuple[float | Solve, ...] = param(
+        NUMBER, gt=0, min_length=2, doc='the constant ratios in turn; one may be "solve"'
+    )
+    angles: tuple[float, ...] = param(
+        ANGLE, ge=0, le=360, min_length=2, doc="driver angle over which each of them holds"
+    )
+    transition: float = param(ANGLE, gt=0, le=360, doc="driver angle of each transition")
+    shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
+    driven_travel: float | None = param(
+        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
+    )
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        if len(self.angles) != len(self.ratios):
+            message = f"{len(self.angles)} angles for {len(self.ratios)} ratios"
+            yield "angles", None, message, "one angle for each ratio"
+        unknown = [k for k, value in enumerate(self.ratios) if value == "solve"]
+        if len(unknown) > 1:
+            yield "ratios", unknown[1], 'more than one "solve"', 'one "solve"'
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            If angles and transitions span neither a turn nor a lobe, or no ratio closes it.
+        """
+        knots = [0.0]
+        values: list[float | Solve] = [self.ratios[0]]
+        for number, (angle, ratio) in enumerate(zip(self.angles, self.ratios, strict=True)):
+            if number:
+                knots.append(knots[-1] + self.transition)
+                values.append(ratio)
+            if angle > 0.0:
+                knots.append(knots[-1] + angle)
+                values.append(ratio)
+        arc = ARCS[self.shape]
+        name = f"ratios[{self.ratios.index('solve')}]" if "solve" in self.ratios else ""
+        if self.driven_travel is not None:
+            demand_equal(lobes)
+            way = Travel(knots[-1], self.driven_travel)
+            return arcs_law(arc, np.array(knots), values, way, tolerances, name=name)
+        knots.append(knots[-1] + self.transition)
+        values.append(self.ratios[0])
+        grid, lobe = one_lobe(np.array(knots), values, lobes, "law.angles_deg with transitions")
+        return arcs_law(arc, grid, lobe, lobes, tolerances, name=name)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThreePhasePolynomial:
+    """A cubic down to the lowest ratio, then two parabolas up again, 003 Table 2.6.
+
+    The ratio starts at b with slope zero, is `lowest` = a at the second knot with slope zero, and
+    rises by two parabolas that meet at the third knot with a common slope p. Closure decides p,
+    and with it the ratio there, ``i_i = a + p*(k2 - k1)/2``, and ``b = a + p*(k3 - k1)/2``.
+    """
+
+    knots: tuple[float, float, float, float] = param(
+        ANGLE, ge=0, le=360, doc="driver angles, from 0 to 360 or one lobe"
+    )
+    lowest: float = param(NUMBER, gt=0, doc="i21 at the second knot")
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        if self.knots[0] != 0.0:
+            yield "knots", 0, "the first knot is not 0", "0"
+        for index in (1, 2, 3):
+            if not self.knots[index] > self.knots[index - 1]:
+                yield "knots", index, "knots must rise", "more than the knot before"
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            If the knots do not span a lobe, or the lowest ratio is not below the mean.
+        """
+        if abs(self.knots[3] - lobes.period) > 1e-12:
+            raise InfeasibleError(
+                f"the knots must span {360 / lobes.n1:g} deg for these tooth counts",
+                where="law.knots_deg[3]",
+                value=math.degrees(self.knots[3]),
+                limit=360 / lobes.n1,
+                unit="deg",
+            )
+        first, second, third = (float(width) for width in np.diff(self.knots))
+        k1 = self.knots[1]
+        a, mean = self.lowest, lobes.advance / lobes.period
+        # integral of (ratio - a)/p: the cubic's mean is half its rise
+        rise = 0.5 * (second + third)
+        weight = 0.5 * rise * first + second**2 / 6.0 + rise * third - third**2 / 6.0
+        p = (lobes.advance - a * lobes.period) / weight
+        if not p > 0.0:
+            raise InfeasibleError(
+                "the lowest ratio is not below the mean one",
+                where="law.lowest",
+                value=a,
+                limit=mean,
+                nearest=f"a lowest ratio below {mean:.10g}",
+            )
+        b = a + p * rise
+
+        def up(x: Jet) -> Jet:
+            t = x - k1
+            return (0.5 * p / second) * (t * t) + a
+
+        def down(x: Jet) -> Jet:
+            t = x - lobes.period
+            return (-0.5 * p / third) * (t * t) + b
+
+        pieces = [ARCS["cubic"].piece(b, a, 0.0, first), Piece(up), Piece(down)]
+        solved = {"p": p, "ratios[0]": b, "ratios[2]": a + 0.5 * p * second}
+        return make_law(lobes, self.knots, pieces, tolerances, solved)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fourier:
+    """Harmonics of a lobe: ``f = 1 + sum(a_k*cos(k*n1*phi1) + b_k*sin(k*n1*phi1))``.
+
+    Of the ratio: ``i21 = (n1/n2)*f``. Of phi2: ``dphi2`` over the mean ratio is ``phi1`` plus the
+    sums, in degrees, less their value at phi1 = 0. Both close by themselves.
+    """
+
+    of: str = param(
+        TEXT, default="ratio", choices=("ratio", "phi2"), doc="what the coefficients are of"
+    )
+    cosines: tuple[float, ...] = param(
+        NUMBER, default=(), doc="a_1, a_2, ...: shares of the mean ratio, or degrees of phi2"
+    )
+    sines: tuple[float, ...] = param(NUMBER, default=(), doc="b_1, b_2, ..., likewise")
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            If the ratio does not stay positive.
+        """
+        n, mean = lobes.n1, lobes.advance / lobes.period
+        if self.of == "ratio":  # their integrals are harmonics of phi2
+            waves = [(k, -b / (k * n), a / (k * n)) for k, a, b in self._harmonics()]
+        else:
+            waves = [(k, math.radians(a), math.radians(b)) for k, a, b in self._harmonics()]
+
+        def motion(x: Jet) -> Jet:
+            total = x
+            for k, a, b in waves:
+                total = total + (a * cos((k * n) * x) + b * sin((k * n) * x))
+            return mean * total
+
+        def ratio(x: Jet) -> Jet:
+            total = 0.0 * x + 1.0
+            for k, a, b in waves:
+                kn = float(k * n)
+                total = total + ((b * kn) * cos(kn * x) - (a * kn) * sin(kn * x))
+            return mean * total
+
+        return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances)
+
+    def _harmonics(self) -> list[tuple[int, float, float]]:
+        pairs = zip_longest(self.cosines, self.sines, fillvalue=0.0)
+        return [(k, a, b) for k, (a, b) in enumerate(pairs, start=1)]
+
+
+def _claims_multispeed() -> tuple[Claim, ...]:
+    degree = math.radians(1)
+    # 150*0.8 + 150*b + 60*(0.8 + b)/2 = 360 gives b = 1.2; quintic at a quarter: 53/512
+    return (
+        Claim(
+            parameters=Multispeed(
+                ratios=(0.8, "solve"),
+                angles=(150 * degree, 150 * degree),
+                transition=30 * degree,
+            ),
+            ratio={
+                0.0: 0.8,
+                2.0: 0.8,
+                165 * degree: 1.0,
+                157.5 * degree: 0.8 + 0.4 * 53 / 512,
+                4.0: 1.2,
+            },
+            motion={
+                150 * degree: 120 * degree,
+                180 * degree: 150 * degree,
+                2 * math.pi: 2 * math.pi,
+            },
+            continuity=2,
+        ),
+        Claim(
+            parameters=Multispeed(
+                ratios=(1.0, "solve"),
+                angles=(40 * degree, 100 * degree),
+                transition=20 * degree,
+                shape="cosine",
+                driven_travel=270 * degree,
+            ),
+            ratio={0.0: 1.0, 50 * degree: 1.5, 2.0: 2.0},
+            motion={40 * degree: 40 * degree, 160 * degree: 270 * degree},
+            continuity=1,
+        ),
+    )
+
+
+def _claims_polynomial() -> tuple[Claim, ...]:
+    """003 Table 2.6 as printed, for the nail machine's knots and a = 0.4."""
+    u, v, turn = math.radians(160), 1.5 * math.pi, 2 * math.pi
+    bottom = 16 * math.pi**2 - 4 * math.pi * v + 2 * u * v - 6 * math.pi * u - u * u
+    p = 24 * math.pi * 0.6 / bottom
+    b, middle = 0.4 + 0.5 * p * (turn - u), 0.4 + 0.5 * p * (v - u)
+    return (
+        Claim(
+            parameters=ThreePhasePolynomial(knots=(0.0, u, v, turn), lowest=0.4),
+            ratio={0.0: b, u: 0.4, v: middle, 0.5 * u: 0.5 * (b + 0.4)},
+            motion={
+                u: 0.5 * u * (b + 0.4),
+                turn: turn,
+                v: 0.5 * u * (b + 0.4) + (v - u) * (0.4 + p * (v - u) / 6),
+            },
+            continuity=1,
+        ),
+    )
+
+
+def _claims_fourier() -> tuple[Claim, ...]:
+    return (
+        Claim(
+            parameters=Fourier(cosines=(0.2, 0.1), sines=(0.05,)),
+            ratio={0.0: 1.3, math.pi: 0.9, math.pi / 2: 0.95},
+            motion={math.pi: math.pi + 0.1, math.pi / 2: math.pi / 2 + 0.25},
+            continuity=3,
+        ),
+        Claim(
+            parameters=Fourier(of="phi2", sines=(-9.0,)),
+            lobes=Lobes(2, 3),
+            ratio={0.0: 2 / 3 * (1 - math.pi / 10), math.pi / 4: 2 / 3},
+            motion={math.pi / 4: 2 / 3 * (math.pi / 4 - math.pi / 20), math.pi: 2 * math.pi / 3},
+            continuity=3,
+        ),
+    )
+
+
+register(
+    LawEntry(
+        name="multispeed",
+        parameters=Multispeed,
+        doc="constant ratios over given angles, joined by smooth transitions; closed or open",
+        continuity="C2 for quintic transitions, else C1",
+        source="003 section 1.1.3, fig. 1.6",
+        claims=_claims_multispeed,
+    )
+)
+register(
+    LawEntry(
+        name="three-phase-polynomial",
+        parameters=ThreePhasePolynomial,
+        doc="a cubic down, then two parabolas up; the highest ratio follows from closure",
+        continuity="C1 at the knots",
+        source="003 section 2.2.2.4, eq. (2.25), Table 2.6",
+        claims=_claims_polynomial,
+    )
+)
+register(
+    LawEntry(
+        name="fourier",
+        parameters=Fourier,
+        doc="harmonics of the ratio or of phi2 over a lobe",
+        continuity="analytic",
+        source="003 figs. 1.11, 1.17 (centrodes by Fourier series)",
+        claims=_claims_fourier,
+    )
+)

@@ -1,0 +1,217 @@
+"""Centrodes in pieces: closed B-splines of the radius, and polygons with rounded corners."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.driver import Shape, law_of_centrode
+from gearcam.laws.span import Lobes
+from gearcam.numeric.jets import Jet, cos, sin, sqrt
+from gearcam.numeric.piecewise import Piece, piecewise
+from gearcam.numeric.roots import bracketed_root
+from gearcam.quantities import COUNT, NUMBER, param
+from gearcam.tolerances import Tolerances
+
+_BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
+"""Cubic B-spline on a segment: powers of t (rows) of four control values (columns)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BSpline:
+    """The radius is a closed uniform cubic B-spline over phi1 with these control values.
+
+    Control value k belongs to the angle ``k/n`` of a lobe; the curve stays between its neighbours'
+    values, and moving one moves the centrode only near it.
+    """
+
+    radii: tuple[float, ...] = param(
+        NUMBER, gt=0, min_length=4, doc="control radii at equal angles over a lobe, at any scale"
+    )
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`."""
+        count = len(self.radii)
+        knots = np.linspace(0.0, lobes.period, count + 1)
+        control = np.array(self.radii)
+
+        def segment(k: int) -> Shape:
+            powers = _BASIS @ control[np.arange(k - 1, k + 3) % count]
+
+            def radius(x: Jet) -> Jet:
+                t = (x - float(knots[k])) * (count / lobes.period)
+                c = [float(value) for value in powers]
+                return c[0] + t * (c[1] + t * (c[2] + t * c[3]))
+
+            return radius
+
+        return law_of_centrode([segment(k) for k in range(count)], knots, lobes, tolerances)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoundedPolygon:
+    """A regular polygon whose corners are arcs; phi1 = 0 at the middle of a side.
+
+    With the corner radius c and the distance h of a side from the shaft, both over the centre
+    distance, the sides are ``h/cos(phi1)`` and the corners circles of radius c about a point at
+    ``d = (h - c)/cos(pi/n)``. Closure decides h.
+    """
+
+    corners: int = param(COUNT, ge=3, le=100, doc="number of corners of the driver")
+    corner_radius: float = param(
+        NUMBER, gt=0, lt=1, doc="radius of the corners over the centre distance"
+    )
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            If the corners do not fit the lobes of the tooth counts, or are too round.
+        """
+        if self.corners % lobes.n1:
+            raise InfeasibleError(
+                "the corners do not fit the tooth counts",
+                where="law.corners",
+                value=float(self.corners),
+                limit=float(lobes.n1),
+                nearest=f"a multiple of {lobes.n1} corners",
+            )
+        largest = lobes.n1 / (lobes.n1 + lobes.n2)
+        if not self.corner_radius < largest:
+            raise InfeasibleError(
+                "the corners are rounder than a circular wheel",
+                where="law.corner_radius",
+                value=self.corner_radius,
+                limit=largest,
+                nearest=f"a corner radius below {largest:.10g} centre distances",
+            )
+        height = self._side(lobes)
+        knots, pieces = self._pieces(height)
+        repeats = self.corners // lobes.n1
+        sector = 2.0 * math.pi / self.corners
+        grid = np.concatenate([knots[:-1] + k * sector for k in range(repeats)])
+        moved = [_moved(piece, k * sector) for k in range(repeats) for piece in pieces]
+        solved = {"side_distance_over_center_distance": height}
+        return make_law(lobes, np.append(grid, lobes.period), moved, tolerances, solved)
+
+    def _pieces(self, h: float) -> tuple[np.ndarray, list[Shape]]:
+        """Knots and ratios of one sector, from the middle of a side to that of the next."""
+        half = math.pi / self.corners
+        c, d = self.corner_radius, (h - self.corner_radius) / math.cos(half)
+        turn = math.atan2((h - c) * math.tan(half), h)
+
+        def side(middle: float) -> Shape:
+            return lambda x: h / (cos(x - middle) - h)
+
+        def corner(x: Jet) -> Jet:
+            across = d * sin(x - half)
+            radius = d * cos(x - half) + sqrt(c * c - across * across)
+            return radius / (1.0 - radius)
+
+        knots = np.array([0.0, turn, 2.0 * half - turn, 2.0 * half])
+        return knots, [side(0.0), corner, side(2.0 * half)]
+
+    def _side(self, lobes: Lobes) -> float:
+        """Solve h: the driven angle grows with it, from that of a circle of the corner's radius."""
+        nodes, weights = np.polynomial.legendre.leggauss(64)
+        # At most the corner reaches the other shaft: d + c = 1.
+        half = math.pi / self.corners
+        highest = self.corner_radius + (1.0 - self.corner_radius) * math.cos(half)
+
+        def excess(heights: np.ndarray) -> np.ndarray:
+            found = []
+            for h in np.atleast_1d(heights):
+                knots, shapes = self._pieces(float(h))
+                ratio = piecewise(knots, [Piece(shape) for shape in shapes])
+                # the corner's peak is sharp where it comes near the other shaft: graded parts
+                grid = np.concatenate([knots[0] + np.linspace(0, 1, 5) * knots[1], _graded(knots)])
+                width = 0.5 * np.diff(grid)
+                x = grid[:-1] + width * (1.0 + nodes[:, None])
+                driven = 2.0 * float((weights @ ratio(x)) @ width)
+                found.append(driven - 2.0 * math.pi / self.corners * lobes.n1 / lobes.n2)
+            return np.array(found).reshape(np.shape(heights))
+
+        edge = 1e-6 * (highest - self.corner_radius)
+        low = np.array(self.corner_radius * (1.0 + 1e-12))
+        return float(bracketed_root(excess, low, np.array(highest - edge), 1e-16))
+
+
+def _graded(knots: np.ndarray) -> np.ndarray:
+    """Places from the end of a side to the middle of its corner, denser towards the middle."""
+    middle = 0.5 * (knots[1] + knots[2])
+    return middle - (middle - knots[1]) * 0.5 ** np.append(np.arange(1, 24), np.inf)
+
+
+def _moved(shape: Shape, angle: float) -> Piece:
+    return Piece(lambda x: shape(x - angle))
+
+
+def _claims_spline() -> tuple[Claim, ...]:
+    # equal control values give a circle
+    circle = Claim(
+        parameters=BSpline(radii=(2.0, 2.0, 2.0, 2.0)),
+        lobes=Lobes(2, 3),
+        ratio={0.0: 2 / 3, 1.0: 2 / 3},
+        motion={1.5: 1.0, 3 * math.pi: 2 * math.pi},
+        continuity=3,
+    )
+    # r = 1 at 0 and pi, (1 + 4*1.2 + 1)/6 at pi/2; c by quadrature with 30 digits
+    c, top, low = 2.01705534812207634097601527257, 17 / 15, 13 / 15
+    wave = Claim(
+        parameters=BSpline(radii=(1.0, 1.2, 1.0, 0.8)),
+        ratio={
+            0.0: 1 / (c - 1),
+            math.pi: 1 / (c - 1),
+            math.pi / 2: top / (c - top),
+            1.5 * math.pi: low / (c - low),
+        },
+        motion={2 * math.pi: 2 * math.pi},
+        continuity=2,
+    )
+    return circle, wave
+
+
+def _claims_polygon() -> tuple[Claim, ...]:
+    # h and the corner's middle d by quadrature with 30 digits
+    h, d, c = 0.448203891095789116482924270672, 0.398153761100542820776691342953, 1 / 6
+    return (
+        Claim(
+            parameters=RoundedPolygon(corners=4, corner_radius=c),
+            ratio={
+                0.0: h / (1 - h),
+                math.pi / 2: h / (1 - h),
+                math.pi / 4: (d + c) / (1 - d - c),
+                0.5: h / (math.cos(0.5) - h),
+            },
+            motion={math.pi / 4: math.pi / 4, math.pi / 2: math.pi / 2, 2 * math.pi: 2 * math.pi},
+            continuity=1,
+        ),
+    )
+
+
+register(
+    LawEntry(
+        name="bspline",
+        parameters=BSpline,
+        doc="a closed cubic B-spline of the driver's radius, by control values",
+        continuity="C2",
+        source="003 section 1.2; uniform cubic B-splines",
+        claims=_claims_spline,
+    )
+)
+register(
+    LawEntry(
+        name="rounded-polygon",
+        parameters=RoundedPolygon,
+        doc="a regular polygon with rounded corners, phi1 = 0 at the middle of a side",
+        continuity="C1: the curvature jumps from sides to corners",
+        source="003 fig. 1.7 (square wheels); closure solved for the side's distance",
+        claims=_claims_polygon,
+    )
+)

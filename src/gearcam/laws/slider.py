@@ -1,0 +1,246 @@
+"""The crank angle that moves a slide as desired (003 section 1.4.1).
+
+A crank of radius 1 with a rod of length `rod` moves a slide; `s` is the slide's way from the dead
+centre that is farther from the shaft, 0 to 2, and ``d = 1 + rod - s`` its distance from the shaft.
+The triangle of crank, rod and d gives the crank angle psi without cancellation,
+
+    sin(psi/2)^2 = s*(2*rod - s)/(4*d),   cos(psi/2)^2 = (2 - s)*(2 + 2*rod - s)/(4*d).
+
+At a dead centre s has a double zero, and its root changes sign there: nearby, ``sqrt(s)`` is
+``t*sqrt(s/t^2)`` with s as a Taylor series in the angle t from the dead centre.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.span import angle_text
+from gearcam.numeric.jets import Jet, asin, atan, sqrt
+from gearcam.numeric.piecewise import Piece, extremes
+
+Array = NDArray[np.float64]
+Motion = Callable[[Jet], Jet]
+
+_ORDER = 30
+"""Terms of the Taylor series at a dead centre."""
+
+_TAIL = 6
+"""Last terms of the series, by which its reach is judged."""
+
+_WIDEST = 0.3
+_NARROWEST = 0.02
+"""Angles about a dead centre, rad, over which its series is used: as far as it holds to rounding,
+and no less than where the closed form beside it loses digits."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slide:
+    """A slide's desired motion over one turn, in crank radii.
+
+    Parameters
+    ----------
+    way : callable
+        s(phi1), 0 to 2.
+    rod : float
+        Length of the rod, in crank radii.
+    outer, inner : float, rad
+        Driver angles of the dead centres, far from the shaft and near it.
+    period : float, rad
+        After which the motion repeats.
+    """
+
+    way: Motion
+    rod: float
+    outer: float
+    inner: float
+    period: float
+
+
+def make_slide(shape: Motion, rod: float, period: float) -> tuple[Slide, float]:
+    """Scale a desired motion to a crank.
+
+    Parameters
+    ----------
+    shape : callable
+        The slide's way at any scale and from any place, rising towards the shaft.
+    rod : float
+        Length of the rod, in crank radii.
+    period : float, rad
+        After which it repeats.
+
+    Returns
+    -------
+    slide : Slide
+        In crank radii.
+    radius : float
+        Crank radius in the unit of the way: half the stroke.
+
+    Raises
+    ------
+    InfeasibleError
+        If the way does not go once forth and once back.
+    """
+
+    def function(x: Array) -> tuple[Array, Array]:
+        value, slope = shape(Jet.variable(x, 1)).derivatives()
+        return value[None], slope[None]
+
+    ((places, values),) = extremes(function, [0.0, period])
+    turns = _dead_centres(places, values, period, function)
+    if len(turns) != 2:
+        raise InfeasibleError(
+            "the slide must go forth and back once: a crank has two dead centres",
+            where="law.slide",
+            value=float(len(turns)),
+            limit=2.0,
+            nearest="this is how often the slide turns back over one lobe of the driver",
+        )
+    (outer, low), (inner, high) = sorted(turns, key=lambda turn: turn[1])
+    radius = 0.5 * (high - low)
+
+    def way(x: Jet) -> Jet:
+        return (shape(x) - low) / radius
+
+    return Slide(way=way, rod=rod, outer=outer, inner=inner, period=period), radius
+
+
+def _dead_centres(
+    places: Array,
+    values: Array,
+    period: float,
+    function: Callable[[Array], tuple[Array, Array]],
+) -> list[tuple[float, float]]:
+    """Inner extremes, and the lobe's end where the slope changes its sign there too."""
+    found = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]
+    step = 1e-6 * period
+    before, after = function(np.array([period - step, step]))[1][0]
+    at_end = [x for x, _ in found if not step < x < period - step]
+    if before * after < 0.0 and not at_end:
+        found.append((0.0, float(function(np.zeros(1))[0][0, 0])))
+    return found
+
+
+def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
+    """Return the crank angle as a law's pieces.
+
+    Parameters
+    ----------
+    slide : Slide
+        The desired motion.
+
+    Returns
+    -------
+    knots : (n + 1,) array, rad
+        From 0 to the period.
+    pieces : list of n Piece
+        Its derivative over phi1, and itself.
+    start : float, rad
+        Crank angle from the outer dead centre at phi1 = 0.
+
+    Raises
+    ------
+    InfeasibleError
+        Where the motion rests at a dead centre or bends too sharply there.
+    """
+    near = {
+        "outer": (slide.outer, *_near(slide, slide.outer, 1.0)),
+        "inner": (slide.inner, *_near(slide, slide.inner, -1.0)),
+    }
+    period = slide.period
+    stretches: list[tuple[float, float, Motion]] = []
+    for kind, (middle, reach, motion) in near.items():
+        for turn in (-1, 0, 1):
+            place = middle + turn * period
+            stretches.append((place - reach, place + reach, _shifted(motion, turn * period)))
+        other = near["inner" if kind == "outer" else "outer"]
+        gap = (other[0] - middle) % period
+        for turn in (-1, 0, 1):
+            low = middle + turn * period + reach
+            high = middle + turn * period + gap - other[1]
+            stretches.append((low, high, _between(slide, 1.0 if kind == "outer" else -1.0)))
+    inside = sorted(
+        (max(low, 0.0), min(high, period), motion)
+        for low, high, motion in stretches
+        if min(high, period) - max(low, 0.0) > 1e-12
+    )
+    knots = np.array([low for low, _, _ in inside] + [period])
+    knots[0] = 0.0
+    pieces = [Piece(_slope(motion), motion) for _, _, motion in inside]
+    first = slide.way(Jet.variable(np.zeros(1), 1)).derivatives()
+    return knots, pieces, _start(slide, float(first[0][0]), float(first[1][0]))
+
+
+def _start(slide: Slide, s: float, slope: float) -> float:
+    sine = max(0.0, s * (2.0 * slide.rod - s))
+    cosine = max(0.0, (2.0 - s) * (2.0 + 2.0 * slide.rod - s))
+    angle = 2.0 * math.atan2(math.sqrt(sine), math.sqrt(cosine))
+    return angle if slope >= 0.0 else 2.0 * math.pi - angle
+
+
+def _between(slide: Slide, sign: float) -> Motion:
+    def motion(x: Jet) -> Jet:
+        s = slide.way(x)
+        sine, cosine = s * (2.0 * slide.rod - s), (2.0 - s) * (2.0 + 2.0 * slide.rod - s)
+        return (2.0 * sign) * atan(sqrt(sine / cosine))
+
+    return motion
+
+
+def _near(slide: Slide, place: float, sign: float) -> tuple[float, Motion]:
+    """Reach of the series about a dead centre, and psi there; sign -1 for the inner one."""
+    jet = slide.way(Jet.variable(np.array([place]), _ORDER))
+    c = np.array([float(np.ravel(value)[0]) for value in jet.c]) * sign
+    if not c[2] > 1e-6:
+        raise InfeasibleError(
+            "the slide rests at its dead centre, so that the crank would stand still there",
+            where=f"law.slide, {angle_text(place)}",
+            value=2.0 * float(c[2]),
+            limit=2e-6,
+            nearest="this is the second derivative of the way, in crank radii",
+        )
+    c = c[2:]
+    k, sizes = np.arange(len(c))[-_TAIL:], np.abs(c[-_TAIL:])
+    with np.errstate(divide="ignore"):
+        reach = float(min(_WIDEST, ((1e-17 * c[0] / sizes) ** (1.0 / k)).min()))
+    reach = min(reach, 0.2 * abs(((slide.inner - slide.outer) % slide.period) or math.inf))
+    if reach < _NARROWEST:
+        raise InfeasibleError(
+            "the slide's motion bends too sharply at its dead centre",
+            where=f"law.slide, {angle_text(place)}",
+            value=math.degrees(reach),
+            limit=math.degrees(_NARROWEST),
+            unit="deg",
+        )
+    rod = slide.rod
+
+    def motion(x: Jet) -> Jet:
+        t = x - place
+        total = 0.0 * t + float(c[-1])
+        for value in c[-2::-1]:
+            total = total * t + float(value)
+        small = t * t * total  # s, or 2 - s
+        s = small if sign > 0.0 else 2.0 - small
+        factor = (2.0 * rod - s) if sign > 0.0 else (2.0 + 2.0 * rod - s)
+        return 2.0 * asin(t * sqrt(total * factor / (4.0 * (1.0 + rod - s))))
+
+    return reach, motion
+
+
+def _shifted(motion: Motion, angle: float) -> Motion:
+    return lambda x: motion(x - angle)
+
+
+def _slope(motion: Motion) -> Motion:
+    """Return the derivative of a motion of jets."""
+
+    def slope(x: Jet) -> Jet:
+        more = motion(Jet.variable(x.c[0], x.order + 1))
+        return Jet([(k + 1) * value for k, value in enumerate(more.c[1:])])
+
+    return slope

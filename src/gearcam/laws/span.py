@@ -1,0 +1,208 @@
+"""How far a law reaches: lobes of a closed pair, or the way of an open one with its ends.
+
+A closed law repeats. An open one is continued beyond both ends, since the teeth there roll beyond
+them: by the logarithmic spiral that goes on with the end's ratio and slope (a circle where the
+slope is zero), so that the centrode has no corner.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.numeric.jets import Jet, exp, log
+from gearcam.numeric.piecewise import Piece, Piecewise
+
+_FLAT = 1e-9
+"""Growth of the radius in a radian below which the continued centrode is a circle: rounding."""
+
+_CLOSED_FORM = 1e-3
+"""Growth from which the closed form of the spiral's driven angle is better than an expansion."""
+
+_ROOM = 0.9
+"""Largest share of the room to either shaft that a continued centrode may use."""
+
+
+@dataclass(frozen=True)
+class Lobes:
+    """How often the ratio repeats in a turn: n1 times of the driver, n2 of the driven wheel.
+
+    Parameters
+    ----------
+    n1, n2 : int
+        The tooth counts' ratio in lowest terms.
+    """
+
+    n1: int
+    n2: int
+    closed: ClassVar[bool] = True
+
+    @property
+    def period(self) -> float:
+        """Driver angle of one lobe, rad."""
+        return 2.0 * math.pi / self.n1
+
+    @property
+    def advance(self) -> float:
+        """Driven angle of one lobe, rad."""
+        return 2.0 * math.pi / self.n2
+
+
+@dataclass(frozen=True)
+class Travel:
+    """The way of an open pair.
+
+    Parameters
+    ----------
+    period, advance : float, rad
+        How far the driver and the driven wheel turn.
+    """
+
+    period: float
+    advance: float
+    n1: ClassVar[int] = 1
+    n2: ClassVar[int] = 1
+    closed: ClassVar[bool] = False
+
+
+ONE_LOBE: Final = Lobes(1, 1)
+"""Of equal tooth counts."""
+
+Span = Lobes | Travel
+"""Closed or open."""
+
+
+def demand_equal(lobes: Lobes) -> None:
+    """Refuse an open pair with unequal tooth counts: both centrodes have the same length.
+
+    Parameters
+    ----------
+    lobes : Lobes
+        Of the tooth counts.
+
+    Raises
+    ------
+    InfeasibleError
+        If they are unequal.
+    """
+    if lobes != ONE_LOBE:
+        raise InfeasibleError(
+            "an open pair has equal tooth counts: its centrodes are equally long",
+            where="pair.teeth",
+            value=lobes.n1 / lobes.n2,
+            limit=1.0,
+            nearest="give the same number twice",
+        )
+
+
+def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | None) -> Span:
+    """Return the way of an open pair where both travels, rad, are given, else the lobes.
+
+    Parameters
+    ----------
+    lobes : Lobes
+        Of the tooth counts.
+    driver_travel, driven_travel : float or None, rad
+        Both or none.
+
+    Returns
+    -------
+    Lobes or Travel
+
+    Raises
+    ------
+    InfeasibleError
+        For an open pair of unequal tooth counts.
+    """
+    if driver_travel is None or driven_travel is None:
+        return lobes
+    demand_equal(lobes)
+    return Travel(driver_travel, driven_travel)
+
+
+def travel_problems(
+    driver_travel: float | None, driven_travel: float | None
+) -> Iterator[tuple[str, int | None, str, str]]:
+    """Yield what is wrong where one of two travels is given alone: field, index, message, allowed.
+
+    Parameters
+    ----------
+    driver_travel, driven_travel : float or None, rad
+        As the design says.
+
+    Yields
+    ------
+    tuple
+        For a law's ``problems``.
+    """
+    if (driver_travel is None) != (driven_travel is None):
+        missing = "driven_travel" if driven_travel is None else "driver_travel"
+        rule = "driver_travel_deg and driven_travel_deg for an open pair, neither for a closed one"
+        yield missing, None, "is missing beside the other travel", rule
+
+
+def angle_text(angle: float) -> str:
+    """Return a driver angle, rad, as a place for messages."""
+    return f"phi1 = {round(math.degrees(angle), 6) + 0.0:.6g} deg"
+
+
+def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[NDArray[np.float64], list[Piece]]:
+    """Continue an open ratio beyond both ends.
+
+    Parameters
+    ----------
+    ratio : Piecewise
+        i21 over the way, positive.
+    pieces : list of Piece
+        Its pieces.
+
+    Returns
+    -------
+    knots : (n + 3,) array, rad
+        From before 0 to beyond the way.
+    pieces : list of n + 2 Piece
+        With a spiral before and behind. Each is as long as the centrode itself, or as the room
+        between the shafts allows.
+    """
+    length = _length(ratio)
+    last = len(ratio.knots) - 1
+    first, before = _end(float(ratio.knots[0]), ratio.side(0, 1, 1), -1.0, length)
+    final, behind = _end(float(ratio.knots[last]), ratio.side(last, -1, 1), 1.0, length)
+    return np.concatenate([[first], ratio.knots, [final]]), [before, *pieces, behind]
+
+
+def _length(ratio: Piecewise) -> float:
+    """Length of the centrode for unit centre distance, to a few digits."""
+    nodes, weights = np.polynomial.legendre.leggauss(48)
+    half = 0.5 * np.diff(ratio.knots)
+    x = ratio.knots[:-1] + half * (1.0 + nodes[:, None])
+    i, slope = ratio.derivatives(x, 1)
+    return float((weights @ (np.hypot(i, slope / (1.0 + i)) / (1.0 + i))) @ half)
+
+
+def _end(place: float, end: list[float], side: float, length: float) -> tuple[float, Piece]:
+    """Angle to which a spiral continues an end (ratio and slope given), and the spiral."""
+    ratio, slope = end
+    radius = ratio / (1.0 + ratio)
+    growth = slope / (ratio * (1.0 + ratio))
+    if abs(growth) < _FLAT:
+        piece = Piece(lambda x: 0.0 * x + ratio, lambda x: ratio * x)
+        return place + side * length / radius, piece
+    outward, stretch = side * growth, math.hypot(1.0, growth)
+    room = (1.0 - radius) if outward > 0.0 else radius
+    rise = math.copysign(min(length * abs(outward) / stretch, _ROOM * room), outward)
+
+    def share(x: Jet) -> Jet:
+        return radius * exp(growth * (x - place))
+
+    piece = Piece(
+        lambda x: share(x) / (1.0 - share(x)),
+        (lambda x: (-1.0 / growth) * log(1.0 - share(x))) if abs(growth) > _CLOSED_FORM else None,
+    )
+    return place + side * math.log1p(rise / radius) / outward, piece

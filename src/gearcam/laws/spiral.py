@@ -1,0 +1,89 @@
+"""Logarithmic spirals: open wheels whose radii grow by the same share in every equal angle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.span import Lobes, Travel, demand_equal
+from gearcam.numeric.jets import Jet, exp, log
+from gearcam.numeric.piecewise import Piece
+from gearcam.quantities import ANGLE, NUMBER, param
+from gearcam.tolerances import Tolerances
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogSpiral:
+    """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k, growing the other way.
+
+    With ``u = r1/A = i/(1 + i)`` at both ends, the driven wheel turns by
+    ``ln((1 - u0)/(1 - u1))/k`` and the driver by ``ln(u1/u0)/k``, so that its travel gives k.
+    """
+
+    ratios: tuple[float, float] = param(NUMBER, gt=0, doc="i21 at the start and at the end")
+    driven_travel: float = param(ANGLE, gt=0, le=360, doc="how far the driven wheel turns")
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            For unequal tooth counts or equal ratios.
+        """
+        demand_equal(lobes)
+        start, end = self.ratios
+        if start == end:
+            raise InfeasibleError(
+                "a spiral's ratio changes from start to end",
+                where="law.ratios",
+                value=end,
+                limit=start,
+                nearest='other ratios; a constant one is the law "constant"',
+            )
+        first = start / (1.0 + start)
+        growth = math.log((1.0 + end) / (1.0 + start)) / self.driven_travel
+        way = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
+
+        def share(x: Jet) -> Jet:
+            return first * exp(growth * x)
+
+        piece = Piece(
+            lambda x: share(x) / (1.0 - share(x)), lambda x: (-1.0 / growth) * log(1.0 - share(x))
+        )
+        solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(way)}
+        span = Travel(way, self.driven_travel)
+        return make_law(span, [0.0, way], [piece], tolerances, solved)
+
+
+def _claims() -> tuple[Claim, ...]:
+    # from u = 1/3 to 2/3 both wheels turn alike: r1 doubles while r2 halves
+    k = math.log(2.0) / 2.0
+    return (
+        Claim(
+            parameters=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
+            ratio={0.0: 0.5, 1.0: 1 / (3 / math.sqrt(2) - 1), 2.0: 2.0},
+            motion={2.0: 2.0, 1.0: math.log((2 / 3) / (1 - math.sqrt(2) / 3)) / k},
+            continuity=3,
+        ),
+        Claim(
+            parameters=LogSpiral(ratios=(3.0, 1.0), driven_travel=1.0),
+            ratio={0.0: 3.0, math.log(1.5) / math.log(2): 1.0},
+            motion={math.log(1.5) / math.log(2): 1.0},
+            continuity=3,
+        ),
+    )
+
+
+register(
+    LawEntry(
+        name="log-spiral",
+        parameters=LogSpiral,
+        doc="logarithmic spirals on an open pair, from one ratio to another",
+        continuity="analytic",
+        source="003 fig. 1.9; classical",
+        claims=_claims,
+    )
+)

@@ -1,0 +1,326 @@
+"""Measured or computed motions: a table of driver angles with ratios, driven angles or radii."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.driver import law_of_centrode
+from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import Piece, integrate
+from gearcam.numeric.shape_keeping import quintics
+from gearcam.quantities import ANGLE, NUMBER, TEXT, param
+from gearcam.tolerances import Tolerances
+
+Array = NDArray[np.float64]
+
+_ANGLE: Final = "phi1_deg"
+_VALUES: Final = ("ratio", "phi2_deg", "r1")
+_INLINE: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
+_FEWEST: Final = 6
+_MOST: Final = 20000
+
+
+class TableError(ValueError):
+    """A file that is no such table; the message says where and why."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """Points of a motion: in a CSV file, or in the design itself.
+
+    The curve through the points is C2 and rises only where they rise. A ratio is scaled so that it
+    closes, a driven angle must close, and a radius (at any scale) gives the centre distance.
+    """
+
+    file: str | None = param(
+        TEXT, default=None, doc="CSV file: phi1_deg and one of ratio, phi2_deg, r1"
+    )
+    phi1: tuple[float, ...] | None = param(
+        ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="driver angles, without a file"
+    )
+    ratio: tuple[float, ...] | None = param(
+        NUMBER, default=None, gt=0, min_length=_FEWEST, doc="i21 at phi1, scaled so that it closes"
+    )
+    phi2: tuple[float, ...] | None = param(
+        ANGLE, default=None, min_length=_FEWEST, doc="driven angles at phi1; must close"
+    )
+    r1: tuple[float, ...] | None = param(
+        NUMBER, default=None, gt=0, min_length=_FEWEST, doc="driver's radii at phi1, at any scale"
+    )
+    driven_travel: float | None = param(
+        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
+    )
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        inline = [name for name in _INLINE if getattr(self, name) is not None]
+        rule = f"file, or phi1_deg with one of {', '.join(_VALUES)}"
+        if self.file is not None:
+            if inline or self.phi1 is not None:
+                yield "file", None, "the points are given twice", rule
+                return
+            try:
+                read_table(self.file)
+            except TableError as error:
+                columns = f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES)}"
+                yield "file", None, str(error), columns
+        elif self.phi1 is None or len(inline) != 1:
+            state = f"{' and '.join(inline) or 'no values'} {'are' if len(inline) > 1 else 'is'}"
+            yield "phi1", None, f"{state} given for phi1_deg" if inline else "no points", rule
+        elif len(getattr(self, inline[0])) != len(self.phi1):
+            count = len(getattr(self, inline[0]))
+            message = f"{count} values for {len(self.phi1)} angles"
+            yield inline[0], None, message, "one value for each angle"
+        else:
+            for index in np.flatnonzero(np.diff(self.phi1) <= 0.0)[:1]:
+                yield "phi1", int(index) + 1, "angles must rise", "more than the angle before"
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            If the file is not such a table any more, spans no lobe, or its motion cannot be made.
+        """
+        if self.file is None:
+            kind = next(name for name in _INLINE if getattr(self, name) is not None)
+            angles, values = np.array(self.phi1), np.array(getattr(self, kind))
+            kind = _INLINE[kind]
+        else:
+            try:
+                kind, angles, values = read_table(self.file)
+            except TableError as error:
+                raise InfeasibleError(str(error), where="law.file") from error
+        return law_of_points(kind, angles, values, lobes, self.driven_travel, tolerances)
+
+
+def read_table(file: str) -> tuple[str, Array, Array]:
+    """Read a table.
+
+    Parameters
+    ----------
+    file : str
+        Path of a CSV file; lines that begin with # are comments.
+
+    Returns
+    -------
+    kind : str
+        ``ratio``, ``phi2_deg`` or ``r1``.
+    angles, values : (n,) arrays, rad and rad or 1
+        As in the file, angles rising.
+
+    Raises
+    ------
+    TableError
+        With the line that is wrong.
+    """
+    try:
+        lines = Path(file).read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is not a text file in UTF-8"
+        raise TableError(f"cannot be read: {reason}") from error
+    rows = [(k, row) for k, row in enumerate(lines, start=1) if row.strip() and row[0] != "#"]
+    if not rows:
+        raise TableError("is empty")
+    head = [name.strip() for name in next(csv.reader([rows[0][1]]))]
+    kinds = [name for name in _VALUES if name in head]
+    if _ANGLE not in head or len(kinds) != 1 or len(set(head)) < len(head):
+        raise TableError(f"line {rows[0][0]}: the columns are {', '.join(head)}")
+    places = head.index(_ANGLE), head.index(kinds[0])
+    points = [_numbers(row, places, line) for line, row in rows[1:]]
+    if not _FEWEST <= len(points) <= _MOST:
+        raise TableError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
+    columns = np.array(points)
+    falling = np.flatnonzero(np.diff(columns[:, 0]) <= 0.0)
+    if falling.size:
+        raise TableError(f"line {rows[int(falling[0]) + 2][0]}: {_ANGLE} does not rise")
+    factor = math.pi / 180.0 if kinds[0] == "phi2_deg" else 1.0
+    return kinds[0], np.radians(columns[:, 0]), columns[:, 1] * factor
+
+
+def _numbers(row: str, places: tuple[int, int], line: int) -> tuple[float, float]:
+    cells = next(csv.reader([row]))
+    found = []
+    for place in places:
+        text = cells[place].strip() if place < len(cells) else ""
+        try:
+            found.append(float(text))
+        except ValueError:
+            raise TableError(f"line {line}: {text!r} is not a number") from None
+        if not math.isfinite(found[-1]):
+            raise TableError(f"line {line}: {text!r} is not finite")
+    return found[0], found[1]
+
+
+def law_of_points(
+    kind: str,
+    angles: Array,
+    values: Array,
+    lobes: Lobes,
+    driven_travel: float | None,
+    tolerances: Tolerances,
+) -> RatioLaw:
+    """Make a law from points.
+
+    Parameters
+    ----------
+    kind : {"ratio", "phi2_deg", "r1"}
+        What the values are.
+    angles, values : (n,) arrays, rad and rad or 1
+        Points; angles rise from 0.
+    lobes : Lobes
+        Of the tooth counts.
+    driven_travel : float or None, rad
+        Of an open pair.
+    tolerances : Tolerances
+        Accuracy.
+
+    Returns
+    -------
+    RatioLaw
+
+    Raises
+    ------
+    InfeasibleError
+        If they span no lobe, do not repeat, or their motion cannot be made.
+    """
+    span = _span(angles, lobes, driven_travel)
+    knots = angles.copy()
+    knots[0], knots[-1] = 0.0, span.period
+    rise = float(values[-1] - values[0])
+    if kind != "phi2_deg":
+        _demand_repeat(values, span)
+        _demand_positive(kind, angles, values)
+        rise = 0.0
+    powers = quintics(knots, values, rise if span.closed else None)
+    shapes = [_polynomial(row, float(low)) for row, low in zip(powers, knots, strict=False)]
+    if kind == "r1":
+        return law_of_centrode(shapes, knots, span, tolerances)
+    if kind == "phi2_deg":
+        slopes = powers[:, 1:] * np.arange(1, 6)
+        ratios = [_polynomial(row, float(low)) for row, low in zip(slopes, knots, strict=False)]
+        pieces = [Piece(*both) for both in zip(ratios, shapes, strict=True)]
+        return make_law(span, knots, pieces, tolerances)
+    areas = np.pad(powers / np.arange(1, 7), ((0, 0), (1, 0)))
+    sums = [_polynomial(row, float(low)) for row, low in zip(areas, knots, strict=False)]
+    total = integrate(knots, [Piece(*both) for both in zip(shapes, sums, strict=True)], 0.0).last
+    factor = span.advance / total
+    scaled = [
+        Piece(_times(shape, factor), _times(area, factor))
+        for shape, area in zip(shapes, sums, strict=True)
+    ]
+    return make_law(span, knots, scaled, tolerances, {"ratio_factor": factor})
+
+
+def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
+    if abs(angles[0]) > 1e-9:
+        raise InfeasibleError(
+            "the table does not begin at phi1 = 0",
+            where="law.file",
+            value=math.degrees(angles[0]),
+            limit=0.0,
+            unit="deg",
+        )
+    if driven_travel is not None:
+        demand_equal(lobes)
+        return Travel(float(angles[-1]), driven_travel)
+    if abs(angles[-1] - lobes.period) > 1e-9:
+        raise InfeasibleError(
+            "the table must span one lobe of the tooth counts",
+            where="law.file, last phi1_deg",
+            value=math.degrees(angles[-1]),
+            limit=math.degrees(lobes.period),
+            unit="deg",
+            nearest="its last row is at the limit; an open pair gives driven_travel_deg",
+        )
+    return lobes
+
+
+def _demand_repeat(values: Array, span: Span) -> None:
+    if span.closed and abs(values[-1] - values[0]) > 1e-9 * abs(values[0]):
+        raise InfeasibleError(
+            "the last value of the table is not the first",
+            where="law.file",
+            value=float(values[-1]),
+            limit=float(values[0]),
+        )
+
+
+def _demand_positive(kind: str, angles: Array, values: Array) -> None:
+    if not (values > 0.0).all():
+        worst = int(np.argmin(values))
+        raise InfeasibleError(
+            f"{kind} is not positive",
+            where=f"law.file, {angle_text(angles[worst])}",
+            value=float(values[worst]),
+            limit=0.0,
+        )
+
+
+def _polynomial(powers: Array, low: float) -> Callable[[Jet], Jet]:
+    c = [float(value) for value in powers]
+
+    def shape(x: Jet) -> Jet:
+        t = x - low
+        total = 0.0 * t + c[-1]
+        for value in c[-2::-1]:
+            total = total * t + value
+        return total
+
+    return shape
+
+
+def _times(shape: Callable[[Jet], Jet], factor: float) -> Callable[[Jet], Jet]:
+    return lambda x: factor * shape(x)
+
+
+def _claims() -> tuple[Claim, ...]:
+    turn = 2 * math.pi
+    angles = tuple(turn * k / 8 for k in range(9))
+    # points on a straight line give a line; values at the points are kept
+    waves = tuple(a - 0.1 * math.sin(a) for a in angles)
+    return (
+        Claim(
+            parameters=Table(phi1=angles, ratio=(3.0,) * 9),
+            lobes=Lobes(1, 2),
+            ratio={0.0: 0.5, 1.0: 0.5, 5.0: 0.5},
+            motion={1.0: 0.5, turn: math.pi},
+            continuity=3,
+        ),
+        Claim(
+            parameters=Table(phi1=angles, phi2=waves),
+            ratio={},
+            motion=dict(zip(angles, waves, strict=True)),
+            continuity=1,
+        ),
+        Claim(
+            parameters=Table(phi1=angles, r1=tuple(2.0 + 0.2 * math.cos(a) for a in angles)),
+            ratio={},
+            motion={turn: turn, math.pi: math.pi},
+            continuity=2,
+        ),
+    )
+
+
+register(
+    LawEntry(
+        name="table",
+        parameters=Table,
+        doc="points of the ratio, the driven angle or the driver's radius, from a CSV file",
+        continuity="C2 in what is given; so C1 where it is phi2",
+        source="quintics that keep the shape of the points (`gearcam.numeric.shape_keeping`)",
+        claims=_claims,
+    )
+)

@@ -1,0 +1,100 @@
+"""Arcs that carry a ratio from one value to another between two knots.
+
+An arc from `start` to `end` over ``[low, low + width]`` has slope zero at both ends, but for the
+sine, which starts with a slope. Each knows its mean, ``(1 - share)*start + share*end``, so that
+closure is linear in ratios and knots.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from gearcam.numeric.jets import Jet, cos, sin
+from gearcam.numeric.piecewise import Piece
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arc:
+    """A shape of arc.
+
+    Parameters
+    ----------
+    piece : callable
+        ``piece(start, end, low, width)`` returns the arc.
+    share : float
+        Weight of the end value in the arc's mean.
+    """
+
+    piece: Callable[[float, float, float, float], Piece]
+    share: float = 0.5
+
+
+def _cosine(start: float, end: float, low: float, width: float) -> Piece:
+    """003 eqs. (2.1), (2.17) with Tables 2.2, 2.4."""
+    mean, half, speed = 0.5 * (start + end), 0.5 * (start - end), math.pi / width
+
+    def ratio(x: Jet) -> Jet:
+        return half * cos(speed * (x - low)) + mean
+
+    def motion(x: Jet) -> Jet:
+        return mean * x + (half / speed) * sin(speed * (x - low))
+
+    return Piece(ratio, motion)
+
+
+def _cubic(start: float, end: float, low: float, width: float) -> Piece:
+    """003 eq. (2.13) with Table 2.3, written on the unit interval."""
+    rise = end - start
+
+    def ratio(x: Jet) -> Jet:
+        t = (x - low) / width
+        return rise * (t * t * (3.0 - 2.0 * t)) + start
+
+    def motion(x: Jet) -> Jet:
+        t = (x - low) / width
+        return (t * (start + rise * (t * t * (1.0 - 0.5 * t)))) * width
+
+    return Piece(ratio, motion)
+
+
+def _quintic(start: float, end: float, low: float, width: float) -> Piece:
+    """``10*t^3 - 15*t^4 + 6*t^5``: curvature of the ratio zero at both ends too."""
+    rise = end - start
+
+    def ratio(x: Jet) -> Jet:
+        t = (x - low) / width
+        return rise * (t * t * t * (10.0 + t * (6.0 * t - 15.0))) + start
+
+    def motion(x: Jet) -> Jet:
+        t = (x - low) / width
+        return (t * (start + rise * (t * t * t * (2.5 + t * (t - 3.0))))) * width
+
+    return Piece(ratio, motion)
+
+
+def _sine(start: float, end: float, low: float, width: float) -> Piece:
+    """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
+    rise, speed = end - start, 0.5 * math.pi / width
+
+    def ratio(x: Jet) -> Jet:
+        return rise * sin(speed * (x - low)) + start
+
+    def motion(x: Jet) -> Jet:
+        return start * x - (rise / speed) * cos(speed * (x - low))
+
+    return Piece(ratio, motion)
+
+
+ARCS: Final[dict[str, Arc]] = {
+    "cosine": Arc(piece=_cosine),
+    "cubic": Arc(piece=_cubic),
+    "quintic": Arc(piece=_quintic),
+    "sine": Arc(piece=_sine, share=2.0 / math.pi),
+}
+"""The shapes, by their names in files."""
+
+SMOOTH: Final = ("cosine", "cubic", "quintic")
+"""Those without a slope at either end."""

@@ -1,0 +1,114 @@
+"""Curves through points that keep their shape: smooth, and rising wherever the points rise.
+
+Between two points runs a quintic with given slopes and curvatures at both, so that the curve is C2.
+Slopes and curvatures come from quartics through five neighbours, and are lessened where the
+quintic's derivative could change its sign between points that rise (or fall): its Bernstein
+coefficients on the interval are kept on one side, which is enough.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_STENCIL = 5
+
+
+def quintics(x: Array, y: Array, rise: float | None) -> Array:
+    """Return the quintics through points.
+
+    Parameters
+    ----------
+    x : (n + 1,) array
+        Rising, n at least 4.
+    y : (n + 1,) array
+        Values.
+    rise : float or None
+        Of a curve that repeats: by how much it rises over ``x[-1] - x[0]``, as ``y[-1] - y[0]``
+        does; None for one that does not repeat.
+
+    Returns
+    -------
+    (n, 6) array
+        Coefficients of the powers of ``x - x[k]`` on interval k.
+    """
+    h, secant = np.diff(x), np.diff(y) / np.diff(x)
+    slope, bend = _estimates(x, y, rise)
+    slope = _limited_slopes(slope, secant, rise is not None)
+    bend = _limited_bends(slope, bend, secant, h, rise is not None)
+    d0, d1, s0, s1 = slope[:-1], slope[1:], bend[:-1], bend[1:]
+    # the end conditions on what a parabola from the left end misses
+    miss = secant - d0 - 0.5 * s0 * h
+    turn, gap = d1 - d0 - s0 * h, s1 - s0
+    return np.stack(
+        [
+            y[:-1],
+            d0,
+            0.5 * s0,
+            (10.0 * miss - 4.0 * turn + 0.5 * gap * h) / h**2,
+            (-15.0 * miss + 7.0 * turn - gap * h) / h**3,
+            (6.0 * miss - 3.0 * turn + 0.5 * gap * h) / h**4,
+        ],
+        axis=1,
+    )
+
+
+def _estimates(x: Array, y: Array, rise: float | None) -> tuple[Array, Array]:
+    """Slopes and curvatures at the points, from the quartic through five of them."""
+    count = len(x)
+    if rise is None:
+        first = np.clip(np.arange(count) - _STENCIL // 2, 0, count - _STENCIL)
+        index = first[:, None] + np.arange(_STENCIL)
+        xs, ys = x[index], y[index]
+    else:
+        n = count - 1
+        index = np.arange(count)[:, None] + np.arange(_STENCIL) - _STENCIL // 2
+        turns, rest = np.divmod(index, n)
+        xs, ys = x[rest] + turns * (x[-1] - x[0]), y[rest] + turns * rise
+    scale = np.abs(xs - x[:, None]).max(axis=1)
+    t = (xs - x[:, None]) / scale[:, None]
+    powers = np.linalg.solve(t[:, :, None] ** np.arange(_STENCIL), (ys - y[:, None])[..., None])
+    return powers[:, 1, 0] / scale, 2.0 * powers[:, 2, 0] / scale**2
+
+
+def _sides(secant: Array, repeats: bool) -> tuple[Array, Array]:
+    """Secants before and after each point; where there is none, the other side's."""
+    ends = (secant[-1], secant[0]) if repeats else (secant[0], secant[-1])
+    return np.append(ends[0], secant), np.append(secant, ends[1])
+
+
+def _limited_slopes(slope: Array, secant: Array, repeats: bool) -> Array:
+    """Keep slopes where a monotonic quintic exists: d0 + d1 at most 2.5 secants."""
+    before, after = _sides(secant, repeats)
+    least = np.minimum(np.abs(before), np.abs(after))
+    rising = before * after > 0.0
+    slope = np.where(rising & (slope * before < 0.0), 0.0, slope)
+    slope = np.clip(slope, -2.5 * least, 2.5 * least)
+    total = np.abs(slope[:-1]) + np.abs(slope[1:])
+    share = np.minimum(1.0, 2.5 * np.abs(secant) / np.maximum(total, np.finfo(float).tiny))
+    return slope * np.minimum(*_sides(share, repeats))
+
+
+def _limited_bends(slope: Array, bend: Array, secant: Array, h: Array, repeats: bool) -> Array:
+    """Keep curvatures so that no Bernstein coefficient of the derivative changes its sign.
+
+    Those are ``d0, d0 + h*s0/4, 5*secant - 2*d0 - 2*d1 - h*(s0 - s1)/4, d1 - h*s1/4, d1``.
+    """
+    sign = np.where(secant < 0.0, -1.0, 1.0)
+    d0, d1 = sign * slope[:-1], sign * slope[1:]
+    spare = np.maximum(5.0 * np.abs(secant) - 2.0 * (d0 + d1), 0.0)
+    # bounds of s0 and s1 from their interval, in the direction in which it rises
+    low0, high0 = -4.0 * np.maximum(d0, 0.0) / h, 2.0 * spare / h
+    low1, high1 = -2.0 * spare / h, 4.0 * np.maximum(d1, 0.0) / h
+    low0, high0 = np.where(sign > 0, low0, -high0), np.where(sign > 0, high0, -low0)
+    low1, high1 = np.where(sign > 0, low1, -high1), np.where(sign > 0, high1, -low1)
+    # an interval whose ends slope against it has an extreme anyway
+    free = (d0 < 0.0) | (d1 < 0.0)
+    low0, low1 = (np.where(free, -np.inf, v) for v in (low0, low1))
+    high0, high1 = (np.where(free, np.inf, v) for v in (high0, high1))
+    none = (low1[-1], high1[-1], low0[0], high0[0]) if repeats else (-np.inf, np.inf) * 2
+    low = np.maximum(np.append(low0, none[2]), np.append(none[0], low1))
+    high = np.minimum(np.append(high0, none[3]), np.append(none[1], high1))
+    return np.clip(bend, low, np.maximum(low, high))
