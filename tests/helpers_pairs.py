@@ -31,6 +31,8 @@ def job(
     bores: tuple[float, float] | None = None,
     limits: dict[str, float] | None = None,
     files: tuple[str, ...] = ("csv",),
+    x: float = 0.0,
+    backlash: float = 0.0,
 ) -> GearPairJob:
     """Return the job of a design made in Python; lengths in mm, limits in inner units."""
     name = next(name for name, entry in LAWS.items() if entry.parameters is type(law))
@@ -41,7 +43,9 @@ def job(
             name="sample",
             law_type=name,
             law=law,
-            pair=PairSpec(center_distance=distance, module=module, teeth=teeth),
+            pair=PairSpec(
+                center_distance=distance, module=module, teeth=teeth, x=x, backlash=backlash
+            ),
             rack=rack or Rack(),
             blank=Blank(bore_diameter=bores),
             limits=limits or {},

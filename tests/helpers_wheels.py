@@ -78,7 +78,7 @@ def toothings(name: str) -> tuple[Toothing, Toothing]:
 def outline(name: str, wheel: Wheel, tolerance: float = 1e-4) -> Outline:
     """The outline of a wheel."""
     pair = toothings(name)
-    mate = pair[2 - wheel].cutter.reach
+    mate = pair[2 - wheel]
     return build_outline(pair[wheel - 1], mate, tolerance, DEFAULT)
 
 

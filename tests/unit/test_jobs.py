@@ -36,7 +36,16 @@ TOP = [
 ]
 """Keys of every summary; ``solids`` comes with meshes."""
 
-PAIR = {"center_distance_mm", "module_mm", "teeth", "face_width_mm", "ratio", "solved"}
+PAIR = {
+    "center_distance_mm",
+    "module_mm",
+    "teeth",
+    "face_width_mm",
+    "x",
+    "backlash_mm",
+    "ratio",
+    "solved",
+}
 CENTRODE = {"length_mm", "min_convex_radius_mm", "max_concave_curvature_per_mm", "closed"}
 GEAR = {"cutter", "undercut_teeth", "tip_thickness_min_mm", "outline"}
 OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}

@@ -36,7 +36,10 @@ class Cutter:
     kc : float, 1/mm
         Curvature of the cutter's pitch circle; 0 for the rack.
     half_space : float, mm
-        Half the width of a space on the pitch curve, pi*m/4.
+        Half the width of a space on the pitch curve: pi*m/4, less what the profile shift adds to
+        the teeth, more what the play takes from them.
+    pitch : float, mm
+        pi*m.
     """
 
     alpha: float
@@ -45,6 +48,7 @@ class Cutter:
     tip_radius: float
     kc: float
     half_space: float
+    pitch: float
 
     @property
     def kind(self) -> str:
@@ -91,7 +95,15 @@ class Cutter:
         return -self.reach * math.sin(self.alpha) * math.cos(self.alpha)
 
 
-def choose_cutter(rack: Rack, module: float, concave_curvature: float, where: str) -> Cutter:
+def choose_cutter(
+    rack: Rack,
+    module: float,
+    concave_curvature: float,
+    where: str,
+    *,
+    shift: float = 0.0,
+    backlash: float = 0.0,
+) -> Cutter:
     """Choose the cutter of a wheel.
 
     Parameters
@@ -104,6 +116,10 @@ def choose_cutter(rack: Rack, module: float, concave_curvature: float, where: st
         Largest ``-kappa`` of the centrode; not positive for a convex one.
     where : str
         The wheel, for messages.
+    shift : float
+        Profile shift of this wheel, in modules.
+    backlash : float, mm
+        Play along the pitch curve; each wheel gives half of it.
 
     Returns
     -------
@@ -118,11 +134,13 @@ def choose_cutter(rack: Rack, module: float, concave_curvature: float, where: st
     kc = _CONCAVE_MARGIN * concave_curvature if concave_curvature * module > _FLAT else 0.0
     cutter = Cutter(
         alpha=rack.pressure_angle,
-        addendum=rack.addendum * module,
-        dedendum=rack.dedendum * module,
+        addendum=(rack.addendum + shift) * module,
+        dedendum=(rack.dedendum - shift) * module,
         tip_radius=rack.tip_radius * module,
         kc=kc,
-        half_space=0.25 * math.pi * module,
+        half_space=(0.25 * math.pi - shift * math.tan(rack.pressure_angle)) * module
+        + 0.25 * backlash,
+        pitch=math.pi * module,
     )
     if kc > 0.0 and cutter.offset > cutter.half_space:
         cutter = _blunt(cutter)

@@ -64,7 +64,12 @@ class Toothing:
     @property
     def pitch(self) -> float:
         """Pitch along the centrode, pi*m, mm."""
-        return 4.0 * self.cutter.half_space
+        return self.cutter.pitch
+
+    @property
+    def half_tooth(self) -> float:
+        """Half the thickness of a tooth along the centrode, mm."""
+        return 0.5 * self.cutter.pitch - self.cutter.half_space
 
     @property
     def length(self) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Kind, Rows, Toothing
 from gearcam.gears.sampling import Sampler, as_pairs
@@ -29,6 +30,10 @@ from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+
+
+_NO_MATE = 3.0
+"""Reach in pitches that no flank has."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -164,7 +169,12 @@ class Outline:
 
 
 def build_outline(
-    toothing: Toothing, mate_reach: float, tolerance: float, tolerances: Tolerances
+    toothing: Toothing,
+    mate: Toothing | None,
+    tolerance: float,
+    tolerances: Tolerances,
+    *,
+    follow: bool = True,
 ) -> Outline:
     """Build the outline of a wheel.
 
@@ -172,13 +182,16 @@ def build_outline(
     ----------
     toothing : Toothing
         The wheel.
-    mate_reach : float, mm
-        Reach of the mate's flanks below its pitch curve: beyond it there is nothing to touch but
-        the mate's fillet, so this wheel's flanks end there.
+    mate : Toothing or None
+        The other wheel: flanks end where its flanks do, since beyond there is nothing to
+        touch but its fillet, and where their corners would meet its root. None: only the tip curve
+        ends them, for comparison.
     tolerance : float, mm
         Largest chord error.
     tolerances : Tolerances
         Inner accuracy.
+    follow : bool
+        Whether corners are followed into the mate's roots.
 
     Returns
     -------
@@ -190,7 +203,7 @@ def build_outline(
     InfeasibleError
         If a tooth is cut away, or the teeth reach past the shaft.
     """
-    flanks = _find_flanks(toothing, mate_reach)
+    flanks = _find_flanks(toothing, mate, tolerance if follow else None, tolerances)
     rows = regular_rows(toothing, flanks.tips)
     spaces = entangled(toothing, rows, flanks.cusps)
     rows, flanks = _assemble(toothing, rows, flanks, spaces)
@@ -206,12 +219,25 @@ def build_outline(
     return outline
 
 
-def _find_flanks(toothing: Toothing, mate_reach: float) -> Flanks:
-    half, z = toothing.cutter.half_space, len(toothing.numbers)
+def _find_flanks(
+    toothing: Toothing, mate: Toothing | None, tolerance: float | None, tolerances: Tolerances
+) -> Flanks:
+    half, z = toothing.half_tooth, len(toothing.numbers)
     sf = np.concatenate([toothing.tooth_places + half, toothing.tooth_places - half])
     sigma = np.repeat([1.0, -1.0], z)
+    mate_reach = _NO_MATE * toothing.pitch if mate is None else mate.cutter.reach
     cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
+    if mate is not None and tolerance is not None:
+        reach = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+
+        def mate_outline() -> Array:
+            return build_outline(mate, toothing, tolerance, tolerances, follow=False).points
+
+        allowed = highest_corners(toothing, mate, mate_outline, tolerance, (sf, sigma), reach)
+        if (allowed < reach).any():
+            limit = np.where(allowed < reach, allowed, np.minimum(cusps.addendum, mate_reach))
+            tips = find_tips(toothing, sf, sigma, limit)
     tips = _sharpen(toothing, sf, sigma, tips)
     highest = sigma * (sf - toothing.rolling.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.

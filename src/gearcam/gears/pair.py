@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.cutter import choose_cutter
+from gearcam.gears.demands import demand_rack, demand_shift
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, Wheel, roll
@@ -28,10 +29,6 @@ Array = NDArray[np.float64]
 
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: finer ones would be lost in rounding."""
-
-_TIP_PART = 0.95
-"""Largest tip radius over the dedendum: with its centre on the pitch line a tip arc would cut the
-whole fillet at one instant."""
 
 COARSEST = 1.0 / 50.0
 """Coarsest tolerance of an outline, in modules: beyond it teeth are no longer teeth."""
@@ -194,10 +191,18 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
     )
     module = spec.module or rolling.length(1) / (math.pi * spec.teeth[0])
     demand_rack(rack)
+    demand_shift(rack, spec, module)
 
     def toothing(wheel: Wheel) -> Toothing:
         concave = -float(rolling.curvature_extremes(wheel)[1].min())
-        cutter = choose_cutter(rack, module, concave, f"wheel {wheel}")
+        cutter = choose_cutter(
+            rack,
+            module,
+            concave,
+            f"wheel {wheel}",
+            shift=spec.x if wheel == 1 else -spec.x,
+            backlash=spec.backlash,
+        )
         return Toothing(
             rolling=rolling,
             wheel=wheel,
@@ -239,7 +244,7 @@ def make_gear(pair: GearPair, wheel: Wheel, tolerance: float, tolerances: Tolera
         If the wheel does not stay in one piece.
     """
     mate = pair.toothings[2 - wheel]
-    profile = build_outline(pair.toothings[wheel - 1], mate.cutter.reach, tolerance, tolerances)
+    profile = build_outline(pair.toothings[wheel - 1], mate, tolerance, tolerances)
     return Gear(pair=pair, wheel=wheel, profile=profile)
 
 
@@ -247,50 +252,6 @@ def lobes_of(teeth: tuple[int, int]) -> Lobes:
     """Return the lobes of tooth counts: ``z1 : z2`` in lowest terms."""
     common = math.gcd(*teeth)
     return Lobes(teeth[0] // common, teeth[1] // common)
-
-
-def demand_rack(rack: Rack) -> None:
-    """Refuse a rack without clearance, or whose tooth tip has no land.
-
-    Parameters
-    ----------
-    rack : Rack
-        Basic rack.
-
-    Raises
-    ------
-    InfeasibleError
-        Naming the largest tip radius.
-    """
-    alpha, depth = rack.pressure_angle, rack.dedendum
-    if depth < rack.addendum:
-        raise InfeasibleError(
-            "the dedendum is less than the addendum: teeth would run into the mate's root",
-            where="rack.dedendum",
-            value=depth,
-            limit=rack.addendum,
-            nearest=f"at least {rack.addendum:.6g}, better {1.25 * rack.addendum:.6g}",
-        )
-    half_space = 0.25 * math.pi
-    # rho/cos(alpha) + (hf - rho)*tan(alpha) <= pi/4
-    largest = (half_space - depth * math.tan(alpha)) / (1.0 / math.cos(alpha) - math.tan(alpha))
-    largest = min(largest, _TIP_PART * depth)
-    if largest < 0.0:
-        raise InfeasibleError(
-            "the rack's tooth is pointed before it is as deep as the dedendum",
-            where="rack.dedendum",
-            value=depth,
-            limit=half_space / math.tan(alpha),
-            nearest=f"a dedendum up to {half_space / math.tan(alpha):.6g}",
-        )
-    if rack.tip_radius > largest * (1.0 + 1e-12):
-        raise InfeasibleError(
-            "the rack's tip radius leaves its tooth no land",
-            where="rack.tip_radius",
-            value=rack.tip_radius,
-            limit=largest,
-            nearest=f"a tip radius up to {largest:.6g}",
-        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -67,7 +67,7 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         tip of the tooth after it.
     """
     cutter, z, places = toothing.cutter, len(toothing.numbers), toothing.tooth_places
-    half = cutter.half_space
+    half = toothing.half_tooth
     # Flank and tip ends are known for all teeth; a closed wheel's last space ends at its first
     # tooth, one turn on, an open one's at its last tooth.
     following, count = np.append(np.arange(1, z), 0), z

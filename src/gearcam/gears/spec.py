@@ -38,4 +38,10 @@ class PairSpec:
     )
     module: float | None = param(LENGTH, default=None, gt=0, le=1e4, doc="module L/(pi*z)")
     teeth: tuple[int, int] = param(COUNT, ge=3, le=10000, doc="tooth counts, driver first")
+    x: float = param(
+        NUMBER, default=0.0, ge=-1, le=1, doc="profile shift in modules: + on wheel 1, - on wheel 2"
+    )
+    backlash: float = param(
+        LENGTH, default=0.0, ge=0, le=1e4, doc="play along the pitch curve, shared by both wheels"
+    )
     face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="width of the wheels")

@@ -141,7 +141,9 @@ class GearPairJob:
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What the checks found: errors first."""
-        subject = Subject(pair=self.pair, gears=self.gears, bores=self.bores, backlash=0.0)
+        subject = Subject(
+            pair=self.pair, gears=self.gears, bores=self.bores, backlash=self.design.pair.backlash
+        )
         with self._stage("checks"):
             return run_checks(KIND, subject, self.design.limits)
 

@@ -54,6 +54,8 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
             "module_mm": pair.module,
             "teeth": list(pair.teeth),
             "face_width_mm": job.design.pair.face_width,
+            "x": job.design.pair.x,
+            "backlash_mm": job.design.pair.backlash,
             "ratio": {"min": pair.law.ratio_range[0][1], "max": pair.law.ratio_range[1][1]},
             "solved": solved,
         },

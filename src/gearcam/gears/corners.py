@@ -1,0 +1,121 @@
+"""How far tips may reach into the mate's roots.
+
+At the moment of contact the end of a flank lies on the mate's flank. Where the centrode is concave
+the corner goes on deeper beyond that moment, and may run into the mate's root. Such corners are
+found in two steps: those that come near the depth of the mate's root, or whose mate is cut by a
+small pinion, are followed against its outline. Most wheels have none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.gears.cutter import Cutter
+from gearcam.gears.flank import Toothing
+from gearcam.gears.rolling import Plane
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+_WINDOW = 1.25
+"""Pitches of roll, before and behind a flank, over which its corner is followed."""
+
+_ROLLS = 121
+_HALVINGS = 14
+"""A reach of three modules halved 14 times: 0.0002 modules."""
+
+_CAUTION = 0.4
+"""Share of the clearance within which a corner is followed."""
+
+_TIGHT = 2.0 * np.pi / 24.0
+"""Curvature of the mate's cutter times the pitch from which all corners are followed: a pinion with
+fewer than 24 teeth leaves much in the corners of a root."""
+
+
+def highest_corners(
+    toothing: Toothing,
+    mate: Toothing,
+    mate_outline: Callable[[], Array],
+    tolerance: float,
+    flanks: tuple[Array, Array],
+    highest: Array,
+) -> Array:
+    """Return the largest reach at which each flank's corner stays out of the mate's root.
+
+    Parameters
+    ----------
+    toothing, mate : Toothing
+        The wheel and the other one.
+    mate_outline : callable
+        Returns the outline of the other wheel, (n, 2), mm; called only where it is needed.
+    tolerance : float, mm
+        Its chord error. A corner only touches up to twice this depth: at contact it lies on the
+        mate's flank.
+    flanks : (sf, sigma), two (n,) arrays, mm and 1
+        Flanks.
+    highest : (n,) array, mm
+        Reach of their ends as they would be.
+
+    Returns
+    -------
+    (n,) array, mm
+        `highest` where it does no harm.
+    """
+    result = highest.copy()
+    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    if kappa.min() >= 0.0 and mate.cutter.kc == 0.0:
+        return result
+    sf, sigma = flanks
+    near = _deep(toothing, mate.cutter, sf, sigma, highest)
+    at = np.flatnonzero(near | (mate.cutter.kc * toothing.pitch > _TIGHT))
+    if at.size == 0:
+        return result
+    import shapely
+
+    body = shapely.Polygon(mate_outline()).buffer(-2.0 * tolerance)
+    shapely.prepare(body)
+
+    def hits(some: Index, reach: Array) -> Mask:
+        path = _in_mate(toothing, mate, sf[some], sigma[some], reach)
+        return np.any(shapely.contains_xy(body, path.real, path.imag), axis=1)
+
+    at = at[hits(at, highest[at])]
+    low, high = np.zeros(at.size), highest[at]
+    for _ in range(_HALVINGS if at.size else 0):
+        middle = 0.5 * (low + high)
+        bad = hits(at, middle)
+        low, high = np.where(bad, low, middle), np.where(bad, middle, high)
+    result[at] = low
+    return result
+
+
+def _corners(toothing: Toothing, sf: Array, sigma: Array, reach: Array) -> tuple[Plane, Array]:
+    """Return the ends of flanks at a reach, (n, 1), and the rolls over which to follow them."""
+    corner = toothing.flank_points(
+        toothing.frames(toothing.rolling.angle(sf - sigma * reach), curved=False), sf, sigma
+    )
+    rolls = sf[:, None] + _WINDOW * toothing.pitch * np.linspace(-1.0, 1.0, _ROLLS)
+    return corner[:, None], rolls
+
+
+def _in_mate(toothing: Toothing, mate: Toothing, sf: Array, sigma: Array, reach: Array) -> Plane:
+    """Return the paths of corners in the mate's frame, (n, rolls)."""
+    corner, rolls = _corners(toothing, sf, sigma, reach)
+    phi = toothing.rolling.angle(rolls)
+    own, other = toothing.frames(phi, curved=False), mate.frames(phi, curved=False)
+    # both tangents are one, and the outward normals opposite
+    along = np.conj(own.t) * (corner - own.p)
+    return other.p + other.t * along
+
+
+def _deep(toothing: Toothing, cutter: Cutter, sf: Array, sigma: Array, reach: Array) -> Mask:
+    """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll."""
+    corner, rolls = _corners(toothing, sf, sigma, reach)
+    frames = toothing.frames(toothing.rolling.angle(rolls), curved=False)
+    down = np.real(np.conj(toothing.turn * frames.t) * (corner - frames.p))
+    clearance = cutter.dedendum - toothing.cutter.addendum
+    return np.any(down > cutter.dedendum - _CAUTION * clearance, axis=1)
