@@ -28,6 +28,9 @@ def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     distance, module = pair.get("center_distance_mm"), pair.get("module_mm")
     if distance is not None and module is not None:
         yield f"centre distance {distance:.6g} mm, module {module:.6g} mm, teeth {teeth}"
+    elif module is not None:
+        way = pair["way_per_turn_mm"]
+        yield f"wheel and rack, {way:.6g} mm a turn, module {module:.6g} mm, teeth {teeth}"
 
 
 def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:

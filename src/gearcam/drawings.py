@@ -162,7 +162,7 @@ def pair_drawing(
     centrodes: Sequence[Array] = (),
     *,
     name: str = "pair",
-    closed: bool = True,
+    closed: tuple[bool, bool] = (True, True),
 ) -> Drawing:
     """Draw the assembled pair at phi1 = 0.
 
@@ -173,13 +173,13 @@ def pair_drawing(
     parts : two Part
         Driver first.
     center_distance : float, mm
-        Distance of the shafts.
+        Distance of the shafts; 0 for a rack, which has none.
     centrodes : sequence of (n, 2) arrays, mm
         In the wheels' own frames, driver first; may be empty.
     name : str
         The drawing's name.
-    closed : bool
-        Whether the centrodes are closed.
+    closed : (bool, bool)
+        Whether each centrode is closed.
 
     Returns
     -------
@@ -196,10 +196,11 @@ def pair_drawing(
     features: list[Feature] = []
     for number, (part, offset) in enumerate(zip(parts, offsets, strict=True), start=1):
         features += place(part_features(part), 0.0, offset, prefix=f"GEAR{number}_")
-    for points, offset in zip(centrodes, offsets, strict=False):
-        path = Path(points=np.asarray(points, dtype=np.float64), closed=closed)
+    for points, offset, whole in zip(centrodes, offsets, closed, strict=False):
+        path = Path(points=np.asarray(points, dtype=np.float64), closed=whole)
         features += place([Feature(layer=CENTRODE, shape=path)], 0.0, offset)
-    for offset in offsets:
-        cross = Cross(center=np.array(offset), size=CROSS_SIZE * center_distance)
+    size = CROSS_SIZE * (center_distance or float(np.ptp(parts[0].contour.vertices)))
+    for offset in offsets if center_distance else offsets[:1]:
+        cross = Cross(center=np.array(offset), size=size)
         features.append(Feature(layer=CENTER, shape=cross))
     return Drawing(name=name, features=tuple(features))

@@ -36,16 +36,8 @@ TOP = [
 ]
 """Keys of every summary; ``solids`` comes with meshes."""
 
-PAIR = {
-    "center_distance_mm",
-    "module_mm",
-    "teeth",
-    "face_width_mm",
-    "x",
-    "backlash_mm",
-    "ratio",
-    "solved",
-}
+PAIR = {"center_distance_mm", "module_mm", "teeth", "face_width_mm", "ratio", "solved"}
+PAIR |= {"x", "backlash_mm"}
 CENTRODE = {"length_mm", "min_convex_radius_mm", "max_concave_curvature_per_mm", "closed"}
 GEAR = {"cutter", "undercut_teeth", "tip_thickness_min_mm", "outline"}
 OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}
@@ -266,10 +258,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"law": Phases(knots=(0.0, 3.0, 2 * math.pi), ratios=(1.5, 0.9, 1.5))},
         "do not close",
     ),
-    "lobes beside the teeth": (
-        {"teeth": (20, 40), "law": Ellipse(eccentricity=0.1, lobes=(2, 3))},
-        "in the ratio of the tooth counts",
-    ),
+    "lobes": ({"teeth": (20, 40), "law": Ellipse(eccentricity=0.1, lobes=(2, 3))}, "in the ratio"),
     "ratio not positive": ({"law": Formula(ratio="0.9 + cos(phi1)")}, "positive"),
 }
 

@@ -95,9 +95,9 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
 
 
 def pair_notes(center_distance: float, module: float, teeth: tuple[int, int]) -> tuple[str, ...]:
-    """Return the caption's facts of a pair: `center_distance` and `module` in mm, `teeth`."""
+    """Return the caption's facts: `center_distance` (0 on a rack) and `module` in mm, `teeth`."""
     return (
-        f"centre distance {center_distance:.6g} mm",
+        f"centre distance {center_distance:.6g} mm" if center_distance else "wheel and rack",
         f"module {module:.6g} mm",
         f"teeth {teeth[0]} : {teeth[1]}",
     )

@@ -49,7 +49,11 @@ def closure(subject: Subject, limit: float) -> Iterator[Finding]:
 )
 def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large."""
-    (low_place, low), (high_place, high) = subject.pair.law.ratio_range
+    law = subject.pair.law
+    (low_place, low), (high_place, high) = law.ratio_range
+    if law.feeds:  # over the mean radius
+        mean = law.lobes.advance / law.lobes.period
+        low, high = low / mean, high / mean
     for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
         if swing > limit:
             yield Finding(

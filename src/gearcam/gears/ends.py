@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,7 +113,8 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
     Returns
     -------
     tuple of Run
-        End face, arm, hub, arm, end face, counter-clockwise.
+        End face, arm, hub, arm, end face, counter-clockwise; of a rack straight lines around its
+        back.
 
     Raises
     ------
@@ -125,6 +127,11 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
     inner = frames.p - depth * toothing.turn * frames.t
     inner = inner if toothing.wheel == 1 else inner[::-1]
     first, last = complex(points[0]), complex(points[-1])
+    if toothing.wheel == 2 and toothing.rolling.law.feeds:
+        back = points.real.max() + depth
+        corners = [complex(back, point.imag) for point in (inner[1], inner[0])]
+        chain = [last, inner[1], *corners, inner[0], first]
+        return tuple(_line(start, end) for start, end in pairwise(chain))
     radius = _HUB * min(abs(points).min(), abs(inner).min())
     span = float(np.angle(points[1:] / points[:-1]).sum())
     span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))

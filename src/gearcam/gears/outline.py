@@ -330,7 +330,7 @@ def _demand_simple(outline: Outline) -> None:
         return
     toothing = outline.toothing
     kappa = float(toothing.rolling.curvature_extremes(toothing.wheel)[1].max())
-    largest = np.sin(toothing.cutter.alpha) ** 2 / kappa
+    largest = np.sin(toothing.cutter.alpha) ** 2 / kappa if kappa > 0.0 else 0.0
     raise InfeasibleError(
         f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
         where=is_valid_reason(Polygon(outline.points)),

@@ -65,8 +65,18 @@ class GearPair:
 
     @property
     def center_distance(self) -> float:
-        """Distance of the shafts, mm."""
+        """Distance of the shafts, mm; of a rack, what the law's radius is multiplied by."""
         return self.rolling.center_distance
+
+    @property
+    def shift(self) -> float:
+        """Place of wheel 2's frame in that of wheel 1 at phi1 = 0, mm along x."""
+        return 0.0 if self.law.feeds else self.center_distance
+
+    @property
+    def studied(self) -> bool:
+        """Whether both wheels go all around, as meshing studies ask."""
+        return all(toothing.closed for toothing in self.toothings)
 
     def chord_tolerance(self, asked: float | None) -> float:
         """Return the tolerance of the outlines, mm: as asked, or ``min(0.001 mm, m/1000)``.
@@ -135,8 +145,9 @@ class Gear:
 
     @property
     def convex_radius(self) -> float:
-        """Smallest convex radius of the centrode, mm."""
-        return 1.0 / float(self.curvatures.max())
+        """Smallest convex radius of the centrode, mm; infinite where it has no convex part."""
+        largest = float(self.curvatures.max())
+        return 1.0 / largest if largest > 0.0 else math.inf
 
     @property
     def concave_curvature(self) -> float:
@@ -182,6 +193,14 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
     InfeasibleError
         If the rack cannot be made, or a concave part is too tight for a cutter.
     """
+    if law.feeds and spec.center_distance is not None:
+        raise InfeasibleError(
+            "a rack has no shaft",
+            where="pair.center_distance_mm",
+            value=spec.center_distance,
+            unit="mm",
+            nearest="give module_mm instead: with the tooth count it is the size of the wheel",
+        )
     rolling = roll(
         law,
         teeth=spec.teeth,
@@ -208,7 +227,7 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
             wheel=wheel,
             teeth=spec.teeth[wheel - 1],
             cutter=cutter,
-            closed=law.lobes.closed,
+            closed=law.lobes.closed and not (law.feeds and wheel == 2),
         )
 
     return GearPair(
@@ -319,9 +338,10 @@ def contact_arcs(gear1: Gear, gear2: Gear, sigma: int) -> ContactArcs:
     """
     first, second = gear1.profile.flanks, gear2.profile.flanks
     one, two = _mates(gear1, gear2, sigma)
+    sf = first.sf[one] if gear2.toothing.closed else second.sf[two]
     low = np.maximum(first.lowest[one], -second.highest[two])
     high = np.minimum(first.highest[one], -second.lowest[two])
-    ends = np.stack([first.sf[one] - sigma * low, first.sf[one] - sigma * high])
+    ends = np.stack([sf - sigma * low, sf - sigma * high])
     start, end = (ends[1], ends[0]) if sigma > 0 else (ends[0], ends[1])
     numbers = np.array(gear1.toothing.numbers)
     return ContactArcs(
@@ -329,27 +349,26 @@ def contact_arcs(gear1: Gear, gear2: Gear, sigma: int) -> ContactArcs:
         end=end,
         tooth=numbers[one % len(numbers)],
         pitch=gear1.toothing.pitch,
-        lobe_length=gear1.pair.rolling.lobe_length,
-        closed=gear1.toothing.closed,
+        lobe_length=gear1.pair.rolling.lobe_length
+        if gear2.toothing.closed
+        else gear2.toothing.length,
+        closed=gear2.toothing.closed,
     )
 
 
 def _mates(gear1: Gear, gear2: Gear, sigma: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Numbers of the flanks of both wheels that touch each other, by wheel 1's teeth."""
     z1, z2 = len(gear1.toothing.numbers), len(gear2.toothing.numbers)
-    if gear1.toothing.closed:
+    if gear2.toothing.closed:
         count = math.gcd(z1, z2)
         one = np.arange(count) + (0 if sigma > 0 else z1)
         # sf = (j + sigma/4) pitches on wheel 1 is (k + 1/2 - sigma/4) pitches on wheel 2.
         two = (np.arange(count) + (0 if sigma > 0 else -1)) % z2 + (z2 if sigma > 0 else 0)
         return one, two
-    pitch, sides = gear1.toothing.pitch, (sigma, -sigma)
-    mine, other = (
-        np.rint(4.0 * gear.profile.flanks.sf[gear.profile.flanks.sigma == side] / pitch)
-        for gear, side in zip((gear1, gear2), sides, strict=True)
-    )
-    _, one, two = np.intersect1d(mine, other, return_indices=True)
-    # on the blanks: up to half a pitch, two quarters, beyond the ends
-    inside = (mine[one] > -2.0) & (mine[one] < 4.0 * gear1.toothing.teeth + 2.0)
-    one, two = one[inside], two[inside]
-    return one + (0 if sigma > 0 else z1), two + (z2 if sigma > 0 else 0)
+    # on the open wheel's blank: up to half a pitch beyond its ends
+    two = np.arange(z2) + (z2 if sigma > 0 else 0)
+    places = gear2.profile.flanks.sf[two] / gear2.toothing.pitch
+    two = two[(places > -0.5) & (places < gear2.toothing.teeth + 0.5)]
+    tooth = np.rint(gear2.profile.flanks.sf[two] / gear2.toothing.pitch - 0.25 * sigma).astype(int)
+    one = tooth % z1 if gear1.toothing.closed else tooth + 1 - gear1.toothing.numbers[0]
+    return one + (0 if sigma > 0 else z1), two

@@ -64,14 +64,14 @@ class Frames(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Rolling:
-    """The pair of centrodes of an external pair.
+    """The pair of centrodes of an external pair, or of a wheel and a rack.
 
     Parameters
     ----------
     law : RatioLaw
         Their ratio.
     center_distance : float, mm
-        Distance of the shafts, A.
+        Distance of the shafts, A; of a rack, what the law's radius is multiplied by.
     unit_arc : Expansion
         Arc length over one lobe for A = 1, zero at phi1 = 0; of an open pair also beyond its ends.
     margin : float, mm
@@ -168,18 +168,20 @@ class Rolling:
         """
         phi = np.asarray(phi, dtype=float)
         turns, x = self.law.within(phi)
-        i, di, *more = self.law.ratio.derivatives(x, 2 if curved else 1)
-        a = 1.0 / (1.0 + i)
-        r = self.center_distance * i * a
-        dr = self.center_distance * a * a * di
+        i, *radius = _radii(self.law, x, 2 if curved else 1)
+        r, dr, *more = (self.center_distance * v for v in radius)
         speed = np.sqrt(r * r + dr * dr)
-        turned = phi if wheel == 1 else -(self.law.motion(x) + turns * self.law.lobes.advance)
-        pole = _complex(np.cos(turned), np.sin(turned))
-        point = (r if wheel == 1 else r - self.center_distance) * pole
+        way = phi if wheel == 1 else self.law.motion(x) + turns * self.law.lobes.advance
+        if wheel == 2 and self.law.feeds:
+            pole, point = _complex(1.0 + 0.0 * r, 0.0 * r), _complex(r, self.center_distance * way)
+        else:
+            turned = way if wheel == 1 else -way
+            pole = _complex(np.cos(turned), np.sin(turned))
+            point = (r if wheel == 1 else r - self.center_distance) * pole
         tangent = _complex(dr / speed, r / speed) * pole
         kappa = np.empty(0)
         if curved:
-            ddr = self.center_distance * a * a * (more[0] - 2.0 * a * di * di)
+            (ddr,) = more
             if wheel == 1:
                 top = r * r + 2.0 * dr * dr - r * ddr
             else:
@@ -199,9 +201,12 @@ class Rolling:
         def curvatures(phi: Array) -> tuple[Array, Array]:
             i, di, ddi, dddi = self.law.ratio.derivatives(phi, 3)
             i0, i1, i2 = Jet([i, di]), Jet([di, ddi]), Jet([ddi, dddi])
-            a = 1.0 / (1.0 + i0)
-            square = a * a
-            r, dr, ddr = i0 * a, square * i1, square * (i2 - 2.0 * (a * i1 * i1))
+            if self.law.feeds:
+                r, dr, ddr, i0 = i0, i1, i2, 0.0 * i0
+            else:
+                a = 1.0 / (1.0 + i0)
+                square = a * a
+                r, dr, ddr = i0 * a, square * i1, square * (i2 - 2.0 * (a * i1 * i1))
             speed = sqrt(r * r + dr * dr)
             kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
             both = [k.derivatives() for k in (kappa, (1.0 + i0) / speed - kappa)]
@@ -249,10 +254,18 @@ def unit_speed(law: RatioLaw, phi: Array) -> Array:
     array
         ``sqrt(r1^2 + r1'^2)/A``.
     """
-    i, di = law.ratio.derivatives(phi, 1)
-    a = 1.0 / (1.0 + i)
-    r, dr = i * a, a * a * di
+    _, r, dr = _radii(law, phi, 1)
     return np.sqrt(r * r + dr * dr)
+
+
+def _radii(law: RatioLaw, x: Array, order: int) -> list[Array]:
+    """Return the ratio (0 on a rack) and r1 for unit size with `order` derivatives."""
+    i, di, *more = law.ratio.derivatives(x, order)
+    if law.feeds:
+        return [np.zeros(np.shape(i)), i, di, *more]
+    a = 1.0 / (1.0 + i)
+    square = a * a
+    return [i, i * a, square * di, *(square * (ddi - 2.0 * a * di * di) for ddi in more)]
 
 
 def roll(

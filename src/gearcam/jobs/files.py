@@ -46,12 +46,17 @@ def _tables(job: GearPairJob) -> dict[str, bytes]:
     one, two = rolling.frames(1, phi1), rolling.frames(2, phi1)
     with np.errstate(divide="ignore"):
         rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa
-    centrodes = {
-        "phi1_deg": np.degrees(phi1),
+    driven = {
         "phi2_deg": np.degrees(phi2 - phi2[0]),
         "ratio": ratio,
         "r1_mm": np.abs(one.p),
         "r2_mm": np.abs(two.p),
+    }
+    if job.law.feeds:
+        driven = {"way_mm": two.p.imag, "r1_mm": np.abs(one.p)}
+    centrodes = {
+        "phi1_deg": np.degrees(phi1),
+        **driven,
         "s_mm": one.s - one.s[0],
         "rho1_mm": rho1,
         "rho2_mm": rho2,
@@ -64,12 +69,15 @@ def _pair_drawing(job: GearPairJob) -> Drawing:
     from gearcam.drawings import pair_drawing
 
     lobes = job.law.lobes
-    last = -1 if lobes.closed else None
+    ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
+    if job.law.feeds:
+        ends[1] = job.centrode_angles()[-1]
     centrodes = [
-        gear.centrode(np.linspace(0.0, count * lobes.period, 721)[:last])
-        for gear, count in zip(job.gears, (lobes.n1, lobes.n2), strict=True)
+        gear.centrode(np.linspace(0.0, end, 721)[: -1 if gear.toothing.closed else None])
+        for gear, end in zip(job.gears, ends, strict=True)
     ]
-    return pair_drawing(job.parts, job.pair.center_distance, centrodes, closed=lobes.closed)
+    closed = job.gear1.toothing.closed, job.gear2.toothing.closed
+    return pair_drawing(job.parts, job.pair.shift, centrodes, closed=closed)
 
 
 def _drawings(job: GearPairJob, extras: dict[str, Any]) -> dict[str, bytes]:
@@ -91,7 +99,7 @@ def _picture(job: GearPairJob) -> dict[str, bytes]:
     from gearcam.export.svg import pair_notes, svg_bytes
 
     pair = job.pair
-    notes = pair_notes(pair.center_distance, pair.module, pair.teeth)
+    notes = pair_notes(pair.shift, pair.module, pair.teeth)
     return {"pair.svg": svg_bytes(_pair_drawing(job), title=job.design.name, notes=notes)}
 
 

@@ -135,8 +135,11 @@ class GearPairJob:
 
     @property
     def bores(self) -> tuple[float | None, float | None]:
-        """Bore diameters, mm."""
-        return self.design.blank.bore_diameter or (None, None)
+        """Bore diameters, mm; a rack has none."""
+        given = self.design.blank.bore_diameter
+        if given is None:
+            return None, None
+        return given[0], None if self.law.feeds else given[1]
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -158,6 +161,10 @@ class GearPairJob:
         radius = complex(frames.p[0])
         normal = complex(frames.t[0]) * gear.toothing.turn
         bore, width = self.bores[gear.wheel - 1], self.design.pair.face_width
+        if gear.wheel == 2 and self.law.feeds:
+            return Part(
+                name=gear.name, contour=gear.profile.contour, bore_diameter=None, width=width
+            )
         mark = timing_mark(
             abs(radius),
             0.0 if gear.wheel == 1 else math.pi,
@@ -178,6 +185,9 @@ class GearPairJob:
     def centrode_angles(self) -> NDArray[np.float64]:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
         lobes = self.law.lobes
+        if self.law.feeds:
+            end = self.pair.rolling.angle(np.array(self.gear2.toothing.length))
+            return np.linspace(0.0, float(end), CENTRODE_POINTS + 1)
         if not lobes.closed:
             return np.linspace(0.0, lobes.period, CENTRODE_POINTS + 1)
         turns = lobes.n1 * lobes.n2 / math.gcd(lobes.n1, lobes.n2)
@@ -251,11 +261,11 @@ class GearPairJob:
         from gearcam.meshing.study import study
 
         gears = self.gears
-        if not self.law.lobes.closed:
+        if not self.pair.studied:
             raise InfeasibleError(
-                "an open pair cannot be studied step by step by this version",
-                where="law.driven_travel_deg",
-                nearest="build and check cover open pairs: contact ratios and undercut are there",
+                "open pairs and racks cannot be studied step by step by this version",
+                where="law",
+                nearest="build and check cover them: contact ratios and undercut are there",
             )
         with self._stage("meshing"):
             meshing = study(gears, self.design.meshing, progress)

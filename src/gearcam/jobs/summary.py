@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 import sys
 from collections.abc import Sequence
@@ -41,8 +42,15 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
     pair = job.pair
     given = job.design.pair.center_distance
     solved: dict[str, float] = dict(pair.law.solved)
-    if given is None:
-        solved["center_distance_mm"] = pair.center_distance
+    low, high = pair.law.ratio_range[0][1], pair.law.ratio_range[1][1]
+    size = pair.center_distance
+    facts: dict[str, Any] = {"center_distance_mm": size, "ratio": {"min": low, "max": high}}
+    if pair.law.feeds:
+        radius = {"min": size * low, "max": size * high}
+        facts = {"way_per_turn_mm": size * pair.law.lobes.advance, "radius_mm": radius}
+        solved["mm_per_unit_of_r1"] = size
+    elif given is None:
+        solved["center_distance_mm"] = size
     else:
         solved["module_mm"] = pair.module
     return {
@@ -50,13 +58,12 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
         "name": job.design.name,
         "kind": job.design.kind,
         "pair": {
-            "center_distance_mm": pair.center_distance,
             "module_mm": pair.module,
             "teeth": list(pair.teeth),
             "face_width_mm": job.design.pair.face_width,
             "x": job.design.pair.x,
             "backlash_mm": job.design.pair.backlash,
-            "ratio": {"min": pair.law.ratio_range[0][1], "max": pair.law.ratio_range[1][1]},
+            **facts,
             "solved": solved,
         },
         "gears": [_gear(job, gear) for gear in job.gears],
@@ -70,7 +77,7 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
 
 
 def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
-    cutter = gear.toothing.cutter
+    cutter, radius = gear.toothing.cutter, gear.convex_radius
     bore = job.bores[gear.wheel - 1]
     tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
     tool["cutter_tip_radius_mm"] = cutter.tip_radius
@@ -78,8 +85,8 @@ def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
         "name": gear.name,
         "teeth": gear.toothing.teeth,
         "centrode": {
-            "length_mm": gear.pair.rolling.length(gear.wheel),
-            "min_convex_radius_mm": gear.convex_radius,
+            "length_mm": gear.toothing.length,
+            **({"min_convex_radius_mm": radius} if math.isfinite(radius) else {}),
             "max_concave_curvature_per_mm": gear.concave_curvature,
             "closed": gear.toothing.closed,
         },

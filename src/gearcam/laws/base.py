@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.span import ONE_LOBE, Lobes, Span, angle_text, continued
+from gearcam.laws.span import ONE_LOBE, Feed, Lobes, Span, angle_text, continued
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.tolerances import Tolerances
@@ -47,6 +47,11 @@ class RatioLaw:
     ratio: Piecewise
     motion: Piecewise | Expansion
     solved: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def feeds(self) -> bool:
+        """Whether the driven element is a rack: the ratio is then r1, the motion its way."""
+        return isinstance(self.lobes, Feed)
 
     @property
     def knots(self) -> Array:

@@ -116,6 +116,27 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
             )
 
 
+def derivative(motion: Callable[[Jet], Jet]) -> Callable[[Jet], Jet]:
+    """Return the derivative of a function of jets, itself one.
+
+    Parameters
+    ----------
+    motion : callable
+        ``motion(jet) -> jet``.
+
+    Returns
+    -------
+    callable
+    """
+
+    def slope(x: Jet) -> Jet:
+        one_more = motion(Jet.variable(x.c[0], x.order + 1))
+        slopes = [(k + 1) * value for k, value in enumerate(one_more.c[1:])]
+        return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
+
+    return slope
+
+
 def from_motion(
     motion: Callable[[Jet], Jet],
     lobes: Span,
@@ -144,12 +165,7 @@ def from_motion(
     InfeasibleError
         Where phi2 is not finite, smooth or rising, or does not close.
     """
-
-    def ratio(x: Jet) -> Jet:
-        one_more = motion(Jet.variable(x.c[0], x.order + 1))
-        slopes = [(k + 1) * value for k, value in enumerate(one_more.c[1:])]
-        return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
-
+    ratio = derivative(motion)
     x = np.linspace(0.0, lobes.period, 2049)
     values, slopes = motion(Jet.variable(x, 1)).derivatives()
     bad = ~np.isfinite(values) | ~np.isfinite(slopes)

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.laws.formula import derivative
 from gearcam.laws.span import angle_text
 from gearcam.numeric.jets import Jet, asin, atan, sqrt
 from gearcam.numeric.piecewise import Piece, extremes
@@ -171,7 +172,7 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
     )
     knots = np.array([low for low, _, _ in inside] + [period])
     knots[0] = 0.0
-    pieces = [Piece(_slope(motion), motion) for _, _, motion in inside]
+    pieces = [Piece(derivative(motion), motion) for _, _, motion in inside]
     first = slide.way(Jet.variable(np.zeros(1), 1)).derivatives()
     return knots, pieces, _start(slide, float(first[0][0]), float(first[1][0]))
 
@@ -234,13 +235,3 @@ def _near(slide: Slide, place: float, sign: float) -> tuple[float, Motion]:
 
 def _shifted(motion: Motion, angle: float) -> Motion:
     return lambda x: motion(x - angle)
-
-
-def _slope(motion: Motion) -> Motion:
-    """Return the derivative of a motion of jets."""
-
-    def slope(x: Jet) -> Jet:
-        more = motion(Jet.variable(x.c[0], x.order + 1))
-        return Jet([(k + 1) * value for k, value in enumerate(more.c[1:])])
-
-    return slope

@@ -71,11 +71,30 @@ class Travel:
     closed: ClassVar[bool] = False
 
 
+@dataclass(frozen=True)
+class Feed:
+    """A wheel that drives a rack, turning for ever; the rack is as long as its teeth.
+
+    Parameters
+    ----------
+    period : float, rad
+        A turn of the wheel.
+    advance : float
+        The rack's way in a turn, in the scale of the wheel's radius.
+    """
+
+    period: float
+    advance: float
+    n1: ClassVar[int] = 1
+    n2: ClassVar[int] = 1
+    closed: ClassVar[bool] = True
+
+
 ONE_LOBE: Final = Lobes(1, 1)
 """Of equal tooth counts."""
 
-Span = Lobes | Travel
-"""Closed or open."""
+Span = Lobes | Travel | Feed
+"""Closed, open, or closed on a rack."""
 
 
 def demand_equal(lobes: Lobes) -> None:
