@@ -17,6 +17,7 @@ import pytest
 
 import gearcam
 from gearcam.errors import GearcamError
+from helpers_gallery import NUMBERS, Number
 
 PROFILES = Path(__file__).parent.parent.parent / "profiles"
 
@@ -44,10 +45,8 @@ def formula_least_radius() -> float:
     return r * r / (r - ddr)
 
 
-Number = tuple[float, float]
-"""A value and how far off it may be."""
-
 EXPECTED: dict[str, dict[str, Number]] = {
+    **NUMBERS,
     "ellipse": {
         # A = 2a with perimeter 4*a*E(e) = pi*m*z; rho = a*(1 - e^2) at the vertices
         "pair.center_distance_mm": (41.9606757804, 1e-10),
@@ -81,7 +80,11 @@ EXPECTED: dict[str, dict[str, Number]] = {
     },
 }
 
-UNDERCUT = {
+UNDERCUT: dict[str, list[list[int]]] = {
+    **{name: [[], []] for name in NUMBERS},
+    "furnace_door": [[], [1, 3, 4]],
+    "two_lobed_ellipse": [[9, 11, 27, 29], [2, 17, 20, 35]],
+    "rounded_square": [[k + 8 * side for side in range(4) for k in (3, 4, 5, 6, 7)], []],
     "ellipse": [[], []],
     "formula": [[], []],
     "nail_machine_two_phase": [[], [15, 17, 18]],

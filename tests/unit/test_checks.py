@@ -19,6 +19,7 @@ from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
+from gearcam.laws.programs import Fourier
 from helpers_pairs import job, profile
 
 HALF = (0.0, math.pi, 2 * math.pi)
@@ -74,6 +75,19 @@ def heights(limit: float) -> GearPairJob:
     return job(Formula(r1="1 + 0.25*cos(2*phi1)"), (60, 60), limits={"tip_height": limit})
 
 
+def shaped(over: float) -> GearPairJob:
+    """The limit of cutter teeth over what fits: 2*R/(1.15*m) with the concave radius R.
+
+    r = 1 + 0.25*cos(2*phi) has kappa = (r - r'')/r^2 = -4/9 at 90 deg, and a length of pi*m*z.
+    """
+    phi = np.linspace(0.0, 2 * math.pi, 4097)[:-1]
+    speed = np.hypot(1 + 0.25 * np.cos(2 * phi), 0.5 * np.sin(2 * phi))
+    scale = math.pi * 80 / (2 * math.pi * float(speed.mean()))
+    teeth = 2 * scale * (9 / 4) / 1.15
+    law = Formula(r1="1 + 0.25*cos(2*phi1)")
+    return job(law, (80, 80), limits={"cutter_teeth": teeth * over})
+
+
 class Case(NamedTuple):
     code: str
     severity: str
@@ -98,6 +112,21 @@ CASES = [
             limits={"ratio_continuity": 1},
         ),
     ),
+    # r1'/r1 of an ellipse is at most e/sqrt(1 - e^2): psi = asin(e), and 20 + 30 = 50 deg
+    Case(
+        "pressure-angle",
+        "warning",
+        lambda: job(Ellipse(eccentricity=0.5001), (60, 60)),
+        lambda: job(Ellipse(eccentricity=0.4999), (60, 60)),
+    ),
+    # i = 1 + a*cos(4*phi1) changes by 4*a at most
+    Case(
+        "acceleration",
+        "warning",
+        lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.5001)), (400, 400)),
+        lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.4999)), (400, 400)),
+    ),
+    Case("concave-teeth", "warning", lambda: shaped(1.0001), lambda: shaped(0.9999)),
     Case("sharp", "warning", lambda: bending(2.499), lambda: bending(2.501)),
     Case(
         "undercut", "warning", lambda: job(Constant(), (17, 60)), lambda: job(Constant(), (18, 60))

@@ -142,6 +142,94 @@ def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
 
 
 @check(
+    "concave-teeth",
+    kind=KIND,
+    doc="teeth of the largest pinion cutter that fits into the concave parts",
+    limit=("cutter_teeth", Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"), 12.0),
+)
+def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn where teeth are wide for a concave part: tips crowd, and only a tiny cutter fits."""
+    for gear in subject.gears:
+        cutter = gear.toothing.cutter
+        if cutter.kc == 0.0:
+            continue
+        count = 2.0 / (cutter.kc * subject.pair.module)
+        if count < limit:
+            place = float(gear.curvature_places[np.argmin(gear.curvatures)])
+            fewest = math.ceil(gear.toothing.teeth * limit / count)
+            yield Finding(
+                code="concave-teeth",
+                severity="warning",
+                message="The teeth are wide for this concave part, whose radius is "
+                f"{1.0 / gear.concave_curvature:.6g} mm; with {fewest} teeth on this wheel the "
+                "limit is kept.",
+                value=count,
+                limit=limit,
+                unit="teeth",
+                where=f"wheel {gear.wheel}, {angle_text(place)}",
+            )
+
+
+@check(
+    "pressure-angle",
+    kind=KIND,
+    doc="largest angle between the tooth force and the motion of the pitch point",
+    limit=(
+        "pressure_angle",
+        Param(ANGLE, gt=0, le=90, doc="largest pressure angle of the tooth force"),
+        math.radians(50.0),
+    ),
+)
+def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn where the tooth force pushes the shafts apart rather than turn the wheel.
+
+    The rack's angle and the slope of the centrode add up: on the flanks that drive forward it is
+    ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
+    """
+    places, slopes = subject.slopes
+    for side, sign in (("forward", -1.0), ("backward", 1.0)):
+        angles = subject.pair.rack.pressure_angle + sign * slopes
+        worst = int(np.argmax(angles))
+        if angles[worst] > limit:
+            yield Finding(
+                code="pressure-angle",
+                severity="warning",
+                message="The tooth force stands so steep that it mostly loads the bearings; a "
+                "smaller swing of the ratio or rack.pressure_angle_deg lessens it.",
+                value=math.degrees(float(angles[worst])),
+                limit=math.degrees(limit),
+                unit="deg",
+                where=f"driving {side}, {angle_text(float(places[worst]))}",
+            )
+
+
+@check(
+    "acceleration",
+    kind=KIND,
+    doc="largest angular acceleration of the driven wheel over the driver's speed squared",
+    limit=(
+        "acceleration_ratio",
+        Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"),
+        2.0,
+    ),
+)
+def acceleration(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn of a motion that will shake: at steady speed the driven wheel's acceleration."""
+    places, values = subject.accelerations
+    worst = int(np.argmax(np.abs(values)))
+    if abs(float(values[worst])) > limit:
+        yield Finding(
+            code="acceleration",
+            severity="warning",
+            message="The ratio changes fast here: at n turns a second of the driver the driven "
+            "wheel's angular acceleration is this number times (2*pi*n)^2 rad/s2.",
+            value=abs(float(values[worst])),
+            limit=limit,
+            where=angle_text(float(places[worst])),
+        )
+
+
+@check(
     "remote-cutter",
     kind=KIND,
     doc="pinion cutter that reaches a remote part of its wheel",

@@ -5,7 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gearcam.gears.pair import ContactArcs, Gear, GearPair, contact_arcs
+from gearcam.numeric.piecewise import extremes
+
+Array = NDArray[np.float64]
 
 KIND = "gear-pair"
 
@@ -30,6 +36,36 @@ class Subject:
     gears: tuple[Gear, Gear]
     bores: tuple[float | None, float | None]
     backlash: float
+
+    @cached_property
+    def slopes(self) -> tuple[Array, Array]:
+        """Extremes of the centrodes' slope psi, ``tan(psi) = r1'/r1``: phi1, rad, and psi, rad."""
+        law = self.pair.law
+
+        def slope(phi: Array) -> tuple[Array, Array]:
+            i, di, ddi = law.ratio.derivatives(phi, 2)
+            factor = 1.0 if law.feeds else 1.0 / (1.0 + i)
+            tangent = di / i * factor  # r1'/r1
+            bend = ddi / i * factor - tangent * tangent
+            if not law.feeds:
+                bend = bend - di * di / i * factor * factor
+            return np.arctan(tangent)[None], (bend / (1.0 + tangent * tangent))[None]
+
+        ((places, values),) = extremes(slope, law.knots)
+        return places, values
+
+    @cached_property
+    def accelerations(self) -> tuple[Array, Array]:
+        """Extremes of ``d(i21)/dphi1``: phi1, rad, and values; of a rack over its mean speed."""
+        law = self.pair.law
+        scale = law.lobes.period / law.lobes.advance if law.feeds else 1.0
+
+        def change(phi: Array) -> tuple[Array, Array]:
+            _, di, ddi = law.ratio.derivatives(phi, 2)
+            return scale * di[None], scale * ddi[None]
+
+        ((places, values),) = extremes(change, law.knots)
+        return places, values
 
     @cached_property
     def arcs(self) -> tuple[ContactArcs, ContactArcs]:

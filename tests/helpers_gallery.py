@@ -1,0 +1,229 @@
+"""Numbers of the gallery known beforehand: closed forms, and integrals of raw laws by mpmath."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any
+
+import mpmath
+
+mp: Any = mpmath
+DEGREE = mp.pi / 180
+
+Number = tuple[float, float]
+"""A value and how far off it may be."""
+
+
+def length(ratio: Callable[[Any], Any], breaks: Sequence[Any]) -> float:
+    """Length of the driver's centrode for A = 1, from the ratio and its numerical derivative."""
+    with mp.workdps(20):
+
+        def share(phi: Any) -> Any:
+            value = ratio(phi)
+            return value / (1 + value)
+
+        def speed(phi: Any) -> Any:
+            step = mp.mpf(10) ** -6
+            slope = (share(phi + step) - share(phi - step)) / (2 * step)
+            return mp.sqrt(share(phi) ** 2 + slope**2)
+
+        parts = [mp.linspace(a, b, 5) for a, b in pairwise(breaks)]
+        return float(sum(mp.quad(speed, part) for part in parts))
+
+
+def by_module(ratio: Callable[[Any], Any], breaks: Sequence[Any], size: float) -> float:
+    """Centre distance where the centrode is pi*`size` long, size = m*z."""
+    return math.pi * size / length(ratio, breaks)
+
+
+TURN = (0, mp.pi, 2 * mp.pi)
+
+
+def limacon_distance() -> float:
+    """L = 4*(1 + e)*E(4*e/(1 + e)^2); c from (c/k)^2 = (c - 1)^2 - e^2 with k = 1.5."""
+    e, k = 0.25, 1.5
+    b = (1 + k * math.sqrt(1 + (k * k - 1) * e * e)) / (k * k - 1)
+    unit = 4 * (1 + e) * float(mp.ellipe(4 * e / (1 + e) ** 2))
+    return (b + 1) * math.pi * 45 / unit
+
+
+def lobed_ratio(phi: Any) -> Any:
+    """r/(c - r) with r = 1 + 0.1*cos(2*phi) and c = 1 + b in closed form for 2 : 3 lobes."""
+    return (1 + mp.cos(2 * phi) / 10) / (LOBED_B - mp.cos(2 * phi) / 10)
+
+
+LOBED_B = (1 + math.sqrt(1 + (25 / 9 - 1) * (1 + 25 / 9 * 0.01))) / (25 / 9 - 1)
+
+
+def spiral_distance() -> float:
+    """L = (r_b - r_a)*sqrt(1 + k^2)/k, r from A/3 to 2*A/3 over 200 degrees."""
+    k = math.log(2) / math.radians(200)
+    return math.pi * 48 / (math.sqrt(1 + k * k) / (3 * k))
+
+
+def spline_ratio(phi: Any) -> Any:
+    """The spline rises by (3*t - t^3)/15 over a quarter; c by 30-digit quadrature."""
+    t = phi / (mp.pi / 2)
+    quarter, t = int(mp.floor(t)) % 4, t - mp.floor(t)
+    t = 1 - t if quarter % 2 else t
+    radius = 1 + (1 if quarter < 2 else -1) * (3 * t - t**3) / 15
+    return radius / (mp.mpf("2.01705534812207634097601527257") - radius)
+
+
+def two_speeds_ratio(phi: Any) -> Any:
+    """0.8 for 120 degrees, 1.2 for another 120, quintics of 60 between."""
+    x = phi / DEGREE
+    if x <= 120 or x >= 360:
+        return mp.mpf("0.8")
+    if 180 <= x <= 300:
+        return mp.mpf("1.2")
+    t = (x - 120) / 60 if x < 180 else (360 - x) / 60
+    return mp.mpf("0.8") + mp.mpf("0.4") * t**3 * (10 - 15 * t + 6 * t * t)
+
+
+def polynomial_ratio(phi: Any) -> Any:
+    """003 Table 2.6 as printed, a = 0.4."""
+    u, v, w = 160 * DEGREE, 270 * DEGREE, 2 * mp.pi
+    b = POLYNOMIAL_B
+    if phi <= u:
+        return 2 * (b - 0.4) / u**3 * phi**3 - 3 * (b - 0.4) / u**2 * phi**2 + b
+    if phi <= v:
+        return 0.4 + POLYNOMIAL_P * (phi - u) ** 2 / (2 * (v - u))
+    return b - POLYNOMIAL_P * (w - phi) ** 2 / (2 * (w - v))
+
+
+def _polynomial_p() -> float:
+    u, v = math.radians(160), math.radians(270)
+    below = 16 * math.pi**2 - 4 * math.pi * v + 2 * u * v - 6 * math.pi * u - u * u
+    return 24 * math.pi * 0.6 / below
+
+
+POLYNOMIAL_P = _polynomial_p()
+POLYNOMIAL_B = 0.4 + 0.5 * POLYNOMIAL_P * (2 * math.pi - math.radians(160))
+
+
+def door_ratio(phi: Any) -> Any:
+    """003 (3.1) with i_max = 2, phi_v = 60 degrees."""
+    return 1 + mp.sin(1.5 * phi) if phi < 60 * DEGREE else mp.mpf(2)
+
+
+DOOR_KNOT = ((math.pi - 2) * 60 + math.pi * 300) / (2 * math.pi)
+"""003 (3.12), degrees."""
+
+
+def feeder_scale() -> float:
+    """S of r = S*(1 + 0.2*cos(2*phi)), whose length is pi*m*z = 80*pi."""
+
+    def speed(phi: Any) -> Any:
+        return mp.hypot(1 + mp.cos(2 * phi) / 5, 2 * mp.sin(2 * phi) / 5)
+
+    return 80 * math.pi / float(mp.quad(speed, mp.linspace(0, 2 * mp.pi, 17)))
+
+
+NUMBERS: dict[str, dict[str, Number]] = {
+    "furnace_door": {
+        # printed lengths over A, and (3.26); the driven wheel's smallest radius
+        "pair.solved.knots_deg[3]": (171.65, 1e-11),
+        "pair.center_distance_mm": (5 * math.pi * 29 / 1.935834337285, 1e-9),
+        "gears[1].centrode.min_convex_radius_mm": (27.7494, 5e-5),
+    },
+    "furnace_door_two_phase": {
+        "pair.solved.knots_deg[2]": (DOOR_KNOT, 1e-11),
+        "pair.center_distance_mm": (
+            by_module(door_ratio, (0, 60 * DEGREE, DOOR_KNOT * DEGREE), 160),
+            1e-6,
+        ),
+    },
+    "nail_machine_polynomial": {
+        "pair.solved.ratios[0]": (POLYNOMIAL_B, 1e-12),
+        "pair.module_mm": (
+            180
+            * length(polynomial_ratio, (0, 160 * DEGREE, 270 * DEGREE, 2 * mp.pi))
+            / math.pi
+            / 60,
+            1e-6,
+        ),
+    },
+    "circular": {
+        "pair.center_distance_mm": (49.0, 1e-12),
+        "gears[0].centrode.min_convex_radius_mm": (14.0, 1e-12),
+        "gears[1].centrode.min_convex_radius_mm": (35.0, 1e-12),
+    },
+    "two_lobed_ellipse": {
+        "pair.center_distance_mm": (34.5409988531, 1e-10),
+        "pair.ratio.max": (1.3 / 0.7, 1e-12),
+    },
+    "eccentric_circle": {
+        "pair.center_distance_mm": (24.5255146282, 1e-10),
+        "gears[0].centrode.min_convex_radius_mm": (12.0, 1e-11),
+    },
+    "limacon": {
+        "pair.center_distance_mm": (limacon_distance(), 1e-10),
+        "gears[1].centrode.length_mm": (math.pi * 90, 1e-10),
+    },
+    "lobed": {
+        "pair.center_distance_mm": (by_module(lobed_ratio, TURN, 80), 1e-8),
+        "pair.ratio.max": (1.1 / (LOBED_B - 0.1), 1e-12),
+    },
+    "log_spiral": {
+        "pair.center_distance_mm": (spiral_distance(), 1e-10),
+        "pair.solved.growth_per_rad": (math.log(2) / math.radians(200), 1e-13),
+    },
+    "bspline": {
+        "pair.center_distance_mm": (
+            by_module(spline_ratio, [k * mp.pi / 2 for k in range(5)], 80),
+            1e-6,
+        ),
+        "pair.solved.center_distance_over_scale": (2.01705534812207634, 1e-13),
+    },
+    "rounded_square": {
+        # Zarebski and Salacinski print a module of 4.91; these are by 30-digit quadrature
+        "pair.module_mm": (4.92310306992003616, 1e-11),
+        "gears[0].centrode.min_convex_radius_mm": (25.0, 1e-10),
+        "pair.solved.side_distance_over_center_distance": (0.448203891095789116, 1e-14),
+    },
+    "two_speeds": {
+        "pair.solved.ratios[1]": (1.2, 1e-13),
+        "pair.center_distance_mm": (
+            by_module(two_speeds_ratio, [k * DEGREE for k in (0, 120, 180, 300, 360)], 144),
+            1e-6,
+        ),
+    },
+    "harmonics": {
+        "pair.center_distance_mm": (
+            by_module(
+                lambda phi: 1 + mp.cos(phi) / 5 + mp.cos(2 * phi) / 10 + mp.sin(phi) / 20, TURN, 100
+            ),
+            1e-8,
+        ),
+        "gears[0].centrode.length_mm": (math.pi * 100, 1e-10),
+    },
+    "measured": {
+        # the table holds phi1 - 0.2*sin(phi1) in steps of 10 degrees: ratio within 4e-4
+        "pair.ratio.min": (0.8, 4e-4),
+        "pair.ratio.max": (1.2, 4e-4),
+        "pair.center_distance_mm": (by_module(lambda phi: 1 - mp.cos(phi) / 5, TURN, 90), 1e-3),
+    },
+    "indexing_table": {
+        "pair.ratio.max": (1.4 / 1.2, 1e-12),
+        "pair.center_distance_mm": (
+            by_module(lambda phi: (1 + 0.4 * phi / mp.pi) / mp.mpf("1.2"), (0, mp.pi), 60),
+            1e-8,
+        ),
+    },
+    "press": {
+        # the slide's way is that of a crank at phi1 + 0.3*sin(phi1)
+        "pair.ratio.min": (0.7, 1e-11),
+        "pair.ratio.max": (1.3, 1e-11),
+        "pair.center_distance_mm": (
+            by_module(lambda phi: 1 + 3 * mp.cos(phi) / 10, TURN, 132),
+            1e-8,
+        ),
+    },
+    "feeder": {
+        "pair.way_per_turn_mm": (2 * math.pi * feeder_scale(), 1e-9),
+        "pair.radius_mm.max": (1.2 * feeder_scale(), 1e-10),
+    },
+}
