@@ -48,7 +48,7 @@ class Subject:
             tangent = di / i * factor  # r1'/r1
             bend = ddi / i * factor - tangent * tangent
             if not law.feeds:
-                bend = bend - di * di / i * factor * factor
+                bend = bend - 2.0 * di * di / i * factor * factor
             return np.arctan(tangent)[None], (bend / (1.0 + tangent * tangent))[None]
 
         ((places, values),) = extremes(slope, law.knots)
