@@ -76,15 +76,9 @@ def even_swing() -> Law:
 
 
 def attempt(law: Law, module: float, teeth: int) -> Attempt:
-    """Generate both outlines with ncgears, by the same rack as gearcam's default."""
-    phi = law.start + 2 * math.pi * np.arange(SAMPLES) / SAMPLES
-    angle, *rates = law.derivatives(phi)
-    columns = np.column_stack([phi, angle - angle[0], *rates])
+    """Generate both outlines with ncgears, by the same rack as gearcam's default, in time."""
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "transmission.csv"
-        np.savetxt(
-            path, columns, delimiter=",", header="phi,psi,psi1,psi2,psi3", comments="", fmt="%.17g"
-        )
+        path = _sampled(law, Path(folder))
         start = time.perf_counter()
         try:
             result = generate_geometry(_config(path, law, module, teeth), SAMPLES_PER_RADIAN)
@@ -93,6 +87,29 @@ def attempt(law: Law, module: float, teeth: int) -> Attempt:
         seconds = time.perf_counter() - start
     made = f"{len(result.drive_outline)} and {len(result.driven_outline)} points"
     return Attempt(seconds, built=True, outcome=made)
+
+
+def outlines(law: Law, module: float, teeth: int) -> tuple[Array, Array] | str:
+    """Return both outlines of ncgears, (n, 2), mm, or why it gives up."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = _sampled(law, Path(folder))
+        try:
+            result = generate_geometry(_config(path, law, module, teeth), SAMPLES_PER_RADIAN)
+        except (ValueError, RuntimeError) as error:
+            return str(error)
+    return np.asarray(result.drive_outline), np.asarray(result.driven_outline)
+
+
+def _sampled(law: Law, folder: Path) -> Path:
+    """Write the samples of a law."""
+    phi = law.start + 2 * math.pi * np.arange(SAMPLES) / SAMPLES
+    angle, *rates = law.derivatives(phi)
+    columns = np.column_stack([phi, angle - angle[0], *rates])
+    path = folder / "transmission.csv"
+    np.savetxt(
+        path, columns, delimiter=",", header="phi,psi,psi1,psi2,psi3", comments="", fmt="%.17g"
+    )
+    return path
 
 
 def _config(path: Path, law: Law, module: float, teeth: int) -> object:

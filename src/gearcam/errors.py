@@ -11,7 +11,7 @@ Three kinds of refusal, each from a common base and from the builtin that fits:
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 
@@ -86,6 +86,10 @@ class InfeasibleError(GearcamError, ValueError):
         Unit of both.
     nearest : str
         The nearest feasible value of what the user would change.
+    suggested : mapping
+        The same for programs: value by key of the design file; empty where none is known.
+    more_teeth : bool
+        Whether more teeth would help.
     """
 
     def __init__(
@@ -97,8 +101,11 @@ class InfeasibleError(GearcamError, ValueError):
         limit: float | None = None,
         unit: str = "",
         nearest: str = "",
+        suggested: Mapping[str, object] | None = None,
+        more_teeth: bool = False,
     ) -> None:
         self.what, self.where, self.nearest, self.unit = what, where, nearest, unit
+        self.suggested, self.more_teeth = dict(suggested or {}), more_teeth
         self.value, self.limit = value, limit
         text = f"{what} ({where})" if where else what
         numbers = ", ".join(

@@ -2,7 +2,7 @@
 
 At the moment of contact the end of a flank lies on the mate's flank. Where the centrode is concave
 the corner goes on deeper beyond that moment, and may run into the mate's root. Such corners are
-found in two steps: those that come near the depth of the mate's root, or whose mate is cut by a
+found in two steps: those that come near the depth of the mate's root, or where a wheel is cut by a
 small pinion, are followed against its outline. Most wheels have none.
 """
 
@@ -22,9 +22,13 @@ Index = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 _WINDOW = 1.25
-"""Pitches of roll, before and behind a flank, over which its corner is followed."""
+_WIDE = 4.0
+"""Pitches of roll, before and behind a flank, over which its corner is followed: in a tight concave
+part tips can meet far from the pitch point."""
 
-_ROLLS = 121
+_ROLLS = 48
+"""Rolls in a pitch."""
+
 _HALVINGS = 14
 """A reach of three modules halved 14 times: 0.0002 modules."""
 
@@ -32,8 +36,8 @@ _CAUTION = 0.4
 """Share of the clearance within which a corner is followed."""
 
 _TIGHT = 2.0 * np.pi / 24.0
-"""Curvature of the mate's cutter times the pitch from which all corners are followed: a pinion with
-fewer than 24 teeth leaves much in the corners of a root."""
+"""Curvature of a cutter times the pitch from which all corners are followed: a pinion with fewer
+than 24 teeth leaves much in the corners of a root, and in so tight a place tips crowd."""
 
 
 def highest_corners(
@@ -70,8 +74,9 @@ def highest_corners(
     if kappa.min() >= 0.0 and mate.cutter.kc == 0.0:
         return result
     sf, sigma = flanks
-    near = _deep(toothing, mate.cutter, sf, sigma, highest)
-    at = np.flatnonzero(near | (mate.cutter.kc * toothing.pitch > _TIGHT))
+    near = _deep(toothing, mate.cutter, flanks, highest)
+    tight = max(toothing.cutter.kc, mate.cutter.kc) * toothing.pitch > _TIGHT
+    at = np.flatnonzero(near | tight)
     if at.size == 0:
         return result
     import shapely
@@ -80,7 +85,8 @@ def highest_corners(
     shapely.prepare(body)
 
     def hits(some: Index, reach: Array) -> Mask:
-        path = _in_mate(toothing, mate, sf[some], sigma[some], reach)
+        window = _WIDE if tight else _WINDOW
+        path = _in_mate(toothing, mate, (sf[some], sigma[some]), reach, window)
         return np.any(shapely.contains_xy(body, path.real, path.imag), axis=1)
 
     at = at[hits(at, highest[at])]
@@ -93,18 +99,28 @@ def highest_corners(
     return result
 
 
-def _corners(toothing: Toothing, sf: Array, sigma: Array, reach: Array) -> tuple[Plane, Array]:
+def _corners(
+    toothing: Toothing, flanks: tuple[Array, Array], reach: Array, window: float
+) -> tuple[Plane, Array]:
     """Return the ends of flanks at a reach, (n, 1), and the rolls over which to follow them."""
+    sf, sigma = flanks
     corner = toothing.flank_points(
         toothing.frames(toothing.rolling.angle(sf - sigma * reach), curved=False), sf, sigma
     )
-    rolls = sf[:, None] + _WINDOW * toothing.pitch * np.linspace(-1.0, 1.0, _ROLLS)
+    steps = np.arange(-window, window + 0.5 / _ROLLS, 1.0 / _ROLLS)
+    rolls = sf[:, None] + toothing.pitch * steps
     return corner[:, None], rolls
 
 
-def _in_mate(toothing: Toothing, mate: Toothing, sf: Array, sigma: Array, reach: Array) -> Plane:
+def _in_mate(
+    toothing: Toothing,
+    mate: Toothing,
+    flanks: tuple[Array, Array],
+    reach: Array,
+    window: float,
+) -> Plane:
     """Return the paths of corners in the mate's frame, (n, rolls)."""
-    corner, rolls = _corners(toothing, sf, sigma, reach)
+    corner, rolls = _corners(toothing, flanks, reach, window)
     phi = toothing.rolling.angle(rolls)
     own, other = toothing.frames(phi, curved=False), mate.frames(phi, curved=False)
     # both tangents are one, and the outward normals opposite
@@ -112,9 +128,9 @@ def _in_mate(toothing: Toothing, mate: Toothing, sf: Array, sigma: Array, reach:
     return other.p + other.t * along
 
 
-def _deep(toothing: Toothing, cutter: Cutter, sf: Array, sigma: Array, reach: Array) -> Mask:
+def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:
     """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll."""
-    corner, rolls = _corners(toothing, sf, sigma, reach)
+    corner, rolls = _corners(toothing, flanks, reach, _WINDOW)
     frames = toothing.frames(toothing.rolling.angle(rolls), curved=False)
     down = np.real(np.conj(toothing.turn * frames.t) * (corner - frames.p))
     clearance = cutter.dedendum - toothing.cutter.addendum

@@ -156,6 +156,7 @@ def choose_cutter(
             nearest=f"the smallest concave radius is {1.0 / concave_curvature:.6g} mm and must be "
             f"at least {smallest:.6g} mm: lower the ratio's swing, take a smaller module (more "
             "teeth) or a smaller rack.dedendum",
+            more_teeth=True,
         )
     return cutter
 

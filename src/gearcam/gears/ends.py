@@ -29,6 +29,9 @@ _BELOW = 1.0
 _GAP = 0.1
 """Angle, rad, that the ends of a wheel leave free between them."""
 
+_WHOLE = 350.0
+"""Way of a wheel, deg, beyond which no tooth count helps."""
+
 _HUB = 0.6
 """Radius of the hub over the smallest radius that the body has room for."""
 
@@ -139,15 +142,15 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         name = ("driver", "driven wheel")[toothing.wheel - 1]
         lobes = toothing.rolling.law.lobes
         travel = math.degrees(lobes.period if toothing.wheel == 1 else lobes.advance)
-        over = math.degrees(span - 2.0 * math.pi + _GAP)
         raise InfeasibleError(
             f"the ends of the {name} meet behind its shaft",
             where=f"wheel {toothing.wheel}",
             value=travel,
-            limit=travel - over,
+            limit=travel * (2.0 * math.pi - _GAP) / span,
             unit="deg",
             nearest=f"this is how far the {name} turns, and with its end teeth it fills the "
             "circle: shorten its way, or take more teeth",
+            more_teeth=travel < _WHOLE,
         )
     hub = radius * inner / np.abs(inner)
     sweep = 2.0 * math.pi - span

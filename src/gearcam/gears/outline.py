@@ -339,6 +339,7 @@ def _demand_simple(outline: Outline) -> None:
         unit="mm",
         nearest="this is the module, and the largest that is certainly free of undercut; take more "
         "teeth, a smaller rack.dedendum or a larger rack.tip_radius",
+        more_teeth=True,
     )
 
 
@@ -361,4 +362,5 @@ def _demand_shaft(outline: Outline) -> None:
         limit=largest,
         unit="mm",
         nearest=f"a module below {largest:.6g} mm (more teeth), or a smaller swing of the ratio",
+        more_teeth=True,
     )

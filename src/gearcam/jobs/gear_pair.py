@@ -75,6 +75,9 @@ class GearPairJob:
         Inner accuracy.
     """
 
+    _advises = True
+    """Whether a refusal comes with what would work; attempts at that do not."""
+
     def __init__(self, design: GearPairDesign, tolerances: Tolerances = DEFAULT) -> None:
         self.design = design
         self.tolerances = tolerances
@@ -87,6 +90,35 @@ class GearPairJob:
         yield
         self.timings[name] = self.timings.get(name, 0.0) + time.perf_counter() - start
 
+    @contextmanager
+    def _advised(self) -> Iterator[None]:
+        """Say with a refusal how many teeth would do, where more of them help."""
+        try:
+            yield
+        except InfeasibleError as error:
+            if not (error.more_teeth and self._advises):
+                raise
+            from gearcam.jobs.feasible import advice, fewest_teeth, largest_eccentricity
+
+            value, limit = error.value or 1.0, error.limit or 1.0
+            factor, law = max(value / limit, limit / value), self.design.law
+            found = fewest_teeth(self.design.pair.teeth, factor, self._with_teeth)
+            largest = None
+            if hasattr(law, "eccentricity"):
+                largest = largest_eccentricity(
+                    law.eccentricity, lambda e: self._other(law=replace(law, eccentricity=e))
+                )
+            raise advice(error, found, largest) from None
+
+    def _with_teeth(self, teeth: tuple[int, int]) -> tuple[Gear, Gear]:
+        return self._other(pair=replace(self.design.pair, teeth=teeth))
+
+    def _other(self, **changes: Any) -> tuple[Gear, Gear]:
+        """Build the wheels of a changed design, without advice."""
+        other = GearPairJob(replace(self.design, **changes), self.tolerances)
+        other._advises = False
+        return other.gears
+
     @cached_property
     def law(self) -> RatioLaw:
         """The ratio law."""
@@ -97,7 +129,7 @@ class GearPairJob:
     def pair(self) -> GearPair:
         """The centrodes with their cutters."""
         law = self.law
-        with self._stage("centrodes"):
+        with self._stage("centrodes"), self._advised():
             return make_pair(law, self.design.pair, self.design.rack, self.tolerances)
 
     @cached_property
@@ -112,7 +144,7 @@ class GearPairJob:
 
     def _gear(self, wheel: Wheel) -> Gear:
         pair = self.pair
-        with self._stage(f"gear{wheel}"):
+        with self._stage(f"gear{wheel}"), self._advised():
             tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
             gear = make_gear(pair, wheel, tolerance, self.tolerances)
             bore = self.bores[wheel - 1]

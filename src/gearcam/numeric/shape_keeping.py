@@ -87,7 +87,9 @@ def _limited_slopes(slope: Array, secant: Array, repeats: bool) -> Array:
     slope = np.where(rising & (slope * before < 0.0), 0.0, slope)
     slope = np.clip(slope, -2.5 * least, 2.5 * least)
     total = np.abs(slope[:-1]) + np.abs(slope[1:])
-    share = np.minimum(1.0, 2.5 * np.abs(secant) / np.maximum(total, np.finfo(float).tiny))
+    allowed = 2.5 * np.abs(secant)
+    larger = np.maximum(total, allowed)
+    share = np.divide(allowed, larger, out=np.ones_like(total), where=larger > 0.0)
     return slope * np.minimum(*_sides(share, repeats))
 
 

@@ -1,0 +1,158 @@
+"""Open pairs and racks: printed and closed-form numbers, ends, mates, and what touches at them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+
+from gearcam.errors import InfeasibleError
+from gearcam.gears.pair import contact_arcs
+from gearcam.laws.phases import Phases
+from gearcam.laws.rack import Rack
+from gearcam.laws.span import ONE_LOBE, Travel
+from gearcam.laws.spiral import LogSpiral
+from gearcam.tolerances import DEFAULT
+from helpers_pairs import job, profile
+
+SPIRAL = LogSpiral(ratios=(0.5, 2.0), driven_travel=math.radians(200))
+
+
+def door(second: float) -> Phases:
+    """003 section 3.2.2.2 with phi_u = 10 deg."""
+    return Phases(
+        knots=(0.0, math.radians(10), math.radians(second), "solve"),
+        ratios=(1.0, 1.0, 2.0, 2.0),
+        driven_travel=math.radians(308.3),
+    )
+
+
+@pytest.mark.parametrize(
+    ("second", "travel", "length"),
+    [(60.0, 171.65, 1.935834337285), (90.0, 179.15, 1.972103175704)],
+)
+def test_the_furnace_door_has_the_printed_lengths(
+    second: float, travel: float, length: float
+) -> None:
+    """And the driven wheel's smallest radius, at phi_u: kappa = (2 + (pi/(phi_v - phi_u))^2/2)/A"""
+    made = job(door(second), (29, 29), module=5.0)
+    assert isinstance(made.law.lobes, Travel)
+    assert math.degrees(made.law.lobes.period) == pytest.approx(travel, abs=1e-11)
+    assert made.law.phi2(made.law.lobes.period) == pytest.approx(math.radians(308.3), abs=1e-14)
+    unit = made.pair.rolling.length(1) / made.pair.center_distance
+    assert unit == pytest.approx(length, abs=1e-12)
+    bend = 2 + 0.5 * (math.pi / math.radians(second - 10)) ** 2
+    assert made.gear2.convex_radius == pytest.approx(made.pair.center_distance / bend, rel=1e-12)
+
+
+def test_a_spiral_goes_on_as_a_spiral_beyond_its_ends() -> None:
+    made = job(SPIRAL, (24, 24), module=2.0)
+    way, growth = made.law.lobes.period, made.law.solved["growth_per_rad"]
+    for phi in (-0.2, 0.5 * way, way + 0.2):
+        r1 = float(abs(made.pair.rolling.frames(1, np.array([phi])).p[0]))
+        assert r1 == pytest.approx(
+            made.pair.center_distance / 3 * math.exp(growth * phi), rel=1e-13
+        )
+
+
+@pytest.mark.parametrize("slope", [0.0, 1.0])
+def test_the_continued_law_has_no_corner(slope: float) -> None:
+    """From a constant ratio by a circle, from a slope by a spiral: C1 at both ends."""
+    shape = "sine" if slope else "cosine"
+    law = Phases(
+        shape=shape, knots=(0.0, 1.0, "solve"), ratios=(1.0, 2.0, 2.0), driven_travel=4.0
+    ).build(ONE_LOBE, DEFAULT)
+    for end in (0.0, law.lobes.period):
+        inside, outside = (law.derivatives(np.array([end + h]), 1) for h in (1e-9, -1e-9))
+        assert inside[0] == pytest.approx(outside[0], abs=1e-8)
+        assert inside[1] == pytest.approx(outside[1], abs=1e-7)
+
+
+def whole_teeth(points: np.ndarray, centrode: np.ndarray) -> int:
+    """Teeth that stand out of the centrode: pieces of the outline beyond it."""
+    body = shapely.Polygon(points)
+    apart = shapely.difference(body, shapely.LineString(centrode).buffer(1e-3, cap_style="flat"))
+    return len(shapely.get_parts(apart)) - 1
+
+
+def test_a_blank_ends_half_a_pitch_beyond_its_centrode() -> None:
+    """The driver has one tooth more than pitches, the driven wheel a half at each end."""
+    made = profile("furnace_door")
+    for gear, count in ((made.gear1, 30), (made.gear2, 31)):
+        way = made.law.lobes.period
+        places = np.array([-0.5, gear.toothing.teeth + 0.5]) * gear.toothing.pitch
+        start, end = made.pair.rolling.angle(places).tolist()
+        assert start < 0.0 < way < end
+        assert whole_teeth(gear.outline, gear.centrode(np.linspace(start, end, 4001))) == count
+
+
+@pytest.mark.parametrize("name", ["furnace_door", "log_spiral", "furnace_door_two_phase"])
+def test_an_open_pair_drives_from_end_to_end(name: str) -> None:
+    made = profile(name)
+    length = made.pair.rolling.length(1)
+    for sigma in (1, -1):
+        arcs = contact_arcs(made.gear1, made.gear2, sigma)
+        assert arcs.gaps == ()
+        carried = arcs.ratios > 0.0
+        assert arcs.start[carried].min() < 0.0
+        assert arcs.end[carried].max() > length
+
+
+def test_a_missing_end_tooth_would_be_seen() -> None:
+    """Without the last flanks the coverage has a hole at the end."""
+    made = profile("furnace_door")
+    arcs = contact_arcs(made.gear1, made.gear2, 1)
+    object.__setattr__(arcs, "start", arcs.start[:-3])
+    object.__setattr__(arcs, "end", arcs.end[:-3])
+    ((low, high),) = arcs.gaps
+    assert high == pytest.approx(made.pair.rolling.length(1), abs=1e-9)
+    assert low < high
+
+
+def test_ends_that_meet_are_refused_with_the_way_that_does() -> None:
+    with pytest.raises(InfeasibleError, match="meet behind its shaft") as caught:
+        _ = job(LogSpiral(ratios=(0.2, 0.5), driven_travel=math.radians(200)), (20, 20)).gears
+    error = caught.value
+    assert error.value is not None
+    assert error.limit is not None
+    # way and travel are in proportion on spirals; the end teeth stay as they are
+    for share, works in ((0.99, True), (1.02, False)):
+        travel = math.radians(200) * error.limit / error.value * share
+        made = job(LogSpiral(ratios=(0.2, 0.5), driven_travel=travel), (20, 20))
+        if works:
+            assert shapely.Polygon(made.gear1.outline).is_valid
+        else:
+            with pytest.raises(InfeasibleError):
+                _ = made.gears
+
+
+def test_a_circular_wheel_drives_a_straight_rack() -> None:
+    """The limit: flanks are straight lines at 20 degrees, one pitch apart."""
+    made = job(Rack(r1="1"), (20, 9), module=2.0, tolerance=1e-5)
+    assert made.pair.rolling.length(1) == pytest.approx(40 * math.pi, abs=1e-12)
+    toothing, flanks = made.gear2.toothing, made.gear2.profile.flanks
+    for sigma in (1.0, -1.0):
+        sf = flanks.sf[flanks.sigma == sigma][4:5]
+        phi = made.pair.rolling.angle(sf + np.linspace(-3.0, 3.0, 7))
+        points = toothing.flank_points(toothing.frames(phi), sf, np.array([sigma]))
+        assert np.angle(np.diff(points)) % math.pi == pytest.approx(
+            (sigma * math.radians(20)) % math.pi, abs=1e-9
+        )
+    assert made.gear2.toothing.pitch == pytest.approx(2 * math.pi)
+
+
+def test_a_rack_moves_by_the_integral_of_the_radius() -> None:
+    made = job(Rack(way="3*phi1 - 0.5*sin(2*phi1)"), (40, 60), module=2.0)
+    scale = made.pair.center_distance
+    phi = np.linspace(0.0, 9.0, 7)
+    frames = made.pair.rolling.frames(2, phi)
+    np.testing.assert_allclose(frames.p.imag, scale * (3 * phi - 0.5 * np.sin(2 * phi)), rtol=1e-13)
+    np.testing.assert_allclose(frames.p.real, scale * (3 - np.cos(2 * phi)), rtol=1e-13)
+    np.testing.assert_allclose(frames.s, made.pair.rolling.frames(1, phi).s, rtol=1e-14)
+
+
+def test_a_centre_distance_of_a_rack_is_refused() -> None:
+    with pytest.raises(InfeasibleError, match="module_mm"):
+        _ = job(Rack(r1="1"), (20, 9), distance=40.0).gears
