@@ -1,6 +1,7 @@
 # make demo    build the nail machine's gears into output/ (installs into .venv first)
 # make test    everything that CI runs
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
+# make peers   compare flanks with those of another package
 # make lint    style, types, import contracts    make clean   remove .venv, caches and output
 #
 # Needs Python 3.11 or later and a network for the first call. `make PYTHON=/path/to/python demo` chooses one.
@@ -13,7 +14,7 @@ DEMO   := profiles/nail_machine_two_phase.toml
 PYTHON ?=
 
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench clean help
+.PHONY: demo test lint slow bench peers clean help
 
 help:
 	@sed -n 's/^# //p' Makefile

@@ -212,11 +212,12 @@ def _laws() -> None:
 
     for name, law in LAWS.items():
         say(f'{name}\n{wrapped(law.doc)}\n    law.type = "{name}"')
+        width = 2 + max(map(len, (*law_table(name).entries, "continuity")))
         rows = [(entry.key, description(entry)) for entry in law_table(name).entries.values()]
         for key, words in rows:
-            say(wrapped(words, first=f"    {key:<16}", rest=" " * 20))
-        say(wrapped(law.continuity, first=f"    {'continuity':<16}", rest=" " * 20))
-        say(wrapped(law.source, first=f"    {'source':<16}", rest=" " * 20) + "\n")
+            say(wrapped(words, first=f"    {key:<{width}}", rest=" " * (4 + width)))
+        say(wrapped(law.continuity, first=f"    {'continuity':<{width}}", rest=" " * (4 + width)))
+        say(wrapped(law.source, first=f"    {'source':<{width}}", rest=" " * (4 + width)) + "\n")
 
 
 def _new(kind: str, file: str | None) -> None:
