@@ -10,17 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.errors import InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.gears.outline import build_outline
 from gearcam.gears.subject import Subject
 from gearcam.jobs import GearPairJob
+from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.contact import COAST, DRIVE, count, flank_pairs, stretches
 from gearcam.meshing.numbers import pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, Setup, mount, run, study
 from gearcam.tolerances import DEFAULT
-from helpers_pairs import profile
+from helpers_pairs import job, profile
 
 NAILS = ("nail_machine_two_phase", "nail_machine_three_phase")
 ADVANCE = math.radians(0.005)
@@ -232,3 +234,10 @@ def test_the_pair_s_own_check_names_the_sides_alike() -> None:
 
 def subject_of(made: GearPairJob) -> Subject:
     return Subject(pair=made.pair, gears=made.gears, bores=made.bores, backlash=0.0)
+
+
+def test_teeth_that_cannot_be_told_apart_are_refused() -> None:
+    """Halves that cross themselves once showed overlap where there is none."""
+    made = job(Ellipse(eccentricity=0.281), (9, 6), module=2.0, x=0.4)
+    with pytest.raises(InfeasibleError, match="wheel 2"):
+        study(made.gears, MeshingSpec())

@@ -223,6 +223,10 @@ def demand_free(made: GearPairJob) -> None:
     if not made.pair.studied:
         return
     first, second = (halve(gear.profile) for gear in made.gears)
+    if not (first.sound and second.sound):  # the study refuses them
+        phases = end * np.arange(PHASES_PER_TOOTH) / PHASES_PER_TOOTH
+        assert max(whole_overlap(made, phi) for phi in phases) <= explained(made)
+        return
     turning = Turning(
         rolling=made.pair.rolling, driver=first, driven=second, distance=made.pair.center_distance
     )

@@ -18,7 +18,7 @@ from gearcam.gears.pair import lobes_of
 _MOST = 400
 """Most teeth of a wheel that are tried: beyond them nobody is helped."""
 
-_PATIENCE = 3.0
+_PATIENCE = 6.0
 """Seconds after which the search is given up."""
 
 

@@ -220,7 +220,8 @@ def _close(
                 where=f"law.{name}",
                 value=closing,
                 limit=0.0,
-                nearest="closure asks for this value; lower the other ratios",
+                nearest="closure asks for this value; it is positive with all other ratios times "
+                f"less than {lobes.advance / (lobes.advance - rest):.6g}",
             )
     elif abs(rest) > tolerances.refusal:
         raise InfeasibleError(

@@ -12,10 +12,10 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
 from gearcam.laws.phases import arcs_law, one_lobe
-from gearcam.laws.span import Lobes, Travel, demand_equal
+from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal
 from gearcam.laws.transitions import ARCS, SMOOTH
 from gearcam.numeric.jets import Jet, cos, sin
-from gearcam.numeric.piecewise import Piece
+from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
 
@@ -189,7 +189,18 @@ class Fourier:
                 total = total + ((b * kn) * cos(kn * x) - (a * kn) * sin(kn * x))
             return mean * total
 
-        return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances)
+        knots, pieces = [0.0, lobes.period], [Piece(ratio, motion)]
+        (place, smallest), _ = piecewise(knots, pieces).extremes
+        if not smallest > 0.0:
+            share = mean / (mean - smallest)
+            raise InfeasibleError(
+                "the ratio must stay positive: the driven wheel would stand still or turn back",
+                where=angle_text(place),
+                value=smallest,
+                limit=0.0,
+                nearest=f"all coefficients times less than {share:.6g}",
+            )
+        return make_law(lobes, knots, pieces, tolerances)
 
     def _harmonics(self) -> list[tuple[int, float, float]]:
         pairs = zip_longest(self.cosines, self.sines, fillvalue=0.0)

@@ -75,6 +75,11 @@ class Halves:
         shapely.prepare(polygons)
         return polygons
 
+    @property
+    def sound(self) -> bool:
+        """Whether no half crosses itself, as those of very few, deep teeth may."""
+        return bool(np.all(shapely.is_valid(self.polygons)))
+
     def distance(self, points: Plane) -> Array:
         """Return the distances of points from the halves, mm; 0 inside."""
         union = shapely.MultiPolygon(self.polygons.tolist())

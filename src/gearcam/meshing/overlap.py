@@ -163,13 +163,7 @@ class Turning:
         mates = self.driven.polygons[two]
         # the prepared ones first: twice as fast as the tree's own test
         hit = shapely.intersects(mates, polygons[one])
-        try:
-            shared = shapely.intersection(polygons[one[hit]], mates[hit])
-        except shapely.errors.GEOSException:
-            # halves of very few teeth may cross themselves where two of them part
-            shared = shapely.intersection(
-                shapely.make_valid(polygons[one[hit]]), shapely.make_valid(mates[hit])
-            )
+        shared = shapely.intersection(polygons[one[hit]], mates[hit])
         area = shapely.area(shared)
         some = np.flatnonzero(area > 0.0)
         one, two, shared = one[hit][some], two[hit][some], shared[some]

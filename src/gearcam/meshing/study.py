@@ -219,6 +219,14 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
             nearest=f"at least {np.degrees(abs(least)):.3g} deg",
         )
     first, second = (halve(replace(gear.profile, tolerance=tolerance)) for gear in gears)
+    for gear, halves in zip(gears, (first, second), strict=True):
+        if not halves.sound:
+            raise InfeasibleError(
+                "the teeth are too few and too deep to be told apart by halves",
+                where=f"wheel {gear.wheel}",
+                value=float(gear.toothing.teeth),
+                nearest="more teeth or a smaller x; build and check look at such wheels",
+            )
     turning = Turning(rolling=pair.rolling, driver=first, driven=second, distance=distance)
     return Setup(
         spec=spec,
