@@ -82,10 +82,8 @@ def _sides(secant: Array, repeats: bool) -> tuple[Array, Array]:
 def _limited_slopes(slope: Array, secant: Array, repeats: bool) -> Array:
     """Keep slopes where a monotonic quintic exists: d0 + d1 at most 2.5 secants."""
     before, after = _sides(secant, repeats)
-    least = np.minimum(np.abs(before), np.abs(after))
     rising = before * after > 0.0
     slope = np.where(rising & (slope * before < 0.0), 0.0, slope)
-    slope = np.clip(slope, -2.5 * least, 2.5 * least)
     total = np.abs(slope[:-1]) + np.abs(slope[1:])
     allowed = 2.5 * np.abs(secant)
     larger = np.maximum(total, allowed)
