@@ -88,6 +88,17 @@ def shaped(over: float) -> GearPairJob:
     return job(law, (80, 80), limits={"cutter_teeth": teeth * over})
 
 
+def door(more: float) -> GearPairJob:
+    """The furnace door, its limit of the gap `more` rad than what is left, by hand.
+
+    Half a pitch beyond its ends the driven wheel is a circle of radius A/2 and A/3.
+    """
+    made = profile("furnace_door")
+    ends = 2.5 * math.pi * 5 / made.pair.center_distance
+    gap = 2 * math.pi - math.radians(308.3) - ends
+    return job(made.design.law, (29, 29), module=5.0, limits={"end_gap": gap + more})
+
+
 class Case(NamedTuple):
     code: str
     severity: str
@@ -126,6 +137,7 @@ CASES = [
         lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.5001)), (400, 400)),
         lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.4999)), (400, 400)),
     ),
+    Case("self-crossing", "warning", lambda: door(1e-9), lambda: door(-1e-9)),
     Case("concave-teeth", "warning", lambda: shaped(1.0001), lambda: shaped(0.9999)),
     Case("sharp", "warning", lambda: bending(2.499), lambda: bending(2.501)),
     Case(
@@ -218,7 +230,7 @@ def test_every_check_of_the_registry_is_tested_here() -> None:
         "remote-cutter",
     }
     assert named == {check.code for check in CHECKS.values() if check.kind == KIND}
-    assert len(named) == 15
+    assert len(named) == 16
 
 
 def test_a_pair_that_does_not_drive_is_an_error() -> None:

@@ -204,6 +204,42 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
 
 
 @check(
+    "self-crossing",
+    kind=KIND,
+    doc="angle left between the ends of an open wheel before its centrode comes round to itself",
+    limit=(
+        "end_gap",
+        Param(ANGLE, ge=0, le=360, doc="least angle between the ends"),
+        math.radians(10.0),
+    ),
+)
+def self_crossing(subject: Subject, limit: float) -> Iterator[Finding]:
+    """Warn where the ends of an open wheel nearly meet; those that meet are refused.
+
+    A centrode given by its radius over a rising angle crosses itself only beyond a full turn.
+    """
+    rolling = subject.pair.rolling
+    for gear in subject.gears:
+        if gear.toothing.closed or rolling.law.feeds:
+            continue
+        half, length = 0.5 * gear.toothing.pitch, gear.toothing.length
+        ends = rolling.angle(np.array([-half, length + half]))
+        turned = ends if gear.wheel == 1 else rolling.law.phi2(ends)
+        gap = 2.0 * math.pi - float(turned[1] - turned[0])
+        if gap < limit:
+            yield Finding(
+                code="self-crossing",
+                severity="warning",
+                message="Little is left between the first and the last tooth; a shorter way or "
+                "more teeth leave more.",
+                value=math.degrees(gap),
+                limit=math.degrees(limit),
+                unit="deg",
+                where=f"wheel {gear.wheel}",
+            )
+
+
+@check(
     "acceleration",
     kind=KIND,
     doc="largest angular acceleration of the driven wheel over the driver's speed squared",
