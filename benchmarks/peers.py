@@ -77,27 +77,28 @@ def even_swing() -> Law:
 
 def attempt(law: Law, module: float, teeth: int) -> Attempt:
     """Generate both outlines with ncgears, by the same rack as gearcam's default, in time."""
+    seconds, made = _generated(law, module, teeth)
+    if isinstance(made, str):
+        return Attempt(seconds, built=False, outcome=made)
+    return Attempt(seconds, built=True, outcome=f"{len(made[0])} and {len(made[1])} points")
+
+
+def outlines(law: Law, module: float, teeth: int) -> tuple[Array, Array] | str:
+    """Return both outlines of ncgears, (n, 2), mm, or why it gives up."""
+    return _generated(law, module, teeth)[1]
+
+
+def _generated(law: Law, module: float, teeth: int) -> tuple[float, tuple[Array, Array] | str]:
+    """Seconds that it took, the law's samples not counted, and both outlines or the reason."""
     with tempfile.TemporaryDirectory() as folder:
         path = _sampled(law, Path(folder))
         start = time.perf_counter()
         try:
             result = generate_geometry(_config(path, law, module, teeth), SAMPLES_PER_RADIAN)
         except (ValueError, RuntimeError) as error:
-            return Attempt(time.perf_counter() - start, built=False, outcome=str(error))
+            return time.perf_counter() - start, str(error)
         seconds = time.perf_counter() - start
-    made = f"{len(result.drive_outline)} and {len(result.driven_outline)} points"
-    return Attempt(seconds, built=True, outcome=made)
-
-
-def outlines(law: Law, module: float, teeth: int) -> tuple[Array, Array] | str:
-    """Return both outlines of ncgears, (n, 2), mm, or why it gives up."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = _sampled(law, Path(folder))
-        try:
-            result = generate_geometry(_config(path, law, module, teeth), SAMPLES_PER_RADIAN)
-        except (ValueError, RuntimeError) as error:
-            return str(error)
-    return np.asarray(result.drive_outline), np.asarray(result.driven_outline)
+    return seconds, (np.asarray(result.drive_outline), np.asarray(result.driven_outline))
 
 
 def _sampled(law: Law, folder: Path) -> Path:

@@ -70,6 +70,16 @@ def profile(name: str, tolerance: float | None = None) -> GearPairJob:
     )
 
 
+def explained(made: GearPairJob) -> float:
+    """Overlap that two chord errors explain: a lens of that depth on each of four flank pairs.
+
+    A lens of depth d between flanks of relative curvature k has the area (4/3)*d*sqrt(2*d/k);
+    flanks are no flatter than a circle of the centre distance.
+    """
+    depth = made.gear1.profile.tolerance + made.gear2.profile.tolerance
+    return 4 * (4 / 3) * depth * math.sqrt(2 * depth * made.pair.center_distance)
+
+
 class Assembly:
     """Two outlines on their shafts, turned to any phase and clipped to the zone of mesh."""
 

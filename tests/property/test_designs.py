@@ -23,7 +23,7 @@ from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
-from helpers_pairs import Assembly, job
+from helpers_pairs import Assembly, explained, job
 
 MODULE = 2.0
 """mm; the size is a matter of scale, which has a test of its own."""
@@ -128,16 +128,6 @@ def demand_outline(outline: Outline) -> None:
     chord = np.roll(first, -1) - first
     off = np.abs(np.imag(np.conj(chord) * (curve.reshape(12, -1) - first)) / np.abs(chord))
     assert off.max() <= outline.tolerance
-
-
-def explained(made: GearPairJob) -> float:
-    """Overlap that two chord errors explain: a lens of that depth on each of four flank pairs.
-
-    A lens of depth d between flanks of relative curvature k has the area (4/3)*d*sqrt(2*d/k);
-    flanks are no flatter than a circle of the centre distance.
-    """
-    depth = made.gear1.profile.tolerance + made.gear2.profile.tolerance
-    return 4 * (4 / 3) * depth * math.sqrt(2 * depth * made.pair.center_distance)
 
 
 def demand_pair(given: Given) -> GearPairJob | None:

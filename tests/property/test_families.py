@@ -33,7 +33,7 @@ from gearcam.laws.spiral import LogSpiral
 from gearcam.laws.table import Table
 from gearcam.meshing.halves import halve
 from gearcam.meshing.overlap import Turning
-from helpers_pairs import job
+from helpers_pairs import explained, job
 
 MODULE = 2.0
 TURN = 2 * math.pi
@@ -191,12 +191,6 @@ FAMILIES: dict[str, tuple[st.SearchStrategy[Any], st.SearchStrategy[tuple[int, i
         st.tuples(st.integers(12, 200), st.integers(6, 200)),
     ),
 }
-
-
-def explained(made: GearPairJob) -> float:
-    """Overlap that two chord errors explain in one phase, see ``test_designs``."""
-    depth = made.gear1.profile.tolerance + made.gear2.profile.tolerance
-    return 4 * (4 / 3) * depth * math.sqrt(2 * depth * made.pair.center_distance)
 
 
 def region(points: Any) -> Any:

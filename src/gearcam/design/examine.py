@@ -197,7 +197,7 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
         return
     known = law_table(law_type)
     rest = {key: value for key, value in raw.items() if key != "type"}
-    faults = list(_law_faults(known, rest))
+    faults = list(faults_of(known, rest, home=_home))
     found.faults += faults
     # What a law itself finds is said beside the faults of single values, as far as it can be read.
     if any(len(fault.path) == 2 and fault.path[1] in known.entries for fault in faults):
@@ -214,11 +214,6 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
     found.faults += problems
     if not faults and not problems:
         found.parts |= {"law_type": law_type, "law": law}
-
-
-def _law_faults(known: Table, raw: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield the faults of the law's table."""
-    yield from faults_of(known, raw, home=_home)
 
 
 def _own_problems(law: Any, known: Table, raw: Mapping[str, Any]) -> Iterator[Fault]:

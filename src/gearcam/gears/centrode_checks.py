@@ -222,8 +222,7 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Finding]:
     for gear in subject.gears:
         if gear.toothing.closed or rolling.law.feeds:
             continue
-        half, length = 0.5 * gear.toothing.pitch, gear.toothing.length
-        ends = rolling.angle(np.array([-half, length + half]))
+        ends = rolling.angle(gear.toothing.ends)
         turned = ends if gear.wheel == 1 else rolling.law.phi2(ends)
         gap = 2.0 * math.pi - float(turned[1] - turned[0])
         if gap < limit:

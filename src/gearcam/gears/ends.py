@@ -53,7 +53,7 @@ def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
     Rows
         From half a pitch before the centrode to half a pitch behind it.
     """
-    start, end = toothing.rolling.angle(_end_places(toothing))
+    start, end = toothing.rolling.angle(toothing.ends)
     if toothing.wheel == 1:
         first, last = toothing.numbers[0], toothing.numbers[-1]
         outside = ((rows.tooth == first) & (rows.sigma > 0.0)) | (rows.tooth == last)
@@ -94,11 +94,6 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
     return replace(rows, start=begin, end=finish, low=low, high=high, corner=corner)
 
 
-def _end_places(toothing: Toothing) -> Array:
-    half = 0.5 * toothing.pitch
-    return np.array([-half, toothing.length + half])
-
-
 def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) -> tuple[Run, ...]:
     """Return what joins the last tooth to the first around the shaft.
 
@@ -125,7 +120,7 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         If the ends meet: the wheel would turn by a full turn or more.
     """
     points = toothed @ [1.0, 1j]
-    frames = toothing.frames(toothing.rolling.angle(_end_places(toothing)))
+    frames = toothing.frames(toothing.rolling.angle(toothing.ends))
     depth = toothing.cutter.dedendum + _BELOW * toothing.pitch / math.pi
     inner = frames.p - depth * toothing.turn * frames.t
     inner = inner if toothing.wheel == 1 else inner[::-1]

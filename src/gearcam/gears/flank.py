@@ -77,6 +77,12 @@ class Toothing:
         return self.pitch * self.teeth
 
     @property
+    def ends(self) -> Array:
+        """Arc lengths at which an open wheel's blank ends, mm: half a pitch beyond its teeth."""
+        half = 0.5 * self.pitch
+        return np.array([-half, self.length + half])
+
+    @property
     def numbers(self) -> range:
         """Numbers of the teeth that are formed.
 

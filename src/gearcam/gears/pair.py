@@ -365,10 +365,10 @@ def _mates(gear1: Gear, gear2: Gear, sigma: int) -> tuple[NDArray[np.int64], NDA
         # sf = (j + sigma/4) pitches on wheel 1 is (k + 1/2 - sigma/4) pitches on wheel 2.
         two = (np.arange(count) + (0 if sigma > 0 else -1)) % z2 + (z2 if sigma > 0 else 0)
         return one, two
-    # on the open wheel's blank: up to half a pitch beyond its ends
+    start, end = gear2.toothing.ends
     two = np.arange(z2) + (z2 if sigma > 0 else 0)
-    places = gear2.profile.flanks.sf[two] / gear2.toothing.pitch
-    two = two[(places > -0.5) & (places < gear2.toothing.teeth + 0.5)]
+    places = gear2.profile.flanks.sf[two]
+    two = two[(places > start) & (places < end)]
     tooth = np.rint(gear2.profile.flanks.sf[two] / gear2.toothing.pitch - 0.25 * sigma).astype(int)
     one = tooth % z1 if gear1.toothing.closed else tooth + 1 - gear1.toothing.numbers[0]
     return one + (0 if sigma > 0 else z1), two

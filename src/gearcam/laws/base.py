@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.span import ONE_LOBE, Feed, Lobes, Span, angle_text, continued
+from gearcam.laws.span import ONE_LOBE, Feed, Lobes, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.tolerances import Tolerances
@@ -108,7 +108,8 @@ class RatioLaw:
     @cached_property
     def ratio_range(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Smallest and largest ratio, each as (driver angle in rad, value)."""
-        return self.ratio.extremes_over(self.knots)
+        closed = self.lobes.closed
+        return self.ratio.extremes if closed else self.ratio.extremes_over(self.knots)
 
     @cached_property
     def error(self) -> float:
@@ -247,8 +248,7 @@ def make_law(
             ratio, motion = piecewise(longer, more), integrate(longer, more, tolerances.expansion)
             motion = motion.shifted(-float(motion(0.0)))
     except NotSmoothError as error:
-        state = "is not smooth" if error.finite else "is not finite"
-        raise InfeasibleError(f"the ratio {state}", where=angle_text(error.place)) from error
+        raise rough("the ratio", error) from error
     law = RatioLaw(lobes=lobes, ratio=ratio, motion=motion, solved=dict(solved or {}))
     _demand_smooth(law)
     if abs(law.closure_error) > tolerances.refusal:

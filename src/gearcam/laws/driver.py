@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import RatioLaw, make_law
-from gearcam.laws.span import Lobes, Span, angle_text
+from gearcam.laws.span import Lobes, Span, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -62,22 +62,37 @@ def law_of_centrode(
     between the largest r and the c that would close a wheel of that radius all around.
     """
     radius = piecewise(knots, [Piece(shape) for shape in shapes])
-    _demand_positive(radius(np.linspace(0.0, lobes.period, 2049)), lobes)
+    demand_positive(radius(np.linspace(0.0, lobes.period, 2049)), "r1", lobes)
     try:
         center = solve_center(radius, knots, lobes, tolerances)
     except NotSmoothError as error:
-        state = "is not smooth" if error.finite else "is not finite"
-        raise InfeasibleError(f"r1 {state}", where=angle_text(error.place)) from error
+        raise rough("r1", error) from error
     pieces = [Piece(_ratio(shape, center)) for shape in shapes]
     found = {**(solved or {}), "center_distance_over_scale": center}
     return make_law(lobes, knots, pieces, tolerances, found)
 
 
-def _demand_positive(radii: Array, lobes: Span) -> None:
-    angles = np.linspace(0.0, lobes.period, len(radii))
-    for bad, state in ((~np.isfinite(radii), "is not finite"), (radii <= 0, "is not positive")):
+def demand_positive(values: Array, name: str, lobes: Span) -> None:
+    """Refuse what is not finite or not positive somewhere.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Evenly over the period, ends included.
+    name : str
+        What they are.
+    lobes : Lobes or Travel
+        With the period.
+
+    Raises
+    ------
+    InfeasibleError
+        Naming the first place.
+    """
+    angles = np.linspace(0.0, lobes.period, len(values))
+    for bad, state in ((~np.isfinite(values), "is not finite"), (values <= 0, "is not positive")):
         if bad.any():
-            raise InfeasibleError(f"r1 {state}", where=angle_text(angles[bad][0]), limit=0.0)
+            raise InfeasibleError(f"{name} {state}", where=angle_text(angles[bad][0]), limit=0.0)
 
 
 def _ratio(shape: Shape, center: float) -> Shape:

@@ -10,13 +10,22 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
-from gearcam.laws.driver import law_of_centrode
+from gearcam.laws.driver import demand_positive, law_of_centrode
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
-from gearcam.laws.span import Lobes, Span, angle_text, span_of, travel_problems
+from gearcam.laws.span import (
+    Lobes,
+    Span,
+    angle_text,
+    driven_way,
+    driver_way,
+    rough,
+    span_of,
+    travel_problems,
+)
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import FUNCTIONS, Jet
 from gearcam.numeric.piecewise import Piece
-from gearcam.quantities import ANGLE, TEXT, param
+from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
 
 _NAMES = ("phi2", "ratio", "r1")
@@ -24,17 +33,16 @@ _NAMES = ("phi2", "ratio", "r1")
 
 @dataclass(frozen=True, kw_only=True)
 class Formula:
-    """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic."""
+    """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
+
+    With `driver_travel` and `driven_travel` the pair is open.
+    """
 
     phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
     ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
     r1: str | None = param(TEXT, default=None, doc="driver centrode's radius at any scale")
-    driver_travel: float | None = param(
-        ANGLE, default=None, gt=0, le=360, doc="how far the driver of an open pair turns"
-    )
-    driven_travel: float | None = param(
-        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
-    )
+    driver_travel: float | None = driver_way()
+    driven_travel: float | None = driven_way()
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -43,12 +51,7 @@ class Formula:
             state = "none is given" if not given else f"{' and '.join(given)} are given"
             yield given[-1] if given else "phi2", None, state, "exactly one of phi2, ratio, r1"
         for name in given:
-            try:
-                parse(getattr(self, name))
-            except FormulaError as error:
-                place = "" if error.column is None else f"column {error.column}: "
-                hint = f" ({error.hint})" if error.hint else ""
-                yield name, None, f"{place}{error.what}{hint}", error.allowed
+            yield from formula_problems(name, getattr(self, name))
         yield from travel_problems(self.driver_travel, self.driven_travel)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -64,15 +67,27 @@ class Formula:
             return from_motion(compiled(self.phi2), span, tolerances)
         name = "ratio" if self.ratio is not None else "r1"
         function = compiled(getattr(self, name) or "1")
-        _demand_positive(function, name, span)
+        x = np.linspace(0.0, span.period, 2049)
+        demand_positive(function(Jet.variable(x, 0)).derivatives()[0], name, span)
         _demand_repeats(function, name, span)
         if self.ratio is None:
             return law_of_centrode([function], [0.0, span.period], span, tolerances)
         try:
             return _from_ratio(function, span, tolerances)
         except NotSmoothError as error:
-            state = "is not smooth" if error.finite else "is not finite"
-            raise InfeasibleError(f"{name} {state}", where=angle_text(error.place)) from error
+            raise rough(name, error) from error
+
+
+def formula_problems(
+    name: str, text: str, variable: str = VARIABLE
+) -> Iterator[tuple[str, int | None, str, str]]:
+    """Yield what is wrong in a law's formula, for its ``problems`` (see `parse`)."""
+    try:
+        parse(text, variable)
+    except FormulaError as error:
+        place = "" if error.column is None else f"column {error.column}: "
+        hint = f" ({error.hint})" if error.hint else ""
+        yield name, None, f"{place}{error.what}{hint}", error.allowed
 
 
 def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
@@ -85,16 +100,6 @@ def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
             return value if isinstance(value, Jet) else 0.0 * x + value
 
     return function
-
-
-def _demand_positive(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
-    x = np.linspace(0.0, lobes.period, 2049)
-    values = function(Jet.variable(x, 0)).derivatives()[0]
-    for bad, state in ((~np.isfinite(values), "is not finite"), (values <= 0, "is not positive")):
-        if bad.any():
-            raise InfeasibleError(
-                f"{name} {state}", where=angle_text(x[bad][0]), limit=0.0, unit=""
-            )
 
 
 def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:

@@ -10,12 +10,12 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
-from gearcam.laws.formula import compiled, from_motion
-from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
+from gearcam.laws.formula import compiled, formula_problems, from_motion
+from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.slider import crank_angle, make_slide
-from gearcam.laws.span import Lobes, Span, span_of, travel_problems
+from gearcam.laws.span import Lobes, Span, driven_way, driver_way, span_of, travel_problems
 from gearcam.numeric.jets import Jet
-from gearcam.quantities import ANGLE, NUMBER, TEXT, param
+from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
 
@@ -25,7 +25,8 @@ class Motion:
 
     With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =
     k1*(x - x_from)``, ``phi2 = k2*(y - y(x_from))``, so that ``i21 = k2*y'/k1``. Both scales follow
-    from the travels, or from closure. With slide(phi1) the driven wheel's angle is the crank's.
+    from `driver_travel` and `driven_travel`, or from closure. With slide(phi1) the driven wheel's
+    angle is the crank's.
     """
 
     y: str | None = param(TEXT, default=None, doc="y of the driven element over x, at any scale")
@@ -37,12 +38,8 @@ class Motion:
     rod: float | None = param(
         NUMBER, default=None, gt=1, le=1e6, doc="length of the slide's rod, in crank radii"
     )
-    driver_travel: float | None = param(
-        ANGLE, default=None, gt=0, le=360, doc="how far the driver of an open pair turns"
-    )
-    driven_travel: float | None = param(
-        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
-    )
+    driver_travel: float | None = driver_way()
+    driven_travel: float | None = driven_way()
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -55,12 +52,7 @@ class Motion:
             if (getattr(self, name) is None) == (name in asked):
                 yield name, None, "is missing" if name in asked else "does not belong here", rule
         name, variable = ("y", "x") if self.slide is None else ("slide", VARIABLE)
-        try:
-            parse(getattr(self, name), variable)
-        except FormulaError as error:
-            place = "" if error.column is None else f"column {error.column}: "
-            hint = f" ({error.hint})" if error.hint else ""
-            yield name, None, f"{place}{error.what}{hint}", error.allowed
+        yield from formula_problems(name, getattr(self, name), variable)
         if self.x_from is not None and self.x_from == self.x_to:
             yield "x_to", None, "is x_from", "another x"
         if self.slide is not None and self.driven_travel is not None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
-from gearcam.laws.span import Lobes, Span, Travel, demand_equal
+from gearcam.laws.span import Lobes, Span, Travel, demand_equal, driven_way
 from gearcam.laws.transitions import ARCS, Arc
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
@@ -36,9 +36,7 @@ class Phases:
     ratios: tuple[float | Solve, ...] = param(
         NUMBER, gt=0, min_length=2, doc='i21 at the knots; one may be "solve"'
     )
-    driven_travel: float | None = param(
-        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
-    )
+    driven_travel: float | None = driven_way()
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""

@@ -12,7 +12,7 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
 from gearcam.laws.phases import arcs_law, one_lobe
-from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal
+from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, driven_way
 from gearcam.laws.transitions import ARCS, SMOOTH
 from gearcam.numeric.jets import Jet, cos, sin
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -36,9 +36,7 @@ class Multispeed:
     )
     transition: float = param(ANGLE, gt=0, le=360, doc="driver angle of each transition")
     shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
-    driven_travel: float | None = param(
-        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
-    )
+    driven_travel: float | None = driven_way()
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""

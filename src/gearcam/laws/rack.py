@@ -10,9 +10,8 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
-from gearcam.laws.formula import compiled, derivative
-from gearcam.laws.formula_syntax import FormulaError, parse
-from gearcam.laws.span import Feed, Lobes, angle_text
+from gearcam.laws.formula import compiled, derivative, formula_problems
+from gearcam.laws.span import Feed, Lobes, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, integrate
@@ -38,11 +37,7 @@ class Rack:
             yield "r1", None, state, "exactly one of r1, way"
             return
         name = "r1" if self.way is None else "way"
-        try:
-            parse(getattr(self, name))
-        except FormulaError as error:
-            place = "" if error.column is None else f"column {error.column}: "
-            yield name, None, f"{place}{error.what}", error.allowed
+        yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:  # noqa: ARG002
         """Return the law to `tolerances`; the rack may have any number of teeth.
@@ -64,8 +59,7 @@ class Rack:
         try:
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         except NotSmoothError as error:
-            state = "is not smooth" if error.finite else "is not finite"
-            raise InfeasibleError(f"r1 {state}", where=angle_text(error.place)) from error
+            raise rough("r1", error) from error
         return make_law(Feed(turn, advance), [0.0, turn], [piece], tolerances)
 
 

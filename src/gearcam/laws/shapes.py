@@ -11,7 +11,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
 from gearcam.laws.driver import Shape, law_of_centrode
 from gearcam.laws.span import Lobes
-from gearcam.numeric.jets import Jet, cos, sin, sqrt
+from gearcam.numeric.jets import Jet, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root
 from gearcam.quantities import COUNT, NUMBER, param
@@ -40,14 +40,9 @@ class BSpline:
         control = np.array(self.radii)
 
         def segment(k: int) -> Shape:
-            powers = _BASIS @ control[np.arange(k - 1, k + 3) % count]
-
-            def radius(x: Jet) -> Jet:
-                t = (x - float(knots[k])) * (count / lobes.period)
-                c = [float(value) for value in powers]
-                return c[0] + t * (c[1] + t * (c[2] + t * c[3]))
-
-            return radius
+            cubic = polynomial(_BASIS @ control[np.arange(k - 1, k + 3) % count])
+            start, rate = float(knots[k]), count / lobes.period
+            return lambda x: cubic((x - start) * rate)
 
         return law_of_centrode([segment(k) for k in range(count)], knots, lobes, tolerances)
 

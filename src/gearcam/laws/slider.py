@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.laws.formula import derivative
 from gearcam.laws.span import angle_text
-from gearcam.numeric.jets import Jet, asin, atan, sqrt
+from gearcam.numeric.jets import Jet, asin, atan, polynomial, sqrt
 from gearcam.numeric.piecewise import Piece, extremes
 
 Array = NDArray[np.float64]
@@ -218,13 +218,11 @@ def _near(slide: Slide, place: float, sign: float) -> tuple[float, Motion]:
             limit=math.degrees(_NARROWEST),
             unit="deg",
         )
-    rod = slide.rod
+    rod, series = slide.rod, polynomial(c)
 
     def motion(x: Jet) -> Jet:
         t = x - place
-        total = 0.0 * t + float(c[-1])
-        for value in c[-2::-1]:
-            total = total * t + float(value)
+        total = series(t)
         small = t * t * total  # s, or 2 - s
         s = small if sign > 0.0 else 2.0 - small
         factor = (2.0 * rod - s) if sign > 0.0 else (2.0 + 2.0 * rod - s)

@@ -10,14 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece, Piecewise
+from gearcam.quantities import ANGLE, param
 
 _FLAT = 1e-9
 """Growth of the radius in a radian below which the continued centrode is a circle: rounding."""
@@ -164,6 +166,36 @@ def travel_problems(
         missing = "driven_travel" if driven_travel is None else "driver_travel"
         rule = "driver_travel_deg and driven_travel_deg for an open pair, neither for a closed one"
         yield missing, None, "is missing beside the other travel", rule
+
+
+def rough(name: str, error: NotSmoothError) -> InfeasibleError:
+    """Return the refusal of what is not smooth, or not finite, over the driver angle.
+
+    Parameters
+    ----------
+    name : str
+        What it is.
+    error : NotSmoothError
+        With the place.
+
+    Returns
+    -------
+    InfeasibleError
+        To be raised.
+    """
+    state = "is not smooth" if error.finite else "is not finite"
+    return InfeasibleError(f"{name} {state}", where=angle_text(error.place))
+
+
+def driver_way() -> Any:
+    """Return the optional parameter ``driver_travel`` of a law (see `param`)."""
+    return param(ANGLE, default=None, gt=0, le=360, doc="how far the driver of an open pair turns")
+
+
+def driven_way() -> Any:
+    """Return the optional parameter ``driven_travel`` of a law (see `param`)."""
+    doc = "how far the driven wheel of an open pair turns"
+    return param(ANGLE, default=None, gt=0, le=360, doc=doc)
 
 
 def angle_text(angle: float) -> str:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
 from gearcam.laws.driver import law_of_centrode
-from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal
-from gearcam.numeric.jets import Jet
+from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, driven_way
+from gearcam.numeric.jets import Jet, polynomial
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
 from gearcam.quantities import ANGLE, NUMBER, TEXT, param
@@ -41,6 +41,7 @@ class Table:
 
     The curve through the points is C2 and rises only where they rise. A ratio is scaled so that it
     closes, a driven angle must close, and a radius (at any scale) gives the centre distance.
+    With `driven_travel` the pair is open.
     """
 
     file: str | None = param(
@@ -58,9 +59,7 @@ class Table:
     r1: tuple[float, ...] | None = param(
         NUMBER, default=None, gt=0, min_length=_FEWEST, doc="driver's radii at phi1, at any scale"
     )
-    driven_travel: float | None = param(
-        ANGLE, default=None, gt=0, le=360, doc="how far the driven wheel of an open pair turns"
-    )
+    driven_travel: float | None = driven_way()
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -270,16 +269,8 @@ def _demand_positive(kind: str, angles: Array, values: Array) -> None:
 
 
 def _polynomial(powers: Array, low: float) -> Callable[[Jet], Jet]:
-    c = [float(value) for value in powers]
-
-    def shape(x: Jet) -> Jet:
-        t = x - low
-        total = 0.0 * t + c[-1]
-        for value in c[-2::-1]:
-            total = total * t + value
-        return total
-
-    return shape
+    function = polynomial(powers)
+    return lambda x: function(x - low)
 
 
 def _times(shape: Callable[[Jet], Jet], factor: float) -> Callable[[Jet], Jet]:

@@ -228,6 +228,19 @@ def tanh(x: Jet) -> Jet:
     return _chain(x, np.tanh(x.c[0]), lambda inner: 1.0 - tanh(inner) * tanh(inner))
 
 
+def polynomial(coefficients: ArrayLike) -> Callable[[Jet], Jet]:
+    """Return the polynomial of jets with `coefficients` of rising powers, at least one."""
+    *rest, last = (float(value) for value in np.asarray(coefficients, dtype=float))
+
+    def function(t: Jet) -> Jet:
+        total = 0.0 * t + last
+        for value in reversed(rest):
+            total = total * t + value
+        return total
+
+    return function
+
+
 FUNCTIONS: Final[dict[str, Callable[[Jet], Jet]]] = {
     function.__name__: function
     for function in (sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, sqrt)

@@ -83,7 +83,7 @@ class Piecewise:
         """Return the function with a constant added."""
         return replace(self, offsets=self.offsets + constant)
 
-    @property
+    @cached_property
     def extremes(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Smallest and largest value, each as (place, value)."""
         return self.extremes_over(self.knots)
