@@ -1,5 +1,5 @@
 # make demo    build the nail machine's gears into output/ (installs into .venv first)
-# make test    everything that CI runs
+# make test    everything that CI runs (installs the extra for STEP files, 380 MB, too)
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
 # make peers   compare flanks with those of another package
 # make lint    style, types, import contracts    make clean   remove .venv, caches and output
@@ -68,7 +68,7 @@ $(VENV)/.run: pyproject.toml $(VENV)/.made
 	@touch $@
 
 $(VENV)/.dev: pyproject.toml $(VENV)/.run
-	$(PIP) install --editable . --group dev
+	$(PIP) install --editable ".[step]" --group dev
 	@touch $@
 
 $(VENV)/.bench: pyproject.toml $(VENV)/.dev

@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.numeric.contour import Contour, Run
+from gearcam.parts import Circle, Opening
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Parameter (n,) to complex points and complex vectors along the curve, of any length."""
@@ -149,3 +150,8 @@ def square_contour(side: float, tolerance: float = 1e-3) -> Contour:
     ]
     pieces = [line(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
     return contour_of(pieces, tolerance)
+
+
+def bore(diameter: float) -> tuple[Opening, ...]:
+    """A round bore about the origin."""
+    return (Opening(kind="BORE", shape=Circle(center=np.zeros(2), diameter=diameter), name="bore"),)

@@ -32,7 +32,13 @@ from gearcam.console import (
     written_lines,
 )
 from gearcam.design import FORMATS, KIND, GearPairDesign, load
-from gearcam.errors import DesignError, InfeasibleError, Problem, WriteError
+from gearcam.errors import (
+    DesignError,
+    InfeasibleError,
+    MissingExtraError,
+    Problem,
+    WriteError,
+)
 
 if TYPE_CHECKING:
     from gearcam.jobs import GearPairJob, Written
@@ -142,9 +148,10 @@ def _mesh_options(parser: argparse.ArgumentParser) -> None:
     """Add the settings of a study: they stand before those of the file's table [meshing]."""
     from gearcam.design.tables import table
 
-    kinds = {"steps": int, "teeth": _numbers}
+    kinds = {"steps": int, "helix_step": int, "teeth": _numbers}
     for key, entry in table("meshing").entries.items():
-        word = {"center_distance_mm": "center"}.get(key, key.removesuffix("_deg"))
+        names = {"center_distance_mm": "center", "helix_step": "step"}
+        word = names.get(key, key.removesuffix("_deg"))
         unit = entry.param.quantity.unit.upper()
         parser.add_argument(
             f"--{word}",
@@ -312,7 +319,7 @@ def _each(
         except InfeasibleError as error:
             complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
             codes.append(IMPOSSIBLE)
-        except WriteError as error:
+        except (WriteError, MissingExtraError) as error:
             complain(f"{file}: {error}")
             codes.append(WRONG)
         except Exception as error:

@@ -1,8 +1,8 @@
 """Drawings: what an exporter of flat files sees.
 
 A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the kind of
-what they hold: OUTLINE, BORE, MARK, CENTRODE, CENTER; a pair's layers begin with the wheel, such as
-``GEAR1_OUTLINE``. *Placing* turns and shifts shapes without changing them otherwise.
+what they hold: OUTLINE, BORE, HOLE, SLOT, MARK, CENTRODE, CENTER; a pair's layers begin with the
+wheel, such as ``GEAR1_OUTLINE``. *Placing* turns and shifts shapes without changing them otherwise.
 
 Refused: a pair of other than two parts.
 
@@ -19,27 +19,21 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.numeric.contour import Contour, Run
-from gearcam.parts import Part
+from gearcam.numeric.contour import Contour
+from gearcam.parts import Circle, Loop, Part
 
 Array = NDArray[np.float64]
 
 OUTLINE: Final = "OUTLINE"
 BORE: Final = "BORE"
+HOLE: Final = "HOLE"
+SLOT: Final = "SLOT"
 MARK: Final = "MARK"
 CENTRODE: Final = "CENTRODE"
 CENTER: Final = "CENTER"
 
 CROSS_SIZE: Final = 0.04
 """Size of a centre's cross, in centre distances."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Circle:
-    """A full circle: its `center` (2,), mm, and its `diameter`, mm."""
-
-    center: Array
-    diameter: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,7 +52,10 @@ class Cross:
     size: float
 
 
-Shape = Contour | Circle | Path | Cross
+Shape = Contour | Circle | Loop | Path | Cross
+
+Pose = tuple[float, tuple[float, float]]
+"""Turn about the own origin, rad, then shift, mm."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -97,7 +94,7 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
 
     Parameters
     ----------
-    shape : Contour or Circle or Path or Cross
+    shape : Contour or Circle or Loop or Path or Cross
         In its own frame; crosses stay upright.
     angle : float, rad
         Counter-clockwise.
@@ -106,7 +103,7 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
 
     Returns
     -------
-    Contour or Circle or Path or Cross
+    Contour or Circle or Loop or Path or Cross
         The same object where nothing moves.
     """
     if angle == 0 and offset == (0.0, 0.0):
@@ -120,11 +117,14 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
     match shape:
         case Contour():
             runs = tuple(
-                Run(points=move(run.points), tangents=move(run.tangents, 0)) for run in shape.runs
+                replace(run, points=move(run.points), tangents=move(run.tangents, 0))
+                for run in shape.runs
             )
             return replace(shape, runs=runs, vertices=move(shape.vertices))
         case Path():
             return replace(shape, points=move(shape.points))
+        case Loop():
+            return replace(shape, vertices=move(shape.vertices))
         case _:
             return replace(shape, center=move(shape.center))
 
@@ -139,21 +139,19 @@ def place(
     )
 
 
-def part_features(part: Part) -> tuple[Feature, ...]:
-    """Return outline, bore and marks of a part, in its own frame."""
-    features = [Feature(layer=OUTLINE, shape=part.contour)]
-    if part.bore_diameter is not None:
-        bore = Circle(center=np.zeros(2), diameter=part.bore_diameter)
-        features.append(Feature(layer=BORE, shape=bore))
-    for mark in part.marks:
-        circle = Circle(center=mark.center, diameter=mark.diameter)
-        features.append(Feature(layer=MARK, shape=circle))
-    return tuple(features)
+def part_features(part: Part, step: int = 0) -> tuple[Feature, ...]:
+    """Return the outline of a `step`, openings and marks of a `part`, in its own frame."""
+    return (
+        Feature(layer=OUTLINE, shape=part.contours[step]),
+        *(Feature(layer=opening.kind, shape=opening.shape) for opening in part.openings),
+        *(Feature(layer=MARK, shape=mark.circle) for mark in part.marks),
+    )
 
 
-def wheel_drawing(part: Part) -> Drawing:
-    """Draw one part in its own frame, on the layers OUTLINE, BORE and MARK."""
-    return Drawing(name=part.name, features=part_features(part))
+def wheel_drawing(part: Part, step: int = 0) -> Drawing:
+    """Return a `part`, or a `step` of it, in its own frame: outline, openings, marks."""
+    name = part.name if len(part.contours) == 1 else f"{part.name}_step{step + 1}"
+    return Drawing(name=name, features=part_features(part, step))
 
 
 def pair_drawing(
@@ -163,10 +161,11 @@ def pair_drawing(
     *,
     name: str = "pair",
     closed: tuple[bool, bool] = (True, True),
+    poses: tuple[Pose, Pose] | None = None,
 ) -> Drawing:
-    """Draw the assembled pair at phi1 = 0.
+    """Draw the assembled pair.
 
-    Wheel 1 stands as it is, wheel 2 is shifted by the centre distance.
+    Without poses it stands at phi1 = 0: wheel 1 as it is, wheel 2 shifted by the centre distance.
 
     Parameters
     ----------
@@ -180,6 +179,8 @@ def pair_drawing(
         The drawing's name.
     closed : (bool, bool)
         Whether each centrode is closed.
+    poses : two Pose, optional
+        Turn, rad, and shift, mm, of each wheel.
 
     Returns
     -------
@@ -193,12 +194,13 @@ def pair_drawing(
     if len(parts) != 2 or len(centrodes) not in (0, 2):
         raise ValueError("a pair takes two parts, and two centrodes or none")
     offsets = ((0.0, 0.0), (float(center_distance), 0.0))
+    stands = poses or ((0.0, offsets[0]), (0.0, offsets[1]))
     features: list[Feature] = []
-    for number, (part, offset) in enumerate(zip(parts, offsets, strict=True), start=1):
-        features += place(part_features(part), 0.0, offset, prefix=f"GEAR{number}_")
-    for points, offset, whole in zip(centrodes, offsets, closed, strict=False):
+    for number, (part, pose) in enumerate(zip(parts, stands, strict=True), start=1):
+        features += place(part_features(part), *pose, prefix=f"GEAR{number}_")
+    for points, pose, whole in zip(centrodes, stands, closed, strict=False):
         path = Path(points=np.asarray(points, dtype=np.float64), closed=whole)
-        features += place([Feature(layer=CENTRODE, shape=path)], 0.0, offset)
+        features += place([Feature(layer=CENTRODE, shape=path)], *pose)
     size = CROSS_SIZE * (center_distance or float(np.ptp(parts[0].contour.vertices)))
     for offset in offsets if center_distance else offsets[:1]:
         cross = Cross(center=np.array(offset), size=size)

@@ -116,5 +116,20 @@ class InfeasibleError(GearcamError, ValueError):
         super().__init__("; ".join(part for part in (text, numbers, nearest) if part))
 
 
+class MissingExtraError(GearcamError, ImportError):
+    """A library that only some need is not installed.
+
+    Parameters
+    ----------
+    what : str
+        What needs it.
+    extra : str
+        The extra of the package that brings it.
+    """
+
+    def __init__(self, what: str, extra: str) -> None:
+        super().__init__(f'{what} need the optional extra: pip install "gearcam[{extra}]"')
+
+
 class WriteError(GearcamError, OSError):
     """A file or folder could not be written."""

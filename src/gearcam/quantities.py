@@ -34,6 +34,7 @@ LENGTH: Final = Quantity("_mm", 1.0, "mm")
 NUMBER: Final = Quantity("", 1.0, "")
 COUNT: Final = Quantity("", 1.0, "")
 TEXT: Final = Quantity("", 1.0, "")
+DENSITY: Final = Quantity("_kg_m3", 1.0, "kg/m3")
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,8 @@ class Param:
         One line for schema, template and messages.
     word : str
         The key's word where the field cannot bear it, such as ``from``.
+    both : bool
+        Whether a single value may stand for both wheels.
     """
 
     quantity: Quantity = NUMBER
@@ -65,6 +68,7 @@ class Param:
     min_length: int | None = None
     doc: str = ""
     word: str = ""
+    both: bool = False
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""
@@ -83,9 +87,10 @@ def param(
     min_length: int | None = None,
     doc: str = "",
     word: str = "",
+    both: bool = False,
 ) -> Any:
     """Return a dataclass field that knows its quantity, bounds and meaning (see `Param`)."""
-    made = Param(quantity, gt, ge, lt, le, choices, min_length, doc, word)
+    made = Param(quantity, gt, ge, lt, le, choices, min_length, doc, word, both)
     return dataclasses.field(default=default, metadata={"param": made})
 
 

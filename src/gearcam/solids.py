@@ -3,8 +3,8 @@
 The one place that knows manifold3d. A *mesh* is plain arrays: the library's own objects cannot be
 pickled and its interface is moving.
 
-Refused: clockwise contours (the library would silently give nothing), parts whose solid comes out
-empty, and meshes that are not closed.
+Refused: parts whose solid comes out empty, open, or without a part of its volume. (The library
+silently makes nothing of clockwise contours; parts refuse them.)
 
 Depends on parts; manifold3d only inside the functions.
 """
@@ -57,6 +57,13 @@ class Mesh:
         corners = (self.vertices - self.vertices.mean(axis=0))[self.triangles]
         return float(np.linalg.det(corners).sum()) / 6
 
+    def placed(self, angle: float, offset: tuple[float, float]) -> Mesh:
+        """Return the mesh turned about z by `angle`, rad, then shifted by `offset` (2,), mm."""
+        cosine, sine = math.cos(angle), math.sin(angle)
+        x, y, z = self.vertices.T
+        moved = [cosine * x - sine * y + offset[0], sine * x + cosine * y + offset[1], z]
+        return Mesh(vertices=np.stack(moved, axis=1), triangles=self.triangles)
+
     @cached_property
     def watertight(self) -> bool:
         """Whether each edge is met by one triangle in each direction, and no triangle is folded."""
@@ -69,13 +76,13 @@ class Mesh:
 
 
 def solid(part: Part) -> Mesh:
-    """Make the mesh of a part: the outline pulled up along z, less bore and marks.
+    """Make the mesh of a part: outlines pulled up along z, with hubs, less openings and marks.
 
     Parameters
     ----------
     part : Part
-        The contour's polygon is used as it is; bore and marks are tessellated within the contour's
-        tolerance.
+        The contours' polygons are used as they are; openings, hubs and marks are tessellated within
+        the contours' tolerance.
 
     Returns
     -------
@@ -83,21 +90,25 @@ def solid(part: Part) -> Mesh:
 
     Raises
     ------
-    ValueError
-        If the contour runs clockwise.
     SolidError
         If the solid comes out empty or open, or lost a part of its volume.
     """
     import manifold3d
 
-    if not part.contour.area > 0:
-        raise ValueError(f"{part.name}: the contour must run counter-clockwise")
-    loops = [part.contour.vertices]
-    if part.bore_diameter is not None:
-        bore = circle_points((0.0, 0.0), part.bore_diameter, part.contour.tolerance)
-        loops.append(bore[::-1])
-    section = manifold3d.CrossSection([np.ascontiguousarray(loop) for loop in loops])
-    body = manifold3d.Manifold.extrude(section, part.width)
+    holes = [opening.shape.points(part.tolerance)[::-1] for opening in part.openings]
+    slabs = [
+        _slab(manifold3d, [contour.vertices, *holes], low, high)
+        for contour, low, high in part.plates
+    ]
+    if part.hub is not None:
+        disc = circle_points((0.0, 0.0), part.hub.diameter, part.tolerance)
+        bores = [opening.shape.points(part.tolerance)[::-1] for opening in part.in_hub]
+        slabs += [_slab(manifold3d, [disc, *bores], low, high) for low, high in part.bosses]
+    body = (
+        slabs[0]
+        if len(slabs) == 1
+        else manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
+    )
     for mark in part.marks:
         body = body - _cutter(manifold3d, mark, part)
     mesh = _mesh(body)
@@ -110,6 +121,12 @@ def solid(part: Part) -> Mesh:
             f" {allowed:.3g} mm3 is explained"
         )
     return mesh
+
+
+def _slab(manifold3d: Any, loops: list[NDArray[np.float64]], low: float, high: float) -> Manifold:
+    """Return a plate between two heights: the first loop less the others, which run clockwise."""
+    section = manifold3d.CrossSection([np.ascontiguousarray(loop) for loop in loops])
+    return manifold3d.Manifold.extrude(section, high - low).translate((0.0, 0.0, low))
 
 
 def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:
@@ -140,13 +157,17 @@ def volume_error(part: Part) -> float:
     Returns
     -------
     float, mm^3
-        Chord error and grid times length, for outline and bore over the width and for the marks
-        over their depth: every chord lies within its error of the curve, so the area between them
-        is at most that.
+        Chord error and grid times length, for outlines and openings over their heights, hubs and
+        marks: every chord lies within its error of the curve, so the area between them is at most
+        that.
     """
-    steps = np.diff(part.contour.vertices, axis=0, append=part.contour.vertices[:1])
-    circles = part.contour.tolerance + ROUNDING
-    outline = float(np.hypot(*steps.T).sum()) * (part.contour.chord_error + ROUNDING)
-    bore = math.pi * (part.bore_diameter or 0.0) * circles
-    marks = sum(math.pi * mark.diameter * mark.depth for mark in part.marks) * circles
-    return (outline + bore) * part.width + marks
+    rounds = sum(opening.shape.length for opening in part.openings) * part.thickness
+    rounds += sum(mark.circle.length * mark.depth for mark in part.marks)
+    if part.hub is not None:
+        rounds += math.pi * part.hub.diameter * (part.hub.front + part.hub.back)
+    total = rounds * (part.tolerance + ROUNDING)
+    for contour, low, high in part.plates:
+        steps = np.diff(contour.vertices, axis=0, append=contour.vertices[:1])
+        length = float(np.hypot(*steps.T).sum())
+        total += length * (contour.chord_error + ROUNDING) * (high - low)
+    return total

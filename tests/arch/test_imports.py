@@ -59,7 +59,7 @@ def test_contracts_hold() -> None:
         ("export", "from gearcam import laws", "Exporters see parts"),
         ("parts", "import manifold3d", "manifold3d only in solids"),
         ("solids", "import trimesh", "trimesh (and what it needs) only in export.mesh"),
-        ("jobs", "import ezdxf", "ezdxf only in export.dxf"),
+        ("jobs", "import ezdxf", "ezdxf only where DXF is written and read"),
         ("jobs", "import shapely", "shapely only where regions are cut"),
         ("jobs", "import scipy.optimize", "pydantic only in design"),
     ],

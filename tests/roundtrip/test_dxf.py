@@ -15,18 +15,22 @@ from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.math import bulge_to_arc
 
 from gearcam.drawings import Drawing, pair_drawing, wheel_drawing
-from gearcam.errors import DesignError
-from gearcam.export.dxf import DxfError, dxf_bytes, measure_dxf, read_dxf
+from gearcam.export.dxf import DxfStyle, dxf_bytes
+from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
 from gearcam.parts import Part, timing_mark
-from helpers_contour import gear_contour, square_contour
+from helpers_contour import bore, gear_contour, square_contour
 
 TOLERANCE = 1e-3
 
 
+def style(curves: str = "arcs", version: str = "R2010", tolerance: float = TOLERANCE) -> DxfStyle:
+    return DxfStyle(tolerance=tolerance, curves=curves, version=version)
+
+
 def wheel(tolerance: float = TOLERANCE) -> Part:
     contour = gear_contour(18, 5.0, tolerance)
-    mark = timing_mark(40.0, 0.0, 5.0, 6.25, 20.0, bore_diameter=20.0)
-    return Part(name="gear1", contour=contour, bore_diameter=20.0, width=20.0, marks=(mark,))
+    mark = timing_mark(40.0, 0.0, 5.0, 6.25, 20.0, bore_reach=10.0)
+    return Part(name="gear1", contours=(contour,), openings=bore(20.0), width=20.0, marks=(mark,))
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +72,7 @@ def area(rows: np.ndarray) -> float:
 
 @pytest.mark.parametrize("curves", ["arcs", "lines"])
 def test_a_wheel_file_holds_outline_bore_and_mark(part: Part, curves: str) -> None:
-    document = read_dxf(dxf_bytes(wheel_drawing(part), TOLERANCE, curves))
+    document = read_dxf(dxf_bytes(wheel_drawing(part), style(curves)))
     assert document.acad_release == "R2010"
     assert document.header["$INSUNITS"] == 4
     assert document.header["$MEASUREMENT"] == 1
@@ -82,7 +86,7 @@ def test_a_wheel_file_holds_outline_bore_and_mark(part: Part, curves: str) -> No
 
 
 def test_the_pair_file_has_a_layer_per_feature_and_its_extents(pair: Drawing) -> None:
-    document = read_dxf(dxf_bytes(pair, TOLERANCE))
+    document = read_dxf(dxf_bytes(pair, style()))
     assert entities(document) == {
         "GEAR1_OUTLINE": ["LWPOLYLINE"],
         "GEAR1_BORE": ["CIRCLE"],
@@ -104,19 +108,19 @@ def test_the_pair_file_has_a_layer_per_feature_and_its_extents(pair: Drawing) ->
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
 def test_the_measured_error_stays_within_the_tolerance(curves: str, tolerance: float) -> None:
     drawing = wheel_drawing(wheel(tolerance))
-    error = measure_dxf(dxf_bytes(drawing, tolerance, curves), drawing.contours)
+    error = measure_dxf(dxf_bytes(drawing, style(curves, tolerance=tolerance)), drawing.contours)
     assert 0.8 * tolerance < error <= tolerance
 
 
 def test_the_pair_is_measured_in_its_place(pair: Drawing) -> None:
-    data = dxf_bytes(pair, TOLERANCE)
+    data = dxf_bytes(pair, style())
     assert measure_dxf(data, pair.contours) <= TOLERANCE
     assert measure_dxf(data, pair.contours[::-1]) > 10
 
 
 def test_the_arcs_turn_the_right_way(part: Part) -> None:
     """The area with arcs, counted by ezdxf's arcs, is the true one."""
-    document = read_dxf(dxf_bytes(wheel_drawing(part), TOLERANCE))
+    document = read_dxf(dxf_bytes(wheel_drawing(part), style()))
     rows = np.array(outline_of(document).get_points(format="xyb"))
     runs = np.vstack([run.points[:-1] for run in part.contour.runs])
     x, y = runs.T
@@ -129,7 +133,7 @@ def test_the_arcs_turn_the_right_way(part: Part) -> None:
 @pytest.mark.parametrize("fault", ["sign", "dropped", "inches", "mirrored"])
 def test_a_fault_in_the_file_is_measured(part: Part, fault: str) -> None:
     drawing = wheel_drawing(part)
-    document = read_dxf(dxf_bytes(drawing, TOLERANCE))
+    document = read_dxf(dxf_bytes(drawing, style()))
     polyline = outline_of(document)
     rows = np.array(polyline.get_points(format="xyb"))
     longest = int(np.argmax(np.abs(rows[:, 2])))
@@ -155,9 +159,9 @@ def written(document: Document) -> bytes:
 
 def test_files_that_do_not_hold_the_drawing_are_refused(part: Part, pair: Drawing) -> None:
     drawing = wheel_drawing(part)
-    data = dxf_bytes(drawing, TOLERANCE)
+    data = dxf_bytes(drawing, style())
     with pytest.raises(DxfError, match="should hold 1 closed outlines, it holds 2"):
-        measure_dxf(dxf_bytes(pair, TOLERANCE), drawing.contours)
+        measure_dxf(dxf_bytes(pair, style()), drawing.contours)
     document = read_dxf(data)
     document.units = 1
     with pytest.raises(DxfError, match="millimetres"):
@@ -172,40 +176,38 @@ def test_files_that_do_not_hold_the_drawing_are_refused(part: Part, pair: Drawin
 
 
 def test_a_file_that_fails_the_audit_is_refused(part: Part) -> None:
-    data = dxf_bytes(wheel_drawing(part), TOLERANCE)
+    data = dxf_bytes(wheel_drawing(part), style())
     with pytest.raises(DxfError, match=r"faults \(1\)"):
         read_dxf(data.replace(b"OUTLINE\n", b"OUT*LINE\n"))
 
 
 def test_straight_sides_stay_straight() -> None:
-    square = Part(name="plate", contour=square_contour(10.0), bore_diameter=None, width=1.0)
-    document = read_dxf(dxf_bytes(wheel_drawing(square), TOLERANCE))
+    square = Part(name="plate", contours=(square_contour(10.0),), width=1.0)
+    document = read_dxf(dxf_bytes(wheel_drawing(square), style()))
     rows = outline_of(document).get_points(format="xyb")
     assert rows == [(5.0, 5.0, 0.0), (-5.0, 5.0, 0.0), (-5.0, -5.0, 0.0), (5.0, -5.0, 0.0)]
 
 
-@pytest.mark.parametrize("curves", ["splines", "circles"])
-def test_other_curves_are_refused_by_name(part: Part, curves: str) -> None:
-    with pytest.raises(DesignError) as caught:
-        dxf_bytes(wheel_drawing(part), TOLERANCE, curves)
-    problem = caught.value.problems[0]
-    assert problem.key == "output.dxf_curves"
-    assert problem.allowed == '"arcs", "lines"'
-    assert ("not available yet" in problem.message) == (curves == "splines")
+@pytest.mark.parametrize(
+    ("curves", "version"), [("circles", "R2010"), ("arcs", "R14"), ("splines", "R12")]
+)
+def test_other_styles_are_refused(curves: str, version: str) -> None:
+    with pytest.raises(ValueError, match=r"no such DXF|no splines"):
+        style(curves, version)
 
 
 def test_the_same_design_gives_the_same_bytes(part: Part) -> None:
     """In other processes too, where sets have another order."""
     drawing = wheel_drawing(part)
-    assert dxf_bytes(drawing, TOLERANCE) == dxf_bytes(drawing, TOLERANCE)
+    assert dxf_bytes(drawing, style()) == dxf_bytes(drawing, style())
     script = """
 import hashlib
 from gearcam.drawings import wheel_drawing
-from gearcam.export.dxf import dxf_bytes
+from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.parts import Part
-from helpers_contour import square_contour
-part = Part(name="p", contour=square_contour(9.0), bore_diameter=2.0, width=1.0)
-print(hashlib.sha256(dxf_bytes(wheel_drawing(part), 1e-3)).hexdigest())
+from helpers_contour import bore, square_contour
+part = Part(name="p", contours=(square_contour(9.0),), openings=bore(2.0), width=1.0)
+print(hashlib.sha256(dxf_bytes(wheel_drawing(part), DxfStyle(tolerance=1e-3))).hexdigest())
 """
     roots = [str(Path(__file__).parents[1]), *sys.path]
     seen = set()
@@ -222,4 +224,4 @@ def test_a_turned_wheel_is_measured_too(part: Part) -> None:
     turned = replace(
         wheel_drawing(part), features=place(wheel_drawing(part).features, 0.7, (3.0, 4.0))
     )
-    assert measure_dxf(dxf_bytes(turned, TOLERANCE), turned.contours) <= TOLERANCE
+    assert measure_dxf(dxf_bytes(turned, style()), turned.contours) <= TOLERANCE

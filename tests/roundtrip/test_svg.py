@@ -13,7 +13,7 @@ from gearcam.drawings import Drawing, pair_drawing
 from gearcam.export.svg import pair_notes, svg_bytes
 from gearcam.numeric.bulges import distances
 from gearcam.parts import Part, timing_mark
-from helpers_contour import gear_contour
+from helpers_contour import bore, gear_contour
 
 etree: Any = importlib.import_module("lxml.etree")
 
@@ -27,7 +27,7 @@ def drawing() -> Drawing:
     centrode = np.column_stack([90 * np.cos(angle), 63 * np.sin(angle)])
     parts = [
         Part(
-            name=f"gear{k + 1}", contour=contour, bore_diameter=40.0, width=50.0,
+            name=f"gear{k + 1}", contours=(contour,), openings=bore(40.0), width=50.0,
             marks=(timing_mark(85.0, k * np.pi, 5.0, 6.25, 50.0),),
         )
         for k in range(2)

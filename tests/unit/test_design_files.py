@@ -104,7 +104,7 @@ pressure_angle_deg = 50
 addendum = inf
 [output]
 files = ["dxf", "sld", "dxf"]
-dxf_curves = "splines"
+dxf_curves = "curves"
 chord_tolerance_mm = 0
 """
     found = [(problem.line, problem.key) for problem in problems(text)]
@@ -302,10 +302,11 @@ def test_cams_wait_for_a_later_version_and_nothing_else_is_said() -> None:
     assert "cams are not built by this version yet" in problem.message
 
 
-def test_splines_wait_for_a_later_version() -> None:
-    problem = only(GOOD + 'dxf_curves = "splines"\n')
-    assert "later" in problem.message
-    assert problem.allowed == '"arcs" or "lines"'
+def test_splines_are_refused_in_r12_only() -> None:
+    assert loads(GOOD + 'dxf_curves = "splines"\n').output.dxf_curves == "splines"
+    problem = only(GOOD + 'dxf_curves = "splines"\ndxf_version = "R12"\n')
+    assert problem.key == "output.dxf_version"
+    assert "knows no splines" in problem.message
 
 
 def test_a_tolerance_too_coarse_for_the_module_is_refused() -> None:

@@ -13,7 +13,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts import Blank, Mark, Part, circle_points, timing_mark
 from gearcam.quantities import params_of
-from helpers_contour import gear_contour, square_contour
+from helpers_contour import bore, gear_contour, square_contour
 
 
 def reverse(contour: Contour) -> Contour:
@@ -25,7 +25,11 @@ def reverse(contour: Contour) -> Contour:
 def test_area_and_volume_of_a_square_plate() -> None:
     mark = Mark(center=np.array([12.0, 0.0]), diameter=2.0, depth=0.5)
     part = Part(
-        name="plate", contour=square_contour(30.0), bore_diameter=10.0, width=8.0, marks=(mark,)
+        name="plate",
+        contours=(square_contour(30.0),),
+        openings=bore(10.0),
+        width=8.0,
+        marks=(mark,),
     )
     assert part.area == pytest.approx(900 - 25 * math.pi, rel=1e-14)
     assert part.volume == pytest.approx((900 - 25 * math.pi) * 8 - 0.5 * math.pi, rel=1e-14)
@@ -34,7 +38,7 @@ def test_area_and_volume_of_a_square_plate() -> None:
 
 
 def test_a_part_without_bore_has_none() -> None:
-    part = Part(name="plate", contour=square_contour(30.0), bore_diameter=None, width=8.0)
+    part = Part(name="plate", contours=(square_contour(30.0),), width=8.0)
     assert part.area == pytest.approx(900, rel=1e-14)
     assert len(part.region.interiors) == 0
     assert wheel_drawing(part).layers == ("OUTLINE",)
@@ -43,22 +47,22 @@ def test_a_part_without_bore_has_none() -> None:
 def test_wrong_parts_are_refused() -> None:
     contour = square_contour(30.0)
     with pytest.raises(ValueError, match="counter-clockwise"):
-        Part(name="p", contour=reverse(contour), bore_diameter=None, width=8.0)
+        Part(name="p", contours=(reverse(contour),), width=8.0)
     with pytest.raises(ValueError, match="width"):
-        Part(name="p", contour=contour, bore_diameter=None, width=0.0)
-    with pytest.raises(ValueError, match="bore"):
-        Part(name="p", contour=contour, bore_diameter=-1.0, width=8.0)
+        Part(name="p", contours=(contour,), width=0.0)
+    with pytest.raises(ValueError, match="diameter must be positive"):
+        bore(-1.0)
 
 
 def test_the_blank_is_a_parameter_set() -> None:
     assert Blank().bore_diameter is None
-    assert [f.name for f in fields(Blank)] == list(params_of(Blank)) == ["bore_diameter"]
+    assert [f.name for f in fields(Blank)] == list(params_of(Blank))
     assert params_of(Blank)["bore_diameter"].key("bore_diameter") == "bore_diameter_mm"
 
 
 def test_the_marks_face_each_other_on_the_line_of_centres() -> None:
-    first = timing_mark(100.0, 0.0, 5.0, 6.25, 50.0, bore_diameter=40.0)
-    second = timing_mark(80.0, math.pi, 5.0, 6.25, 50.0, bore_diameter=40.0)
+    first = timing_mark(100.0, 0.0, 5.0, 6.25, 50.0, bore_reach=20.0)
+    second = timing_mark(80.0, math.pi, 5.0, 6.25, 50.0, bore_reach=20.0)
     assert first.diameter == second.diameter == pytest.approx(2.0)
     assert first.depth == 0.5
     assert first.center == pytest.approx([100 - 6.25 - 1 - 1, 0.0], abs=1e-12)
@@ -79,9 +83,9 @@ def test_a_thin_wheel_gets_a_shallow_mark() -> None:
 @pytest.mark.parametrize("tilt", [0.0, 0.6])
 def test_a_mark_lies_between_bore_and_root(rim: float, tilt: float) -> None:
     """Distances to the root along the centrode's normal, to the bore along the radius."""
-    bore = 2 * (100 - (6.25 + rim) / math.cos(tilt))
-    mark = timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_diameter=bore, tilt=tilt)
-    to_bore = mark.center[0] - bore / 2 - mark.diameter / 2
+    hole = 2 * (100 - (6.25 + rim) / math.cos(tilt))
+    mark = timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_reach=hole / 2, tilt=tilt)
+    to_bore = mark.center[0] - hole / 2 - mark.diameter / 2
     to_root = (100 - mark.center[0]) * math.cos(tilt) - 6.25 - mark.diameter / 2
     assert to_bore > 0.2 * rim
     assert to_root > min(0.9, 0.3 * rim)
@@ -90,7 +94,7 @@ def test_a_mark_lies_between_bore_and_root(rim: float, tilt: float) -> None:
 
 def test_no_rim_no_mark() -> None:
     with pytest.raises(InfeasibleError, match="no room for a timing mark") as caught:
-        timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_diameter=187.5)
+        timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_reach=93.75)
     assert caught.value.limit == pytest.approx(187.5)
     assert "187.5" in caught.value.nearest
 
@@ -123,7 +127,7 @@ def test_placing_turns_then_shifts() -> None:
 
 def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:
     contour = gear_contour(8, 3.0)
-    part = Part(name="g", contour=contour, bore_diameter=6.0, width=5.0)
+    part = Part(name="g", contours=(contour,), openings=bore(6.0), width=5.0)
     centrode = np.array([[12.0, 0.0], [0.0, 9.0], [-12.0, 0.0]])
     drawing = pair_drawing([part, part], 24.0, [centrode, centrode])
     first, second = drawing.contours

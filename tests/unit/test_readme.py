@@ -14,11 +14,13 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+import gearcam
 from gearcam.cli import main
 from gearcam.design import FORMATS, loads
 from gearcam.design.tables import TABLES, law_table, register_checks, table
 from gearcam.findings import CHECKS
 from gearcam.laws.base import LAWS
+from gearcam.parts import mass_properties
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -29,10 +31,10 @@ PICTURE = ROOT / "docs" / "nail_machine_two_phase.svg"
 WRITTEN_LATER = {"docs/performance.md"}
 
 
-def block(language: str) -> str:
-    """The README's one code block in a language."""
-    (found,) = re.findall(rf"^```{language}\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
-    return found
+def block(language: str, number: int = 0) -> str:
+    """A code block of the README by its language: the first one, or another."""
+    found = re.findall(rf"^```{language}\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+    return found[number]
 
 
 def section(title: str) -> str:
@@ -106,6 +108,15 @@ def test_the_design_file_shown_is_the_profile() -> None:
     shown = tomllib.loads(block("toml"))
     assert shown == tomllib.loads(PROFILE.read_text(encoding="utf-8"))
     assert loads(block("toml")).name == "nail_machine_two_phase"
+
+
+def test_the_blank_shown_is_one_that_can_be_made() -> None:
+    text = block("toml").replace("[blank]\nbore_diameter_mm = [40, 40]\n", block("toml", 1))
+    assert text != block("toml")
+    job = gearcam.build(loads(text))
+    heavy, light = (mass_properties(part, 7850.0).mass for part in job.parts)
+    assert 0.0 < heavy < light  # the driver has holes
+    assert not [finding for finding in job.findings if finding.severity == "error"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Final, TypeGuard
 
+from gearcam.design.locate import Path
 from gearcam.design.models import faults_of
 from gearcam.design.tables import KIND, TABLES, Table, law_table, table
 from gearcam.design.wording import Fault, did_you_mean, key_hint, quoted, show
@@ -28,7 +29,7 @@ _LONGEST_NAME: Final = 100
 _COARSEST: Final = 50
 """A chord tolerance coarser than module/50 no longer draws a tooth."""
 
-_TOP: Final = ("kind", "name", "law", "pair", "rack", "blank", "limits", "output", "meshing")
+_TOP: Final = ("kind", "name", "law", *TABLES, "limits")
 _REQUIRED_TABLES: Final = ("law", "pair")
 
 
@@ -74,28 +75,23 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     for title in TABLES:
         if title not in document and title in _REQUIRED_TABLES:
             continue
-        if _clean(title, table(title), document.get(title, {}), found):
-            owner = TABLES[title]
-            found.parts[title] = owner(**table(title).inward(document.get(title, {})))
+        if _clean(table(title), document.get(title, {}), found):
+            raw = document.get(title, {})
+            made = TABLES[title](**table(title).inward(raw))
+            found.faults += _own_problems(made, table(title), raw)
+            found.parts[title] = made
     _examine_limits(document, found)
     found.faults += _pair_faults(document.get("pair"))
     found.faults += _output_faults(document.get("output"), document.get("pair"))
     found.faults += _meshing_faults(document.get("meshing"), document.get("pair"))
+    found.faults += _step_faults(document.get("meshing"), document.get("helix"))
     return found
 
 
-def _clean(title: str, known: Table, raw: Any, found: Examined) -> bool:
+def _clean(known: Table, raw: Any, found: Examined) -> bool:
     faults = list(faults_of(known, raw, home=_home))
-    if title == "output":
-        faults = [_said_of_splines(fault) for fault in faults]
     found.faults += faults
     return not faults
-
-
-def _said_of_splines(fault: Fault) -> Fault:
-    if fault.path == ("output", "dxf_curves") and fault.value == "splines":
-        return replace(fault, message='"splines" come with a later version', hint="")
-    return fault
 
 
 def _home(key: str) -> str:
@@ -216,24 +212,28 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
         found.parts |= {"law_type": law_type, "law": law}
 
 
-def _own_problems(law: Any, known: Table, raw: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield what the law itself finds wrong by reading (its optional method ``problems``)."""
+def _own_problems(made: Any, known: Table, raw: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield what parameters themselves find wrong by reading (their optional ``problems``)."""
     keys = {entry.name: entry.key for entry in known.entries.values()}
-    tell: Iterable[tuple[str, int | None, str, str]] = getattr(law, "problems", tuple)()
+    tell: Iterable[tuple[str, int | None, str, str]] = getattr(made, "problems", tuple)()
+    seen: set[Path] = set()
     for name, index, message, rule in tell:
         key = keys[name]
-        path = ("law", key) if index is None else ("law", key, index)
-        value = raw.get(key)
-        if index is not None and isinstance(value, list) and index < len(value):
-            value = value[index]
-        shown = f"{show(value)}: {message}" if value is not None else message
-        yield Fault(path, shown, value, rule)
+        value, path = raw.get(key), (known.title, key)
+        if index is not None and (isinstance(value, list) or not known.entries[key].param.both):
+            path = (known.title, key, index)
+            if isinstance(value, list) and index < len(value):
+                value = value[index]
+        if path not in seen:  # one value for both wheels is wrong once
+            seen.add(path)
+            shown = f"{show(value)}: {message}" if value is not None else message
+            yield Fault(path, shown, value, rule)
 
 
 def _examine_limits(document: Mapping[str, Any], found: Examined) -> None:
     if "limits" not in document:
         found.parts["limits"] = {}
-    elif _clean("limits", table("limits"), document["limits"], found):
+    elif _clean(table("limits"), document["limits"], found):
         found.parts["limits"] = table("limits").inward(document["limits"])
 
 
@@ -254,6 +254,9 @@ def _pair_faults(raw: Any) -> Iterator[Fault]:
 def _output_faults(raw: Any, pair: Any) -> Iterator[Fault]:
     if not isinstance(raw, Mapping):
         return
+    if raw.get("dxf_curves") == "splines" and raw.get("dxf_version") == "R12":
+        rule = '"arcs" or "lines" in R12, "splines" in R2010'
+        yield Fault(("output", "dxf_version"), '"R12": it knows no splines', "R12", rule)
     files = raw.get("files")
     if isinstance(files, list):
         for index, name in enumerate(files):
@@ -292,6 +295,14 @@ def _meshing_faults(raw: Any, pair: Any) -> Iterator[Fault]:
             yield Fault(path, message, tooth, f"1 to {show(known)}")
         if tooth in teeth[:index]:
             yield Fault(path, f"{show(tooth)} is listed twice", tooth, "each tooth once")
+
+
+def _step_faults(meshing: Any, helix: Any) -> Iterator[Fault]:
+    step = meshing.get("helix_step", 1) if isinstance(meshing, Mapping) else 1
+    steps = helix.get("steps", 1) if isinstance(helix, Mapping) else 1
+    if _is_number(step) and _is_number(steps) and step > steps:
+        message = f"the wheels have no step {show(step)}"
+        yield Fault(("meshing", "helix_step"), message, step, f"1 to {show(steps)} (helix.steps)")
 
 
 def _is_number(value: Any) -> TypeGuard[float]:

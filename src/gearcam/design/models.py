@@ -44,19 +44,33 @@ def faults_of(table: Table, raw: Any, *, home: Callable[[str], str]) -> Iterator
         rule = f"a table [{table.title}] with {', '.join(table.entries) or 'no keys'}"
         yield Fault((table.title,), f"{show(raw)} is not a table", raw, rule)
         return
+    raw = {key: _listed(table, key, value) for key, value in raw.items()}
     try:
-        _validator(table).validate_python(dict(raw))
+        _validator(table).validate_python(raw)
     except ValidationError as error:
         seen: set[Path] = set()
         for detail in error.errors(include_url=False, include_context=False, include_input=False):
             place = _place(detail["loc"])
+            if isinstance(raw.get(str(place[0])), _Single):
+                place = place[:1]
             if place not in seen:
                 seen.add(place)
                 yield _fault(table, raw, place, home)
     for key, entry in table.entries.items():
         value = raw.get(key)
-        if isinstance(value, list) and not _count_fits(entry, len(value)):
+        plain = isinstance(value, list) and not isinstance(value, _Single)
+        if plain and not _count_fits(entry, len(value)):
             yield value_fault((table.title, key), value, entry, item=False)
+
+
+class _Single(list[Any]):
+    """One value that stands for both wheels, as a list for the model."""
+
+
+def _listed(table: Table, key: str, value: Any) -> Any:
+    entry = table.entries.get(key)
+    single = entry is not None and entry.param.both and not isinstance(value, list)
+    return _Single([value]) if single else value
 
 
 def _count_fits(entry: Entry, count: int) -> bool:
@@ -82,6 +96,8 @@ def _fault(table: Table, raw: Mapping[str, Any], place: Path, home: Callable[[st
     if key not in raw:
         return Fault(path, "is missing", allowed=allowed(entry))
     item = len(place) > 1
+    if isinstance(raw[key], _Single):
+        return value_fault(path, raw[key][0], entry, item=True)
     return value_fault(path, raw[key][place[1]] if item else raw[key], entry, item=item)
 
 

@@ -96,4 +96,7 @@ def _table_schema(known: Table) -> dict[str, Any]:
             rule["default"] = entry.outward(entry.default)
         counts = {"minItems": entry.length or entry.param.min_length, "maxItems": entry.length}
         rule |= {name: count for name, count in counts.items() if count}
+        if entry.param.both:
+            words = {name: rule.pop(name) for name in ("description", "default") if name in rule}
+            properties[key] = words | {"anyOf": [dict(rule["items"]), dict(rule)]}
     return made

@@ -11,10 +11,10 @@ from gearcam.design.examine import examine
 from gearcam.design.tables import KIND, TABLES, OutputSpec, limits_table, table, table_of
 from gearcam.design.wording import MISSING, dotted
 from gearcam.errors import DesignError, Problem
-from gearcam.gears.spec import PairSpec, Rack
+from gearcam.gears.spec import HelixSpec, PairSpec, Rack
 from gearcam.laws.base import LAWS
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.parts import Blank
+from gearcam.parts.blank import Blank
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -36,7 +36,9 @@ class GearPairDesign:
     rack : Rack
         The basic rack.
     blank : Blank
-        Bores.
+        Bores, hubs, holes, marks, edges, density.
+    helix : HelixSpec
+        Steps of stepped wheels.
     limits : mapping of str to float
         Limits of checks by name, in mm and rad; the others keep their defaults.
     output : OutputSpec
@@ -57,6 +59,7 @@ class GearPairDesign:
     pair: PairSpec
     rack: Rack = field(default_factory=Rack)
     blank: Blank = field(default_factory=Blank)
+    helix: HelixSpec = field(default_factory=HelixSpec)
     limits: Mapping[str, float] = field(default_factory=dict)
     output: OutputSpec = field(default_factory=OutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)

@@ -17,17 +17,20 @@ from functools import lru_cache
 from typing import Any, Final
 
 from gearcam.findings import CHECKS
-from gearcam.gears.spec import PairSpec, Rack
+from gearcam.gears.spec import HelixSpec, PairSpec, Rack
 from gearcam.laws.base import LAWS
 from gearcam.meshing.settings import KIND as MESHING_KIND
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.parts import Blank
-from gearcam.quantities import LENGTH, REQUIRED, TEXT, Param, param, params_of
+from gearcam.parts.blank import KIND as PARTS_KIND
+from gearcam.parts.blank import Blank
+from gearcam.quantities import ANGLE, COUNT, LENGTH, REQUIRED, TEXT, Param, param, params_of
 
 KIND: Final = "gear-pair"
 """The kind of design that this version builds."""
 
-FORMATS: Final = ("dxf", "svg", "stl", "3mf", "glb", "csv")
+FORMATS: Final = (
+    "dxf", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg", "inspection",
+)  # fmt: skip
 """What ``output.files`` may list."""
 
 
@@ -46,7 +49,27 @@ class OutputSpec:
         "the smaller of 0.001 mm and module/1000 when left out, never coarser than module/50",
     )
     dxf_curves: str = param(
-        TEXT, default="arcs", choices=("arcs", "lines"), doc="how dxf outlines are drawn"
+        TEXT,
+        default="arcs",
+        choices=("arcs", "splines", "lines"),
+        doc="how dxf outlines are drawn",
+    )
+    dxf_version: str | None = param(
+        TEXT,
+        default=None,
+        choices=("R2010", "R12"),
+        doc="version of dxf files; R12, for old machines, with lines, R2010 else, when left out",
+    )
+    pose: float = param(
+        ANGLE,
+        default=0.0,
+        ge=-36000,
+        le=36000,
+        word="phi1",
+        doc="driver angle at which the assembled pair is drawn",
+    )
+    inspection_points: int = param(
+        COUNT, default=9, ge=2, le=1000, doc="points on each flank in inspection.csv"
     )
 
 
@@ -87,6 +110,8 @@ class Entry:
 
     def inward(self, value: Any) -> Any:
         """Turn a value that has been checked from the file's unit into mm, rad and tuples."""
+        if self.param.both and not isinstance(value, list | tuple):
+            value = (value, value)
         if self.length is not None:
             return tuple(self._inward(item) for item in value)
         return self._inward(value)
@@ -201,7 +226,7 @@ def limits_table() -> Table:
     register_checks()
     entries = {}
     for check in CHECKS.values():
-        if check.kind in (KIND, MESHING_KIND) and check.limit is not None:
+        if check.kind in (KIND, MESHING_KIND, PARTS_KIND) and check.limit is not None:
             name, made_of, default = check.limit
             key = made_of.key(name)
             entries[key] = Entry(name, key, made_of, float, None, False, default)
@@ -211,7 +236,7 @@ def limits_table() -> Table:
 def register_checks() -> None:
     """Load the rooms whose checks register themselves."""
     # only here, as a file without limits does not need them
-    for room in ("gearcam.gears.checks", "gearcam.meshing.checks"):
+    for room in ("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"):
         importlib.import_module(room)
 
 
@@ -219,6 +244,7 @@ TABLES: Final[dict[str, type]] = {
     "pair": PairSpec,
     "rack": Rack,
     "blank": Blank,
+    "helix": HelixSpec,
     "output": OutputSpec,
     "meshing": MeshingSpec,
 }

@@ -123,6 +123,8 @@ def allowed(entry: Entry, *, item: bool = False) -> str:
     if entry.length is None or item:
         return _single(entry)
     made = entry.param
+    if made.both:
+        return f"{_single(entry)}, or two of them, driver first"
     if entry.length:
         count = f"{entry.length} "
     elif made.min_length:

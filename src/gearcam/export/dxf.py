@@ -1,10 +1,11 @@
-"""DXF: drawings for cutters, and their error measured on the file as read back.
+"""DXF: drawings for cutters.
 
-R2010, millimetres, one layer per feature; each outline is one closed LWPOLYLINE, of arcs
-(*bulges*) or of straight pieces; bores and marks are circles. The same drawing gives the same
-bytes.
+R2010 or R12, millimetres, one layer per feature. Each outline is one closed polyline, of arcs
+(*bulges*) or of straight pieces, or a chain of cubic splines, one from corner to corner; openings
+and marks are circles, or polylines of exact arcs. Old machines read R12: it knows no splines and no
+units. The same drawing gives the same bytes.
 
-Refused: curves of another kind than ``arcs`` and ``lines``; splines are not available yet.
+Refused: splines in R12.
 
 Depends on drawings and numeric; ezdxf only inside the functions.
 """
@@ -12,8 +13,9 @@ Depends on drawings and numeric; ezdxf only inside the functions.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
@@ -23,18 +25,20 @@ from gearcam.drawings import (
     BORE,
     CENTER,
     CENTRODE,
+    HOLE,
     MARK,
     OUTLINE,
+    SLOT,
     Circle,
     Cross,
     Drawing,
+    Loop,
     Path,
     Shape,
 )
-from gearcam.errors import DesignError, GearcamError, Problem
 from gearcam.numeric.arcs import fit_closed
-from gearcam.numeric.bulges import deviation
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.splines import DEGREE, fit_spline
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -42,15 +46,18 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-CURVES: Final = ("arcs", "lines")
+CURVES: Final = ("arcs", "splines", "lines")
 """How curves may be written."""
 
-ARCS_PART: Final = 0.96
-"""Part of the tolerance that the arcs may take; the rest covers the chord error of the dense
-points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
+VERSIONS: Final = ("R2010", "R12")
+"""Versions of the format."""
 
-COLORS: Final = {OUTLINE: 7, BORE: 5, MARK: 1, CENTRODE: 3, CENTER: 8}
-"""Colour numbers: black or white, blue, red, green, grey."""
+CURVE_PART: Final = 0.96
+"""Part of the tolerance that arcs and splines may take; the rest covers the chord error of the
+dense points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
+
+COLORS: Final = {OUTLINE: 7, BORE: 5, HOLE: 4, SLOT: 6, MARK: 1, CENTRODE: 3, CENTER: 8}
+"""Colour numbers: black or white, blue, cyan, magenta, red, green, grey."""
 
 DASHED: Final = (CENTRODE,)
 """Kinds that are drawn dashed."""
@@ -59,48 +66,57 @@ MILLIMETRES: Final = 4
 """$INSUNITS."""
 
 
-class DxfError(GearcamError, ValueError):
-    """A DXF file does not hold what it should."""
+@dataclass(frozen=True, kw_only=True)
+class DxfStyle:
+    """How a drawing is written.
+
+    Parameters
+    ----------
+    tolerance : float, mm
+        Largest distance between an outline's true curve and what stands for it.
+    curves : {"arcs", "splines", "lines"}
+        Arcs or cubic splines within the tolerance, or the contour's adaptive polygon.
+    version : {"R2010", "R12"}
+        Of the format.
+
+    Raises
+    ------
+    ValueError
+        If a word is of another kind, or splines are asked for in R12.
+    """
+
+    tolerance: float
+    curves: str = "arcs"
+    version: str = "R2010"
+
+    def __post_init__(self) -> None:
+        if self.curves not in CURVES or self.version not in VERSIONS:
+            raise ValueError(f"no such DXF: {self.curves}, {self.version}")
+        if self.curves == "splines" and self.version == "R12":
+            raise ValueError("DXF R12 knows no splines")
 
 
-def dxf_bytes(drawing: Drawing, tolerance: float, curves: str = "arcs") -> bytes:
+def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     """Write a drawing as DXF.
 
     Parameters
     ----------
     drawing : Drawing
         What to write.
-    tolerance : float, mm
-        Largest distance between an outline's true curve and its arcs.
-    curves : {"arcs", "lines"}
-        Arcs within the tolerance, or the contour's adaptive polygon.
+    style : DxfStyle
+        How.
 
     Returns
     -------
     bytes
         The file, UTF-8; the same for the same drawing.
-
-    Raises
-    ------
-    DesignError
-        If `curves` is of another kind.
     """
-    if curves not in CURVES:
-        late = "splines are not available yet" if curves == "splines" else "unknown kind of curves"
-        allowed = ", ".join(f'"{kind}"' for kind in CURVES)
-        raise DesignError(
-            [
-                Problem(
-                    late, key="output.dxf_curves", value=curves, allowed=allowed, hint='take "arcs"'
-                )
-            ]
-        )
     from ezdxf.filemanagement import new
 
-    with _fixed_dates():
-        document = new("R2010", units=MILLIMETRES)
+    with fixed_dates():
+        document = new(style.version, units=MILLIMETRES)
         document.linetypes.add("DASHED", [3.0, 2.0, -1.0], description="_ _ _ _ _")
-        _fill(document, drawing, tolerance, curves)
+        _fill(document, drawing, style)
         # The library would register these classes in the order of a set, which changes from run to
         # run.
         for kind in sorted(document.entitydb.dxf_types_in_use()):
@@ -110,7 +126,7 @@ def dxf_bytes(drawing: Drawing, tolerance: float, curves: str = "arcs") -> bytes
     return stream.getvalue().encode("utf-8")
 
 
-def _fill(document: Document, drawing: Drawing, tolerance: float, curves: str) -> None:
+def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
     """Make the layers and put each feature on its own."""
     for feature in drawing.features:
         if feature.layer not in document.layers:
@@ -120,21 +136,42 @@ def _fill(document: Document, drawing: Drawing, tolerance: float, curves: str) -
     low, high = _bounds(drawing)
     space.reset_extents((*low, 0.0), (*high, 0.0))
     for feature in drawing.features:
-        _add(space, feature.shape, {"layer": feature.layer}, tolerance, curves)
+        add_shape(space, feature.shape, {"layer": feature.layer}, style)
 
 
-def _add(
-    space: Modelspace, shape: Shape, attributes: dict[str, Any], tolerance: float, curves: str
-) -> None:
+def add_shape(space: Modelspace, shape: Shape, attributes: dict[str, Any], style: DxfStyle) -> None:
+    """Add a shape to a model space.
+
+    Parameters
+    ----------
+    space : Modelspace
+        Of ezdxf.
+    shape : Contour or Circle or Loop or Path or Cross
+        What to add.
+    attributes : dict
+        Of its entities, such as the layer.
+    style : DxfStyle
+        How curves are written.
+
+    Raises
+    ------
+    ValueError
+        If the runs of a contour do not join.
+    """
     match shape:
+        case Contour() if style.curves == "splines":
+            for poles, knots in _splines(shape, style):
+                space.add_open_spline(
+                    poles.tolist(), degree=DEGREE, knots=knots.tolist(), dxfattribs=attributes
+                )
         case Contour():
-            vertices, bulges = _outline(shape, tolerance, curves)
-            rows = np.column_stack([vertices, bulges]).tolist()
-            space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs=attributes)
+            vertices, bulges = _outline(shape, style)
+            _polyline(space, vertices, bulges, attributes, style)
+        case Loop():
+            _polyline(space, shape.vertices, shape.bulges, attributes, style)
         case Path():
-            space.add_lwpolyline(
-                shape.points.tolist(), format="xy", close=shape.closed, dxfattribs=attributes
-            )
+            straight = np.zeros(len(shape.points))
+            _polyline(space, shape.points, straight, attributes, style, closed=shape.closed)
         case Circle():
             space.add_circle(shape.center.tolist(), 0.5 * shape.diameter, dxfattribs=attributes)
         case Cross():
@@ -143,10 +180,39 @@ def _add(
             space.add_line((x, y - arm), (x, y + arm), dxfattribs=attributes)
 
 
-def _outline(contour: Contour, tolerance: float, curves: str) -> tuple[Array, Array]:
+def _polyline(
+    space: Modelspace,
+    vertices: Array,
+    bulges: Array,
+    attributes: dict[str, Any],
+    style: DxfStyle,
+    *,
+    closed: bool = True,
+) -> None:
+    """Add a polyline of the kind that the version knows."""
+    rows = np.column_stack([vertices, bulges]).tolist()
+    if style.version == "R12":
+        space.add_polyline2d(rows, format="xyb", close=closed, dxfattribs=attributes)
+    else:
+        space.add_lwpolyline(rows, format="xyb", close=closed, dxfattribs=attributes)
+
+
+def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]:
+    """Poles and knots of each run's spline; each begins exactly where the one before ends."""
+    made = [fit_spline(run, CURVE_PART * style.tolerance) for run in contour.runs]
+    for spline, following in zip(made, [*made[1:], made[0]], strict=True):
+        poles = spline.poles.copy()
+        gap = float(np.hypot(*(poles[-1] - following.poles[0])))
+        if gap > style.tolerance:
+            raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
+        poles[-1] = following.poles[0]
+        yield poles, spline.knots
+
+
+def _outline(contour: Contour, style: DxfStyle) -> tuple[Array, Array]:
     """Return vertices and bulges of a contour."""
-    if curves == "arcs":
-        return fit_closed(contour.runs, ARCS_PART * tolerance)
+    if style.curves == "arcs":
+        return fit_closed(contour.runs, CURVE_PART * style.tolerance)
     return contour.vertices, np.zeros(len(contour.vertices))
 
 
@@ -155,7 +221,7 @@ def _bounds(drawing: Drawing) -> tuple[tuple[float, float], tuple[float, float]]
     corners = []
     for feature in drawing.features:
         match feature.shape:
-            case Contour(vertices=points) | Path(points=points):
+            case Contour(vertices=points) | Path(points=points) | Loop(vertices=points):
                 corners += [points.min(axis=0), points.max(axis=0)]
             case Circle(center=center, diameter=size) | Cross(center=center, size=size):
                 corners += [center - 0.5 * size, center + 0.5 * size]
@@ -164,7 +230,7 @@ def _bounds(drawing: Drawing) -> tuple[tuple[float, float], tuple[float, float]]
 
 
 @contextmanager
-def _fixed_dates() -> Iterator[None]:
+def fixed_dates() -> Iterator[None]:
     """Keep dates and random identifiers out of the file; the library's option is process-wide."""
     import ezdxf
 
@@ -175,72 +241,3 @@ def _fixed_dates() -> Iterator[None]:
         yield
     finally:
         options.write_fixed_meta_data_for_testing = before
-
-
-def measure_dxf(data: bytes, contours: Sequence[Contour]) -> float:
-    """Measure a DXF file, as read back, against the true outlines.
-
-    Parameters
-    ----------
-    data : bytes
-        The file.
-    contours : sequence of Contour
-        The true outlines, placed as in the drawing, in its order.
-
-    Returns
-    -------
-    float, mm
-        The largest distance between the dense points of an outline's true curve and the file's
-        curve, and between places inside the file's arcs and the dense points' polygon.
-
-    Raises
-    ------
-    DxfError
-        If the file is damaged, is not in millimetres, or holds another number of closed outlines.
-    """
-    from ezdxf.entities.lwpolyline import LWPolyline
-
-    document = read_dxf(data)
-    if document.header.get("$INSUNITS") != MILLIMETRES:
-        raise DxfError("the DXF file is not in millimetres")
-    outlines = [
-        entity
-        for entity in document.modelspace()
-        if isinstance(entity, LWPolyline) and entity.dxf.layer.endswith(OUTLINE)
-    ]
-    if len(outlines) != len(contours) or not all(entity.closed for entity in outlines):
-        raise DxfError(
-            f"the DXF file should hold {len(contours)} closed outlines, it holds {len(outlines)}"
-        )
-    worst = 0.0
-    for entity, contour in zip(outlines, contours, strict=True):
-        rows = np.array(entity.get_points(format="xyb"), dtype=np.float64)
-        worst = max(worst, deviation(rows[:, :2], rows[:, 2], dense_points(contour)))
-    return worst
-
-
-def read_dxf(data: bytes) -> Document:
-    """Return the document in the bytes of a DXF file.
-
-    Raises
-    ------
-    DxfError
-        If the file is damaged, or ezdxf's audit finds anything to report or to mend.
-    """
-    from ezdxf.filemanagement import read
-    from ezdxf.lldxf.const import DXFError
-
-    try:
-        document = read(io.StringIO(data.decode("utf-8")))
-    except (DXFError, UnicodeDecodeError) as error:
-        raise DxfError(f"the DXF file cannot be read: {error}") from error
-    audit = document.audit()
-    faults = [*audit.errors, *audit.fixes]
-    if faults:
-        raise DxfError(f"the DXF file has faults ({len(faults)}), the first: {faults[0].message}")
-    return document
-
-
-def dense_points(contour: Contour) -> Array:
-    """Return the dense points of a contour's runs, in order, (n, 2), mm, first not repeated."""
-    return np.vstack([run.points[:-1] for run in contour.runs])

@@ -16,6 +16,7 @@ import io
 import re
 import uuid
 import zipfile
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -28,21 +29,25 @@ if TYPE_CHECKING:
 HEADER_LENGTH: Final = 80
 """Bytes of an STL header."""
 
+COUNT_LENGTH: Final = 4
+TRIANGLE_LENGTH: Final = 50
+"""Bytes of the number of triangles behind it, and of each triangle."""
+
 EPOCH: Final = (1980, 1, 1, 0, 0, 0)
 """The date in a 3MF's archive: the earliest that the format knows."""
 
 _UUID: Final = re.compile(rb"[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}")
 
 
-def stl_bytes(mesh: Mesh, name: str) -> bytes:
-    """Write a binary STL; the name stands in the header.
+def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
+    """Write a binary STL; the name stands in the header, the bodies follow one another.
 
     Parameters
     ----------
-    mesh : Mesh
-        Closed, mm.
+    bodies : mapping of str to Mesh
+        Closed, mm, by name.
     name : str
-        The part's name.
+        The name of the part or assembly.
 
     Returns
     -------
@@ -55,38 +60,45 @@ def stl_bytes(mesh: Mesh, name: str) -> bytes:
     """
     from trimesh.exchange.stl import export_stl
 
-    single = _single(mesh, name)
-    data = export_stl(next(iter(_scene(single, name).geometry.values())))
+    scene = _scene({body: _single(mesh, body) for body, mesh in bodies.items()})
+    # each body for itself: joined, two that touch would share edges and be open
+    triangles = b"".join(
+        export_stl(body)[HEADER_LENGTH + COUNT_LENGTH :] for body in scene.geometry.values()
+    )
+    count = len(triangles) // TRIANGLE_LENGTH
     # "solid" at the start would announce the text form.
     label = f"gearcam {name} (mm)".encode("ascii", "replace")[:HEADER_LENGTH]
-    return label.ljust(HEADER_LENGTH, b"\0") + data[HEADER_LENGTH:]
+    head = label.ljust(HEADER_LENGTH, b"\0") + count.to_bytes(COUNT_LENGTH, "little")
+    return head + triangles
 
 
-def threemf_bytes(mesh: Mesh, name: str) -> bytes:
-    """Return a 3MF in millimetres; the name is that of the object (see `stl_bytes`)."""
+def threemf_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
+    """Return a 3MF in millimetres; each body is an object of its name (see `stl_bytes`)."""
     from trimesh.exchange.threemf import export_3MF
 
-    _require(mesh, name)
-    return _repeatable(export_3MF(_scene(mesh, name)), name)
+    for body, mesh in bodies.items():
+        _require(mesh, body)
+    return _repeatable(export_3MF(_scene(bodies)), name)
 
 
-def glb_bytes(mesh: Mesh, name: str) -> bytes:
-    """Return a GLB in millimetres; the name is that of node and mesh (see `stl_bytes`)."""
+def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
+    """Return a GLB in millimetres; each body is a node and mesh of its name (see `stl_bytes`)."""
     from trimesh.exchange.gltf import export_glb
 
-    scene = _scene(_single(mesh, name), name)
-    scene.metadata["units"] = "mm"
+    scene = _scene({body: _single(mesh, body) for body, mesh in bodies.items()})
+    scene.metadata |= {"units": "mm", "name": name}
     return bytes(export_glb(scene, include_normals=False))
 
 
-def _scene(mesh: Mesh, name: str) -> Scene:
+def _scene(bodies: Mapping[str, Mesh]) -> Scene:
     from trimesh import Scene, Trimesh
 
-    body = Trimesh(
-        vertices=mesh.vertices, faces=mesh.triangles, process=False, metadata={"name": name}
-    )
     scene = Scene()
-    scene.add_geometry(body, node_name=name, geom_name=name)
+    for name, mesh in bodies.items():
+        body = Trimesh(
+            vertices=mesh.vertices, faces=mesh.triangles, process=False, metadata={"name": name}
+        )
+        scene.add_geometry(body, node_name=name, geom_name=name)
     return scene
 
 

@@ -16,7 +16,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import CENTRODE, MARK, Circle, Cross, Drawing, Feature, Path
+from gearcam.drawings import CENTRODE, MARK, Circle, Cross, Drawing, Feature, Loop, Path
 from gearcam.numeric.contour import Contour
 
 Array = NDArray[np.float64]
@@ -136,6 +136,8 @@ def _element(feature: Feature, pixel: float) -> list[str]:
                     f' stroke="{ink}"/>'
                 )
             ]
+        case Loop():
+            return [f'<path class={name} fill="#ffffff" stroke="{ink}" d="{_arcs(shape)}"/>']
         case Cross(center=center, size=size):
             x, y, arm = float(center[0]), -float(center[1]), _number(size)
             start = f"M{_number(x - 0.5 * size)} {_number(y)}h{arm}"
@@ -152,6 +154,21 @@ def _data(points: Array, closed: bool) -> str:
     kept = kept[:-1] if closed else kept
     steps = " ".join(f"{_number(x)} {_number(-y)}" for x, y in kept.tolist())
     return f"M{steps}" + ("Z" if closed else "")
+
+
+def _arcs(loop: Loop) -> str:
+    """Return the path data of a loop: straight pieces and circular arcs."""
+    points, steps = loop.vertices, []
+    for bulge, start, (x, y) in zip(loop.bulges, points, np.roll(points, -1, axis=0), strict=True):
+        end = f"{_number(x)} {_number(-y)}"
+        if bulge == 0.0:
+            steps.append(f"L{end}")
+            continue
+        chord = float(np.hypot(x - start[0], y - start[1]))
+        radius = _number(0.25 * chord * (1.0 + bulge**2) / abs(bulge))
+        # y is turned downwards: what turns left stays so for the eye, which SVG calls 0
+        steps.append(f"A{radius} {radius} 0 {int(abs(bulge) > 1)} {int(bulge < 0)} {end}")
+    return f"M{_number(points[0, 0])} {_number(-points[0, 1])}{''.join(steps)}Z"
 
 
 def _number(value: float) -> str:

@@ -17,10 +17,10 @@ from gearcam.gears.pair import Gear
 from gearcam.gears.subject import KIND, Subject
 from gearcam.quantities import LENGTH, NUMBER, Param
 
-__all__ = ["KIND", "Subject", "centrode_checks", "largest_module"]
+__all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
 
 
-def _teeth(numbers: tuple[int, ...] | list[int]) -> str:
+def tooth_ranges(numbers: tuple[int, ...] | list[int]) -> str:
     """Return tooth numbers as ranges: ``15, 17-18``."""
     spans: list[list[int]] = []
     for number in numbers:
@@ -125,7 +125,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
             value=subject.pair.module,
             limit=best if below.any() else None,
             unit="mm",
-            where=f"wheel {gear.wheel}, teeth {_teeth(teeth)}",
+            where=f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
         )
 
 
@@ -149,7 +149,7 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Finding]:
                 value=float(thickness.min()),
                 limit=limit,
                 unit="modules",
-                where=f"wheel {gear.wheel}, teeth {_teeth([int(k) + 1 for k in thin])}",
+                where=f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in thin])}",
             )
 
 
@@ -173,7 +173,7 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Finding]:
                 value=float(height.min()),
                 limit=limit,
                 unit="addenda",
-                where=f"wheel {gear.wheel}, teeth {_teeth([int(k) + 1 for k in short])}",
+                where=f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in short])}",
             )
 
 

@@ -48,6 +48,8 @@ class Toothing:
         Its cutter.
     closed : bool
         Whether its teeth go all around; else its blank ends half a pitch beyond them.
+    moved : float, mm
+        How far its teeth are moved on along its centrode.
     """
 
     rolling: Rolling
@@ -55,6 +57,7 @@ class Toothing:
     teeth: int
     cutter: Cutter
     closed: bool = True
+    moved: float = 0.0
 
     @property
     def turn(self) -> complex:
@@ -102,7 +105,7 @@ class Toothing:
     def tooth_places(self) -> Array:
         """Arc length of each formed tooth's middle, mm: (k - 1) pitches, on wheel 2 (k - 1/2)."""
         first = self.numbers[0] - (1.0 if self.wheel == 1 else 0.5)
-        return self.pitch * np.arange(first, first + len(self.numbers))
+        return self.moved + self.pitch * np.arange(first, first + len(self.numbers))
 
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
         """Return the frames of this wheel at driver angles, rad (see `Rolling.frames`)."""

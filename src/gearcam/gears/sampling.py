@@ -41,6 +41,9 @@ _MARGIN = 0.97
 _FEW = 0.08
 """Share of chords that may be halved; with more of them the vertices are spread anew."""
 
+_GRAIN = 1e-3
+"""Distance in tolerances below which two points of a dense run are one."""
+
 _ROUNDS = 12
 """Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
 
@@ -228,29 +231,55 @@ class Sampler:
         Returns
         -------
         tuple of Run
-            Counter-clockwise; the vertices of the polygon are among their points.
+            Counter-clockwise; the vertices of the polygon and the ends of the rows, their joints,
+            are among their points.
         """
         vertices = self.chords[0]
         steps = np.arange(oversampling) / oversampling
-        j = np.append(
-            (vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel(), self.least
-        )
+        j = (vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel()
+        smooth = self.density[:-1:_PROBES][~self.rows.corner]
+        fixed = np.append(self.corners, self.least)
+        groups = (fixed, smooth, j)
+        rank = np.repeat(range(len(groups)), [len(group) for group in groups])
+        j = np.concatenate(groups)
+        order = np.lexsort((rank, j))
+        j, rank = j[order], rank[order]
         points, tangents = self.at(j)
-        cuts = np.searchsorted(j, np.append(self.corners, self.least))
+        kept = _told_apart(points, rank, _GRAIN * self.tolerance)
+        j, points, tangents = j[kept], points[kept], tangents[kept]
+        cuts = np.flatnonzero(rank[kept] == 0)
+        joints = np.flatnonzero(rank[kept] == 1)
         runs = []
         for start, end in pairwise(cuts.tolist()):
             before_corner = self._left_end(float(j[end]))
             p = np.append(points[start:end], before_corner[0])
             t = np.append(tangents[start:end], before_corner[1])
-            if reverse:
-                p, t = p[::-1], -t[::-1]
-            runs.append(Run(points=as_pairs(p), tangents=as_pairs(t)))
+            inside = joints[(joints > start) & (joints < end)] - start
+            run = Run(points=as_pairs(p), tangents=as_pairs(t), joints=tuple(inside.tolist()))
+            runs.append(run.reversed if reverse else run)
         return tuple(runs[::-1] if reverse else runs)
 
     def _left_end(self, j: float) -> tuple[Plane, Plane]:
         """Point and tangent at the end of the row that ends at a corner."""
         row = int(np.searchsorted(self.density[::_PROBES], j)) - 1
         return self._trace(np.array([row]), self.rows.end[row : row + 1])
+
+
+def _told_apart(points: Plane, rank: NDArray[np.int64], grain: float) -> NDArray[np.bool_]:
+    """Choose points in order so that no two are nearer than a grain; the lowest rank stays.
+
+    Points of rank 0, the corners, all stay.
+    """
+    kept = np.ones(len(points), dtype=bool)
+    while True:
+        index = np.flatnonzero(kept)
+        near = np.flatnonzero(np.abs(np.diff(points[index])) <= grain)
+        one, two = index[near], index[near + 1]
+        drop = np.where(rank[one] > rank[two], one, two)
+        drop = drop[rank[drop] > 0]
+        if drop.size == 0:
+            return kept
+        kept[drop] = False
 
 
 def as_pairs(points: Plane) -> Array:

@@ -30,6 +30,28 @@ class Rack:
 
 
 @dataclass(frozen=True, kw_only=True)
+class HelixSpec:
+    """Stepped wheels: each step is cut for itself, its teeth moved along the pitch curve.
+
+    The teeth of a non-circular wheel cannot follow a helix by twisting: every place of the
+    centrode bends differently. Steps of the same height, the teeth of each moved on by `offset`
+    along both centrodes, take turns in the mesh as those of a helical wheel do.
+    """
+
+    steps: int = param(
+        COUNT, default=1, ge=1, le=100, doc="steps over the width; 1 for spur wheels"
+    )
+    offset: float | None = param(
+        LENGTH,
+        default=None,
+        ge=-1e4,
+        le=1e4,
+        doc="way of each step's teeth along the pitch curves against the one below; the pitch over "
+        "the steps if left out",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class PairSpec:
     """Exactly one of centre distance and module is given; the other is solved."""
 

@@ -4,6 +4,7 @@
 `summary` into the document that says what was made and how exact it is.
 """
 
-from gearcam.jobs.gear_pair import GearPairJob, Written
+from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.jobs.written import Written
 
 __all__ = ["GearPairJob", "Written"]

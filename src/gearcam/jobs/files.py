@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearcam.jobs.sheet_files import sheet_files
+
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing
+    from gearcam.drawings import Drawing, Pose
+    from gearcam.export.dxf import DxfStyle
     from gearcam.jobs.gear_pair import GearPairJob
+
+PAIR = "pair"
+"""Stem of the files of the assembled pair."""
+
+STEP_PART = 1e-2
+"""Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
 
 
 def export(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
@@ -19,7 +29,7 @@ def export(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, byt
     job : GearPairJob
         The design, computed as far as the kind needs.
     kind : str
-        ``csv``, ``dxf``, ``svg``, ``stl``, ``3mf`` or ``glb``.
+        One of `gearcam.design.tables.FORMATS`.
     extras : dict
         What is measured on the files is written in here, for the summary.
 
@@ -28,13 +38,16 @@ def export(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, byt
     dict of str to bytes
         Contents by file name.
     """
-    if kind == "csv":
-        return _tables(job)
-    if kind == "dxf":
-        return _drawings(job, extras)
-    if kind == "svg":
-        return _picture(job)
-    return _meshes(job, kind, extras)
+    makers: dict[str, Callable[[], dict[str, bytes]]] = {
+        "csv": lambda: _tables(job),
+        "dxf": lambda: _drawings(job, extras),
+        "svg": lambda: _picture(job),
+        "step": lambda: _steps(job),
+        "drawing-dxf": lambda: sheet_files(job, _pair_drawing(job), _style(job), "dxf"),
+        "drawing-svg": lambda: sheet_files(job, _pair_drawing(job), _style(job), "svg"),
+        "inspection": lambda: _inspection(job),
+    }
+    return makers[kind]() if kind in makers else _meshes(job, kind, extras)
 
 
 def _tables(job: GearPairJob) -> dict[str, bytes]:
@@ -77,21 +90,45 @@ def _pair_drawing(job: GearPairJob) -> Drawing:
         for gear, end in zip(job.gears, ends, strict=True)
     ]
     closed = job.gear1.toothing.closed, job.gear2.toothing.closed
-    return pair_drawing(job.parts, job.pair.shift, centrodes, closed=closed)
+    return pair_drawing(
+        job.parts, job.pair.shift, centrodes, name=PAIR, closed=closed, poses=poses(job)
+    )
+
+
+def poses(job: GearPairJob) -> tuple[Pose, Pose]:
+    """Return how the wheels of a `job` stand when assembled: wheel 1 turned by -phi1."""
+    phi1 = job.design.output.pose
+    phi2 = float(job.law.phi2(np.array(phi1)))
+    if job.law.feeds:
+        return (-phi1, (0.0, 0.0)), (0.0, (0.0, -job.pair.center_distance * phi2))
+    return (-phi1, (0.0, 0.0)), (phi2, (job.pair.shift, 0.0))
+
+
+def _style(job: GearPairJob) -> DxfStyle:
+    from gearcam.export.dxf import DxfStyle
+
+    asked = job.design.output
+    version = asked.dxf_version or ("R12" if asked.dxf_curves == "lines" else "R2010")
+    tolerance = job.gear1.profile.tolerance
+    return DxfStyle(tolerance=tolerance, curves=asked.dxf_curves, version=version)
 
 
 def _drawings(job: GearPairJob, extras: dict[str, Any]) -> dict[str, bytes]:
     from gearcam.drawings import wheel_drawing
-    from gearcam.export.dxf import dxf_bytes, measure_dxf
+    from gearcam.export.dxf import dxf_bytes
+    from gearcam.export.dxf_read import measure_dxf
 
+    style = _style(job)
+    drawings = [
+        wheel_drawing(part, step) for part in job.parts for step in range(len(part.contours))
+    ]
     files: dict[str, bytes] = {}
     errors: dict[str, float] = {}
-    drawings = {f"{part.name}.dxf": wheel_drawing(part) for part in job.parts}
-    for name, drawing in {**drawings, "pair.dxf": _pair_drawing(job)}.items():
-        tolerance = job.gear1.profile.tolerance
-        files[name] = dxf_bytes(drawing, tolerance, job.design.output.dxf_curves)
+    for drawing in (*drawings, _pair_drawing(job)):
+        name = f"{drawing.name}.dxf"
+        files[name] = dxf_bytes(drawing, style)
         errors[name] = measure_dxf(files[name], drawing.contours)
-    extras["dxf"] = {"curves": job.design.output.dxf_curves, "error_mm": errors}
+    extras["dxf"] = {"curves": style.curves, "version": style.version, "error_mm": errors}
     return files
 
 
@@ -103,13 +140,34 @@ def _picture(job: GearPairJob) -> dict[str, bytes]:
     return {"pair.svg": svg_bytes(_pair_drawing(job), title=job.design.name, notes=notes)}
 
 
+def _inspection(job: GearPairJob) -> dict[str, bytes]:
+    from gearcam.export.table import table_bytes
+    from gearcam.jobs.ordered import inspection_rows
+
+    return {"inspection.csv": table_bytes(inspection_rows(job))}
+
+
+def _steps(job: GearPairJob) -> dict[str, bytes]:
+    from gearcam.export.step import Placed, step_bytes
+
+    tolerance = STEP_PART * job.gear1.profile.tolerance
+    files = {
+        f"{part.name}.step": step_bytes([Placed(part=part)], part.name, tolerance)
+        for part in job.parts
+    }
+    placed = [
+        Placed(part=part, angle=angle, offset=offset)
+        for part, (angle, offset) in zip(job.parts, poses(job), strict=True)
+    ]
+    return files | {f"{PAIR}.step": step_bytes(placed, PAIR, tolerance)}
+
+
 def _meshes(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
     from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
     from gearcam.solids import solid, volume_error
 
     write = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
     solids = extras.setdefault("_solids", {})
-    files: dict[str, bytes] = {}
     for part in job.parts:
         if part.name not in solids:
             solids[part.name] = solid(part)
@@ -118,5 +176,9 @@ def _meshes(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, by
                 "volume_error_mm3": volume_error(part),
                 "triangles": len(solids[part.name].triangles),
             }
-        files[f"{part.name}.{kind}"] = write(solids[part.name], part.name)
-    return files
+    files = {f"{name}.{kind}": write({name: mesh}, name) for name, mesh in solids.items()}
+    placed = {
+        name: mesh.placed(*pose)
+        for (name, mesh), pose in zip(solids.items(), poses(job), strict=True)
+    }
+    return files | {f"{PAIR}.{kind}": write(placed, PAIR)}

@@ -10,10 +10,10 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,46 +22,30 @@ from gearcam.design import GearPairDesign
 from gearcam.errors import InfeasibleError
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.gears.checks import KIND, Subject
+from gearcam.gears.helix import leads, stepped
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
 from gearcam.gears.rolling import Wheel
+from gearcam.jobs.written import Written, finish
 from gearcam.laws.base import RatioLaw
 from gearcam.numeric.memory import keep_freed_memory
-from gearcam.parts import Part, timing_mark
+from gearcam.parts.blank import KIND as PARTS_KIND
+from gearcam.parts.blank import Blank
 from gearcam.tolerances import DEFAULT, Tolerances
+
+if TYPE_CHECKING:
+    from gearcam.parts import Part
+    from gearcam.parts.checks import PartsSubject
 
 Progress = Callable[[str, int, int], None]
 
 MESHING = "meshing.csv"
 """The rows of a meshing study."""
 
+_OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank")
+"""Checks that can find something else in each step of stepped wheels."""
+
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Written:
-    """What a build has done to its folder.
-
-    Parameters
-    ----------
-    directory : Path
-        The folder.
-    files, removed : tuple of str
-        Names of the files written, and of the stale ones removed.
-    summary : dict
-        As in ``summary.json``.
-    findings : tuple of Finding
-        What the checks found.
-    complete : bool
-        Whether nothing was interrupted.
-    """
-
-    directory: Path
-    files: tuple[str, ...]
-    removed: tuple[str, ...]
-    summary: dict[str, Any]
-    findings: tuple[Finding, ...]
-    complete: bool = True
 
 
 class GearPairJob:
@@ -135,15 +119,20 @@ class GearPairJob:
     @cached_property
     def gear1(self) -> Gear:
         """The driver."""
-        return self._gear(1)
+        return self._gear(1, self.pair)
 
     @cached_property
     def gear2(self) -> Gear:
         """The driven wheel."""
-        return self._gear(2)
+        return self._gear(2, self.pair)
 
-    def _gear(self, wheel: Wheel) -> Gear:
-        pair = self.pair
+    @cached_property
+    def steps(self) -> tuple[tuple[Gear, Gear], ...]:
+        """Both wheels of each step, from below; one step where the wheels are not stepped."""
+        pairs = [stepped(self.pair, way) for way in leads(self.pair, self.design.helix)]
+        return self.gears, *((self._gear(1, pair), self._gear(2, pair)) for pair in pairs[1:])
+
+    def _gear(self, wheel: Wheel, pair: GearPair) -> Gear:
         with self._stage(f"gear{wheel}"), self._advised():
             tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
             gear = make_gear(pair, wheel, tolerance, self.tolerances)
@@ -167,52 +156,53 @@ class GearPairJob:
 
     @property
     def bores(self) -> tuple[float | None, float | None]:
-        """Bore diameters, mm; a rack has none."""
-        given = self.design.blank.bore_diameter
-        if given is None:
-            return None, None
-        return given[0], None if self.law.feeds else given[1]
+        """Bore diameters, mm, of circles that hold their keyways; a rack has none."""
+        first, second = (2.0 * self.design.blank.wheel(number).bore_reach for number in (1, 2))
+        return first or None, None if self.law.feeds else second or None
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What the checks found: errors first."""
+        found = [*self._gear_findings(self.pair, self.gears)]
+        for number, gears in enumerate(self.steps[1:], start=2):
+            found += (
+                replace(finding, where=f"step {number}, {finding.where}")
+                for finding in self._gear_findings(gears[0].pair, gears)
+                if finding.code in _OF_TEETH
+            )
+        if self.ordered:
+            subject = self.parts_subject
+            with self._stage("checks"):
+                found += run_checks(PARTS_KIND, subject, self.design.limits)
+        return in_order(found)
+
+    def _gear_findings(self, pair: GearPair, gears: tuple[Gear, Gear]) -> tuple[Finding, ...]:
         subject = Subject(
-            pair=self.pair, gears=self.gears, bores=self.bores, backlash=self.design.pair.backlash
+            pair=pair, gears=gears, bores=self.bores, backlash=self.design.pair.backlash
         )
         with self._stage("checks"):
             return run_checks(KIND, subject, self.design.limits)
 
     @cached_property
-    def parts(self) -> tuple[Part, Part]:
-        """Both wheels as parts, with bores and timing marks."""
-        first, second = (self._part(gear) for gear in self.gears)
-        return first, second
+    def parts_subject(self) -> PartsSubject:
+        """What the checks of parts look at."""
+        from gearcam.jobs.ordered import parts_subject
 
-    def _part(self, gear: Gear) -> Part:
-        frames = self.pair.rolling.frames(gear.wheel, np.zeros(1))
-        radius = complex(frames.p[0])
-        normal = complex(frames.t[0]) * gear.toothing.turn
-        bore, width = self.bores[gear.wheel - 1], self.design.pair.face_width
-        if gear.wheel == 2 and self.law.feeds:
-            return Part(
-                name=gear.name, contour=gear.profile.contour, bore_diameter=None, width=width
-            )
-        mark = timing_mark(
-            abs(radius),
-            0.0 if gear.wheel == 1 else math.pi,
-            self.pair.module,
-            gear.toothing.cutter.dedendum,
-            width,
-            bore_diameter=bore,
-            tilt=abs(float(np.angle(normal / radius))),
-        )
-        return Part(
-            name=gear.name,
-            contour=gear.profile.contour,
-            bore_diameter=bore,
-            width=width,
-            marks=(mark,),
-        )
+        return parts_subject(self)
+
+    @property
+    def ordered(self) -> bool:
+        """Whether the design orders parts: a blank, or files that are made from parts."""
+        return self.design.blank != Blank() or not set(self.design.output.files) <= {"csv"}
+
+    @cached_property
+    def parts(self) -> tuple[Part, Part]:
+        """Both wheels as parts: openings, hubs, marks, moved and rounded edges."""
+        from gearcam.jobs.ordered import make_parts
+
+        _ = self.steps  # timed for themselves
+        with self._stage("parts"):
+            return make_parts(self)
 
     def centrode_angles(self) -> NDArray[np.float64]:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
@@ -222,7 +212,7 @@ class GearPairJob:
             return np.linspace(0.0, float(end), CENTRODE_POINTS + 1)
         if not lobes.closed:
             return np.linspace(0.0, lobes.period, CENTRODE_POINTS + 1)
-        turns = lobes.n1 * lobes.n2 / math.gcd(lobes.n1, lobes.n2)
+        turns = math.lcm(lobes.n1, lobes.n2)
         count = CENTRODE_POINTS * max(1, round(turns / lobes.n1))
         return np.linspace(0.0, turns * lobes.period, count + 1)
 
@@ -263,7 +253,8 @@ class GearPairJob:
         from gearcam.export.write import previous_files
 
         folder = Path(directory) / self.design.name
-        return self._finish(folder, {}, self.summary(previous_files(folder)), keep=True)
+        summary = self.summary(previous_files(folder))
+        return finish(folder, {}, summary, self.findings, keep=True)
 
     def mesh(self, directory: str | Path = "output", progress: Progress | None = None) -> Written:
         """Turn the pair step by step and write what is found; files of a build stay.
@@ -292,7 +283,7 @@ class GearPairJob:
         from gearcam.meshing.checks import KIND as MESHING_KIND
         from gearcam.meshing.study import study
 
-        gears = self.gears
+        gears = self.steps[self.design.meshing.helix_step - 1]
         if not self.pair.studied:
             raise InfeasibleError(
                 "open pairs and racks cannot be studied step by step by this version",
@@ -311,8 +302,8 @@ class GearPairJob:
         others = [name for name in previous_files(folder) if name not in (MESHING, SUMMARY)]
         summary = self.summary((*others, MESHING), {"meshing": meshing.summary})
         summary["findings"] = [finding.as_dict() for finding in findings]
-        written = self._finish(folder, contents, summary, keep=True)
-        return replace(written, findings=findings, complete=meshing.complete)
+        written = finish(folder, contents, summary, findings, keep=True)
+        return replace(written, complete=meshing.complete)
 
     def write(
         self,
@@ -370,22 +361,5 @@ class GearPairJob:
                 contents |= export(self, kind, extras)
         tell("writing")
         folder = Path(directory) / self.design.name
-        return self._finish(folder, contents, self.summary(tuple(contents), extras))
-
-    def _finish(
-        self, folder: Path, contents: dict[str, bytes], summary: dict[str, Any], keep: bool = False
-    ) -> Written:
-        import json
-
-        from gearcam.export.write import SUMMARY, write_all
-
-        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-        everything = {**contents, SUMMARY: (text + "\n").encode()}
-        removed = write_all(folder, everything, keep=keep)
-        return Written(
-            directory=folder,
-            files=tuple(everything),
-            removed=tuple(removed),
-            summary=summary,
-            findings=self.findings,
-        )
+        summary = self.summary(tuple(contents), extras)
+        return finish(folder, contents, summary, self.findings)

@@ -70,15 +70,23 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
         "files": list(files),
         "findings": findings,
         "accuracy": _accuracy(job, extras),
+        **_helix(job),
         **{name: extras[name] for name in ("solids", "meshing") if name in extras},
         "timings_s": {name: round(value, 6) for name, value in job.timings.items()},
         "versions": _versions(),
     }
 
 
+def _helix(job: GearPairJob) -> dict[str, Any]:
+    from gearcam.gears.helix import leads
+
+    ways = leads(job.pair, job.design.helix)
+    return {"helix": {"steps": len(ways), "moved_mm": list(ways)}} if len(ways) > 1 else {}
+
+
 def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
     cutter, radius = gear.toothing.cutter, gear.convex_radius
-    bore = job.bores[gear.wheel - 1]
+    blank = job.design.blank.wheel(gear.wheel)
     tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
     tool["cutter_tip_radius_mm"] = cutter.tip_radius
     return {
@@ -95,14 +103,30 @@ def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
         "undercut_teeth": list(gear.profile.undercut_teeth),
         "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
         "root_radius_min_mm": gear.least_radius,
-        **({} if bore is None else {"bore_diameter_mm": bore}),
+        **({"bore_diameter_mm": blank.bore} if job.bores[gear.wheel - 1] else {}),
         "outline": {
             "vertices": len(gear.outline),
             "least_vertices": gear.profile.sampler.least,
             "area_mm2": gear.profile.area,
             "chord_error_mm": gear.profile.chord_error,
         },
+        **_part(job, gear),
     }
+
+
+def _part(job: GearPairJob, gear: Gear) -> dict[str, Any]:
+    """Return what is known of a wheel as a part, if parts are ordered."""
+    if not job.ordered:
+        return {}
+    from gearcam.parts import mass_properties
+
+    part, density = job.parts[gear.wheel - 1], job.design.blank.wheel(gear.wheel).density
+    found = job.parts_subject.tools[gear.wheel - 1].as_dict()
+    made: dict[str, Any] = {"tool": found} if found else {}
+    made["openings"] = [opening.as_dict() for opening in part.openings]
+    if density is not None:
+        made["mass"] = mass_properties(part, density).as_dict()
+    return {name: value for name, value in made.items() if value}
 
 
 def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:

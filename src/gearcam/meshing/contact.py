@@ -91,7 +91,8 @@ class FlankPairs:
             float(np.abs(end).max()) for f in self.flanks for end in (f.lowest, f.highest)
         )
         width = math.ceil(longest / self.pitch + 0.5)
-        middle = np.rint(s / self.pitch - 0.25 * self.side).astype(np.int64)
+        along = (s - self.toothings[0].moved) / self.pitch
+        middle = np.rint(along - 0.25 * self.side).astype(np.int64)
         return middle[:, None] + np.arange(-width, width + 1)
 
     @cached_property

@@ -77,12 +77,15 @@ class Turning:
         The wheels.
     distance : float, mm
         Distance of the shafts as mounted.
+    moved : float, mm
+        How far the teeth are moved on along the centrodes: a step of stepped wheels.
     """
 
     rolling: Rolling
     driver: Halves
     driven: Halves
     distance: float
+    moved: float = 0.0
 
     @cached_property
     def _tree(self) -> Any:
@@ -199,7 +202,7 @@ class Turning:
 
     def _halves_past(self, phi1: Array) -> Array:
         """How many halves have passed the pitch point."""
-        return 2.0 * self.rolling.arc_length(phi1) / self._pitch
+        return 2.0 * (self.rolling.arc_length(phi1) - self.moved) / self._pitch
 
     def _unroll(self, at: Array, half: Ints) -> Ints:
         """Count halves of the driver, known within the first turn, over all turns."""

@@ -43,6 +43,9 @@ class MeshingSpec:
     teeth: tuple[int, ...] | None = param(
         COUNT, default=None, ge=1, min_length=1, doc="teeth of the driver to study; all if left out"
     )
+    helix_step: int = param(
+        COUNT, default=1, ge=1, le=100, doc="step of stepped wheels that is studied, from below"
+    )
     center_distance: float | None = param(
         LENGTH,
         default=None,

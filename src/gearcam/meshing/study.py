@@ -227,7 +227,13 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
                 value=float(gear.toothing.teeth),
                 nearest="more teeth or a smaller x; build and check look at such wheels",
             )
-    turning = Turning(rolling=pair.rolling, driver=first, driven=second, distance=distance)
+    turning = Turning(
+        rolling=pair.rolling,
+        driver=first,
+        driven=second,
+        distance=distance,
+        moved=gears[0].toothing.moved,
+    )
     return Setup(
         spec=spec,
         pairs=pairs,

@@ -73,7 +73,7 @@ def flatten_bulges(
     (n, 2) array, mm
         Points on the arcs, the vertices among them.
     """
-    start, chord, bends = _pieces(vertices, bulges, closed)
+    start, chord, bends = bulge_pieces(vertices, bulges, closed)
     half = 2 * np.arctan(bends)
     bent = half != 0
     radius = 0.5 * np.abs(chord[bent] / np.sin(half[bent]))
@@ -97,8 +97,14 @@ def _along(half: Array, part: Array) -> Complex:
     return reach * np.exp(1j * half * (part - 1))
 
 
-def _pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Complex, Complex, Array]:
-    """Return start, chord and bulge of each piece."""
+def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Complex, Complex, Array]:
+    """Return start, chord (complex, mm) and bulge of each piece (see `flatten_bulges`).
+
+    Raises
+    ------
+    ValueError
+        If another number of bulges is given than the vertices ask for.
+    """
     points = as_complex(vertices)
     bends = np.asarray(bulges, dtype=np.float64)
     expected = len(points) if closed else len(points) - 1
@@ -128,7 +134,7 @@ def distances(points: Array, vertices: Array, bulges: Array, closed: bool = True
     Points are taken by blocks. A disc around a block and a disc around each piece bound their
     distance from both sides; only pieces that can be the nearest are computed.
     """
-    start, chord, bends = _pieces(vertices, bulges, closed)
+    start, chord, bends = bulge_pieces(vertices, bulges, closed)
     real = chord != 0
     if real.any():
         start, chord, bends = start[real], chord[real], bends[real]

@@ -7,12 +7,15 @@ curve, no chord farther from it than the tolerance.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gearcam.numeric.moments import Moments, curve_moments
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -30,10 +33,32 @@ class Run:
         Points on the true curve, dense: chord error at most 1/32 of the contour's tolerance.
     tangents : (n, 2) array
         Unit tangents, forward along the contour.
+    joints : tuple of int
+        Numbers of the inner points at which one curve passes smoothly into another.
     """
 
     points: Array
     tangents: Array
+    joints: tuple[int, ...] = field(default=())
+
+    @property
+    def pieces(self) -> tuple[Run, ...]:
+        """The run cut at its joints."""
+        cuts = [0, *self.joints, len(self.points) - 1]
+        return tuple(
+            Run(points=self.points[low : high + 1], tangents=self.tangents[low : high + 1])
+            for low, high in pairwise(cuts)
+        )
+
+    @property
+    def reversed(self) -> Run:
+        """The same curve the other way."""
+        last = len(self.points) - 1
+        return Run(
+            points=self.points[::-1],
+            tangents=-self.tangents[::-1],
+            joints=tuple(last - joint for joint in reversed(self.joints)),
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -61,6 +86,12 @@ class Contour:
     def area(self) -> float:
         """Area of the polygon, mm^2."""
         return polygon_area(self.vertices)
+
+    @cached_property
+    def moments(self) -> Moments:
+        """Moments inside the true curve, from the dense runs."""
+        made = (curve_moments(run.points, run.tangents) for run in self.runs)
+        return sum(made, start=Moments())
 
     @cached_property
     def polygon(self) -> Polygon:

@@ -1,0 +1,151 @@
+"""DXF files read back: what a written file holds, and its error against the true curves.
+
+Refused: files that are damaged, that the audit of ezdxf would mend, that are not in millimetres, or
+that hold other outlines than they should.
+
+Depends on drawings and numeric; ezdxf only inside the functions.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.drawings import OUTLINE
+from gearcam.errors import GearcamError
+from gearcam.export.dxf import MILLIMETRES
+from gearcam.numeric.bulges import as_complex, deviation
+from gearcam.numeric.contour import Contour
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+
+Array = NDArray[np.float64]
+
+_R12: Final = "AC1009"
+"""The version that knows no units and no light polylines."""
+
+_ON_CUBIC: Final = 8
+"""Arcs that stand for each cubic of a spline, each through three of its points."""
+
+
+class DxfError(GearcamError, ValueError):
+    """A DXF file does not hold what it should."""
+
+
+def measure_dxf(data: bytes, contours: Sequence[Contour]) -> float:
+    """Measure a DXF file, as read back, against the true outlines.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    contours : sequence of Contour
+        The true outlines, placed as in the drawing, in its order.
+
+    Returns
+    -------
+    float, mm
+        The largest distance between the dense points of an outline's true curve and the file's
+        curve, and between places inside the file's curve and the dense points' polygon.
+
+    Raises
+    ------
+    DxfError
+        If the file is damaged, is not in millimetres, or holds another number of closed outlines.
+    """
+    document = read_dxf(data)
+    if document.dxfversion != _R12 and document.header.get("$INSUNITS") != MILLIMETRES:
+        raise DxfError("the DXF file is not in millimetres")
+    outlines = _outlines(document, contours)
+    if len(outlines) != len(contours) or not all(closed for _, _, closed in outlines):
+        raise DxfError(
+            f"the DXF file should hold {len(contours)} closed outlines, it holds {len(outlines)}"
+        )
+    return max(
+        deviation(vertices, bulges, dense_points(contour))
+        for (vertices, bulges, _), contour in zip(outlines, contours, strict=True)
+    )
+
+
+def _outlines(document: Document, contours: Sequence[Contour]) -> list[tuple[Array, Array, bool]]:
+    """Vertices, bulges and closedness of each outline; chains of splines become chords."""
+    from ezdxf.entities.lwpolyline import LWPolyline
+    from ezdxf.entities.polyline import Polyline
+    from ezdxf.entities.spline import Spline
+
+    found: list[tuple[Array, Array, bool]] = []
+    splines: list[tuple[Array, Array]] = []
+    for entity in document.modelspace():
+        if not entity.dxf.layer.endswith(OUTLINE):
+            continue
+        if isinstance(entity, LWPolyline):
+            rows = np.array(entity.get_points(format="xyb"), dtype=np.float64)
+            found.append((rows[:, :2], rows[:, 2], bool(entity.closed)))
+        elif isinstance(entity, Polyline):
+            rows = np.array(
+                [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
+            )
+            found.append((rows[:, :2], rows[:, 2], bool(entity.is_closed)))
+        elif isinstance(entity, Spline):
+            splines.append(_arcs(entity))
+    start = 0
+    for contour in contours if splines else ():
+        chain = splines[start : start + len(contour.runs)]
+        start += len(contour.runs)
+        if chain:
+            joined = all(
+                bool((a[-1] == b[0]).all())
+                for (a, _), (b, _) in zip(chain, [*chain[1:], chain[0]], strict=True)
+            )
+            vertices = np.vstack([points[:-1] for points, _ in chain])
+            found.append((vertices, np.concatenate([bulges for _, bulges in chain]), joined))
+    if start < len(splines):
+        points, bulges = splines[-1]
+        found.append((points[:-1], bulges, False))
+    return found
+
+
+def _arcs(entity: Any) -> tuple[Array, Array]:
+    """Vertices and bulges of arcs through points of a spline, by ezdxf's own evaluation."""
+    curve = entity.construction_tool()
+    breaks = np.unique(np.array(curve.knots()))
+    steps = np.linspace(0.0, 1.0, 2 * _ON_CUBIC, endpoint=False)
+    places = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * steps).ravel(), breaks[-1])
+    points = np.array([(point.x, point.y) for point in curve.points(places.tolist())])
+    points[[0, -1]] = [tuple(curve.control_points[k])[:2] for k in (0, -1)]
+    way = np.diff(as_complex(points))
+    # the turn at an inner point of an arc is half the arc's angle
+    turn = np.angle(way[1::2] * np.conj(way[::2]))
+    return points[::2], np.tan(0.5 * turn)
+
+
+def read_dxf(data: bytes) -> Document:
+    """Return the document in the bytes of a DXF file.
+
+    Raises
+    ------
+    DxfError
+        If the file is damaged, or ezdxf's audit finds anything to report or to mend.
+    """
+    from ezdxf.filemanagement import read
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        document = read(io.StringIO(data.decode("utf-8")))
+    except (DXFError, UnicodeDecodeError) as error:
+        raise DxfError(f"the DXF file cannot be read: {error}") from error
+    audit = document.audit()
+    faults = [*audit.errors, *audit.fixes]
+    if faults:
+        raise DxfError(f"the DXF file has faults ({len(faults)}), the first: {faults[0].message}")
+    return document
+
+
+def dense_points(contour: Contour) -> Array:
+    """Return the dense points of a contour's runs, in order, (n, 2), mm, first not repeated."""
+    return np.vstack([run.points[:-1] for run in contour.runs])

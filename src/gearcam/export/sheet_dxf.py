@@ -1,0 +1,199 @@
+"""DXF of workshop drawings: the part in true millimetres, its sheet enlarged or reduced around it.
+
+R2010 has real dimensions, which follow the part when it is edited; in R12 they are lines, solid
+arrow heads and texts. The front view lies where the part's own drawing does, and its outline is
+written as there. The same sheet gives the same bytes.
+
+Refused: splines in R12.
+
+Depends on sheets, drawings and export.dxf; ezdxf only inside the functions.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.drawings import BORE, HOLE, OUTLINE, SLOT
+from gearcam.export import dxf
+from gearcam.export.dxf import COLORS, DASHED, MILLIMETRES, DxfStyle
+from gearcam.sheets import (
+    CENTERLINE,
+    DIMENSION,
+    EDGE,
+    FRAME,
+    HIDDEN,
+    TEXT,
+    LinearDimension,
+    RoundDimension,
+    Sheet,
+    Strokes,
+    Text,
+    strokes,
+)
+from gearcam.sheets.sheet import ARROW, GAP, GLYPH, HEIGHT, LEAST_GAP, PAST, Dimension
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+    from ezdxf.layouts.layout import Modelspace
+
+SHEET_COLORS: Final = {DIMENSION: 2, TEXT: 7, CENTERLINE: 8, HIDDEN: 8, FRAME: 7, EDGE: 7}
+"""Colour numbers: dimensions yellow, hidden and centre lines grey, the rest black or white."""
+
+LINETYPES: Final = {
+    "DASHED": ([4.5, 3.0, -1.5], "__ __ __"),
+    "CENTER": ([12.0, 8.0, -1.5, 1.0, -1.5], "____ _ ____ _"),
+}
+"""Lengths of the pattern, its dashes and gaps, mm of paper."""
+
+HEAVY: Final = (OUTLINE, BORE, HOLE, SLOT, EDGE)
+"""Kinds that are drawn thick."""
+
+THICK: Final = 50
+THIN: Final = 25
+"""Line weights, hundredths of a millimetre."""
+
+STYLE: Final = "SHEET"
+"""Name of the styles of texts and dimensions."""
+
+
+def sheet_dxf(sheet: Sheet, style: DxfStyle) -> bytes:
+    """Write a sheet as DXF.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        What to write.
+    style : DxfStyle
+        How outlines are written, and the version of the format.
+
+    Returns
+    -------
+    bytes
+        The file, UTF-8, of R12 ASCII; the same for the same sheet.
+    """
+    from ezdxf.filemanagement import new
+
+    with dxf.fixed_dates():
+        document = new(style.version, units=MILLIMETRES)
+        _prepare(document, sheet, style)
+        space = document.modelspace()
+        for feature in sheet.features:
+            dxf.add_shape(space, feature.shape, {"layer": feature.layer}, style)
+        for dimension in sheet.dimensions:
+            if style.version == "R12":
+                _exploded(space, sheet, strokes(dimension, sheet.unit))
+            else:
+                _measured(space, dimension)
+        for text in sheet.texts:
+            _text(space, sheet, text, TEXT)
+        # The library would register these classes in the order of a set, which changes from run to
+        # run.
+        for kind in sorted(document.entitydb.dxf_types_in_use()):
+            document.classes.add_class(kind)
+        stream = io.StringIO()
+        document.write(stream)
+    if style.version == "R12":
+        # Old readers know one code page only: other letters are written as the format's escapes.
+        written = (char if char.isascii() else f"\\U+{ord(char):04X}" for char in stream.getvalue())
+        return "".join(written).encode("ascii")
+    return stream.getvalue().encode("utf-8")
+
+
+def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
+    """Make line types, layers, and the styles of texts and dimensions."""
+    unit = sheet.unit
+    for name, (pattern, words) in LINETYPES.items():
+        document.linetypes.add(name, [unit * length for length in pattern], description=words)
+    kinds = {feature.layer: feature.kind for feature in sheet.features}
+    for layer, kind in {**kinds, DIMENSION: DIMENSION, TEXT: TEXT}.items():
+        made = document.layers.add(
+            layer, color=(COLORS | SHEET_COLORS).get(kind, 7), linetype=_linetype(kind)
+        )
+        if style.version != "R12":
+            made.dxf.lineweight = THICK if kind in HEAVY else THIN
+    document.styles.add(STYLE, font="arial.ttf", dxfattribs={"width": GLYPH})
+    low = sheet.corner.tolist()
+    high = (sheet.corner + [unit * side for side in sheet.size]).tolist()
+    document.modelspace().reset_extents((*low, 0.0), (*high, 0.0))
+    if style.version == "R12":
+        return
+    document.header["$LWDISPLAY"] = 1
+    made = document.dimstyles.new(STYLE)
+    values = {
+        "dimscale": unit, "dimtxt": HEIGHT, "dimasz": ARROW, "dimgap": GAP, "dimexo": LEAST_GAP,
+        "dimexe": PAST, "dimdec": 3, "dimzin": 8, "dimdsep": ord("."), "dimtad": 1, "dimtih": 0,
+        "dimtoh": 0, "dimtix": 0, "dimtofl": 0, "dimcen": 0.0, "dimtxsty": STYLE, "dimclrt": 7,
+        "dimtmove": 1, "dimlunit": 2,
+    }  # fmt: skip
+    for name, value in values.items():
+        made.set_dxf_attrib(name, value)
+
+
+def _linetype(kind: str) -> str:
+    if kind in (*DASHED, HIDDEN):
+        return "DASHED"
+    return "CENTER" if kind == CENTERLINE else "Continuous"
+
+
+def _measured(space: Modelspace, dimension: Dimension) -> None:
+    """Add a real dimension."""
+    words = f"{dimension.prefix}<>{dimension.suffix}"
+    rest: dict[str, Any] = {"text": words, "dimstyle": STYLE, "dxfattribs": {"layer": DIMENSION}}
+    if isinstance(dimension, LinearDimension):
+        made = space.add_linear_dim(
+            base=dimension.line.tolist(),
+            p1=dimension.first.tolist(),
+            p2=dimension.second.tolist(),
+            location=dimension.place.tolist(),
+            angle=90.0 if dimension.vertical else 0.0,
+            override={"dimtmove": 2},
+            **rest,
+        )
+    else:
+        made = _round(space, dimension, rest)
+    made.render()
+
+
+def _round(space: Modelspace, dimension: RoundDimension, rest: dict[str, Any]) -> Any:
+    circle: dict[str, Any] = {"center": dimension.center.tolist(), "radius": dimension.radius}
+    if dimension.knee is None:
+        angle = math.degrees(dimension.angle)
+        return space.add_diameter_dim(
+            angle=angle, override={"dimtix": 1, "dimtmove": 0}, **circle, **rest
+        )
+    rest["override"] = {"dimtih": 1, "dimtoh": 1}
+    rest["location"] = dimension.point(dimension.knee).tolist()
+    add = space.add_diameter_dim if dimension.diameter else space.add_radius_dim
+    return add(**circle, **rest)
+
+
+def _exploded(space: Modelspace, sheet: Sheet, drawn: Strokes) -> None:
+    """Add a dimension as lines, solid arrow heads and a text."""
+    there = {"layer": DIMENSION}
+    for line in drawn.lines:
+        space.add_line(*line.tolist(), dxfattribs=there)
+    for head in drawn.heads:
+        space.add_solid([*head.tolist(), head[2].tolist()], dxfattribs=there)
+    _text(space, sheet, drawn.text, DIMENSION)
+
+
+def _text(space: Modelspace, sheet: Sheet, text: Text, layer: str) -> None:
+    from ezdxf.enums import TextEntityAlignment
+
+    align = {
+        "start": TextEntityAlignment.LEFT,
+        "middle": TextEntityAlignment.CENTER,
+        "end": TextEntityAlignment.RIGHT,
+    }[text.anchor]
+    attributes = {"layer": layer, "style": STYLE}
+    # The format reads a caret and two percent signs as the beginning of a special character.
+    words = text.text.replace("^", "^ ").replace("%%", "%%%%%%").replace("Ø", "%%c")
+    made = space.add_text(
+        words,
+        height=text.height * sheet.unit,
+        rotation=90.0 if text.upright else 0.0,
+        dxfattribs=attributes,
+    )
+    made.set_placement(text.place.tolist(), align=align)

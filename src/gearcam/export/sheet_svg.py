@@ -1,0 +1,133 @@
+"""SVG of workshop drawings: paper in its true size, ready to print.
+
+The view box is the paper in millimetres, y downwards. Outlines and edges are thick, all other lines
+thin; hidden lines and centrodes are dashed, centre lines dash-dotted. Points are rounded to a
+hundredth of a millimetre of paper: parts are cut from the DXF of the wheel.
+
+Depends on sheets and drawings.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+from xml.sax.saxutils import escape, quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.drawings import BORE, CENTRODE, HOLE, OUTLINE, SLOT, Circle, Cross, Feature, Loop, Path
+from gearcam.numeric.contour import Contour
+from gearcam.sheets import CENTERLINE, EDGE, HIDDEN, Sheet, Strokes, Text
+
+Array = NDArray[np.float64]
+
+THICK: Final = 0.5
+THIN: Final = 0.25
+"""Line widths, mm."""
+
+HEAVY: Final = (OUTLINE, BORE, HOLE, SLOT, EDGE)
+"""Kinds that are drawn thick."""
+
+DASHES: Final = {HIDDEN: "3 1.5", CENTRODE: "4 1.5", CENTERLINE: "8 1.5 1 1.5"}
+"""Dashes and gaps, mm."""
+
+INK: Final = "#000000"
+
+CAPITAL: Final = 0.72
+"""Height of a capital over the font's size."""
+
+SAGITTA: Final = 0.005
+"""Of chords that stand for arcs, mm of paper."""
+
+
+def sheet_svg(sheet: Sheet) -> bytes:
+    """Write a `sheet` as SVG, UTF-8; the same sheet gives the same bytes."""
+    wide, tall = (_number(value) for value in sheet.size)
+    size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
+    font = f'font-family="sans-serif" fill="{INK}"'
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
+        f"<title>{escape(sheet.title)}</title>",
+        f'<rect width="{wide}" height="{tall}" fill="#ffffff"/>',
+        f'<g fill="none" stroke="{INK}" stroke-linejoin="round">',
+        *(_feature(sheet, feature) for feature in sheet.features),
+        "</g>",
+    ]
+    drawn = sheet.drawn
+    lines += [
+        f'<g fill="none" stroke="{INK}" stroke-width="{THIN}">',
+        *(_dimension(sheet, one) for one in drawn),
+        "</g>",
+        f'<g fill="{INK}" stroke="none">',
+        *(_head(sheet, head) for one in drawn for head in one.heads),
+        "</g>",
+        f"<g {font}>",
+        *(_text(sheet, one.text, "dimension") for one in drawn),
+        *(_text(sheet, text, "text") for text in sheet.texts),
+        "</g>",
+        "</svg>",
+    ]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _on_page(sheet: Sheet, points: Array) -> Array:
+    """Millimetres of paper, y downwards."""
+    return sheet.on_paper(points) * [1.0, -1.0] + [0.0, sheet.size[1]]
+
+
+def _feature(sheet: Sheet, feature: Feature) -> str:
+    kind = feature.kind
+    width = THICK if kind in HEAVY else THIN
+    style = f"class={quoteattr(feature.layer.lower().replace('_', '-'))}"
+    style += f' stroke-width="{width}"'
+    if kind in DASHES:
+        style += f' stroke-dasharray="{DASHES[kind]}"'
+    shape = feature.shape
+    match shape:
+        case Circle(center=center, diameter=diameter):
+            ((x, y),) = _on_page(sheet, center[None, :])
+            radius = _number(0.5 * diameter * sheet.scale)
+            return f'<circle {style} cx="{_number(x)}" cy="{_number(y)}" r="{radius}"/>'
+        case Cross(center=center, size=size):
+            flat = np.array([[-0.5 * size, 0.0], [0.5 * size, 0.0]])
+            arms = [_data(sheet, center + arm, closed=False) for arm in (flat, flat[:, ::-1])]
+            return f'<path {style} d="{"".join(arms)}"/>'
+        case Path(points=points, closed=closed):
+            return f'<path {style} d="{_data(sheet, points, closed=closed)}"/>'
+        case Contour(vertices=points):
+            return f'<path {style} d="{_data(sheet, points, closed=True)}"/>'
+        case Loop():
+            points = shape.points(SAGITTA / sheet.scale)
+            return f'<path {style} d="{_data(sheet, points, closed=True)}"/>'
+
+
+def _data(sheet: Sheet, points: Array, *, closed: bool) -> str:
+    """Path data; neighbours that fall together are written once."""
+    page = np.round(_on_page(sheet, points), 2)
+    kept = np.append(True, (np.diff(page, axis=0) != 0.0).any(axis=1))
+    steps = " ".join(f"{_number(x)} {_number(y)}" for x, y in page[kept].tolist())
+    return f"M{steps}" + ("Z" if closed else "")
+
+
+def _dimension(sheet: Sheet, one: Strokes) -> str:
+    data = "".join(_data(sheet, line, closed=False) for line in one.lines)
+    return f'<path class="dimension" d="{data}"/>'
+
+
+def _head(sheet: Sheet, head: Array) -> str:
+    return f'<path class="arrow" d="{_data(sheet, head, closed=True)}"/>'
+
+
+def _text(sheet: Sheet, text: Text, name: str) -> str:
+    ((x, y),) = _on_page(sheet, text.place[None, :])
+    place = f'x="{_number(x)}" y="{_number(y)}"'
+    size = f'font-size="{_number(text.height / CAPITAL)}" text-anchor="{text.anchor}"'
+    turn = f' transform="rotate(-90 {_number(x)} {_number(y)})"' if text.upright else ""
+    return f'<text class="{name}" {place} {size}{turn}>{escape(text.text)}</text>'
+
+
+def _number(value: float) -> str:
+    """Three decimals, no idle zeros."""
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text

@@ -1,0 +1,355 @@
+"""STEP: exact solids for CAD and CAM programs.
+
+AP214, in millimetres. Each part is one product of its name, with a solid for each of its steps;
+more than one part make an assembly in which each is turned and shifted to its place. Flanks, tips
+and roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores,
+hubs and marks are cylinders and planes. The same parts give the same bytes: the file bears no date.
+
+Refused: no parts at all; solids that come out invalid (see `step_shapes`); on reading, what is no
+STEP file.
+
+Depends on parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT, only inside
+the functions: it is large, and an extra of the package.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import MissingExtraError
+from gearcam.export.step_shapes import occt, properties, solids_of, subshapes
+from gearcam.parts import Part
+from gearcam.solids import SolidError
+
+DATE: Final = "1970-01-01T00:00:00"
+"""The date in a file: the same for all."""
+
+SETTINGS: Final = {
+    "write.step.schema": "AP214IS",
+    "write.step.unit": "MM",
+    "xstep.cascade.unit": "MM",
+    "write.step.product.name": "part",
+    "write.surfacecurve.mode": 0,  # edges as curves in space only: smaller, nothing is lost
+    "write.step.assembly": 2,  # where there is more than one part
+}
+"""Of the kernel's translator; they hold for the whole process, so each use sets them all."""
+
+_MM: Final = 0.001
+"""In metres."""
+
+_USE: Final = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\(\s*'\d+'(.*?\);)", re.DOTALL)
+"""A part's place in the assembly, with a number that counts on through the process."""
+
+_TOKEN: Final = re.compile(r"'(gearcam-\d+)'")
+"""What the kernel is given for a name."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Placed:
+    """A part at its place.
+
+    Parameters
+    ----------
+    part : Part
+        The part, in its own frame.
+    angle : float, rad
+        Turn about z, counter-clockwise.
+    offset : (float, float), mm
+        Shift after the turn.
+    """
+
+    part: Part
+    angle: float = 0.0
+    offset: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StepSolid:
+    """What a STEP file says about a solid, where the assembly has put it.
+
+    Parameters
+    ----------
+    name : str
+        Of its product.
+    faces : dict of str to int
+        How many faces of each kind: ``"plane"``, ``"cylinder"``, ``"bspline"``.
+    volume : float, mm^3
+        Integrated over its faces, to a billionth on each.
+    center : (3,) array, mm
+        Its centre of mass.
+    bounds : (2, 3) array, mm
+        Lower and upper corner of the box around it.
+    """
+
+    name: str
+    faces: dict[str, int]
+    volume: float
+    center: NDArray[np.float64]
+    bounds: NDArray[np.float64]
+
+
+def step_bytes(items: Sequence[Placed], name: str, tolerance: float) -> bytes:
+    """Write parts as STEP.
+
+    Parameters
+    ----------
+    items : sequence of Placed
+        One part, or those of an assembly; a part that comes twice is one product.
+    name : str
+        Of the assembly, and of the file without its ending.
+    tolerance : float, mm
+        Largest distance of the faces from the dense points of the outlines.
+
+    Returns
+    -------
+    bytes
+        ASCII.
+
+    Raises
+    ------
+    MissingExtraError
+        If OCP is not installed.
+    SolidError
+        If a part makes no valid solid of its volume.
+    ValueError
+        If there are no parts.
+    """
+    _require()
+    if not items:
+        raise ValueError("a STEP file needs a part")
+    parts = dict.fromkeys(item.part for item in items)
+    texts = dict.fromkeys([f"{name}.step", name, *(part.name for part in parts)])
+    tokens = {text: f"gearcam-{number}" for number, text in enumerate(texts)}
+    with _silent(), _document() as document:
+        made = {part: _joined(solids_of(part, tolerance)) for part in parts}
+        _fill(document, items, made, tokens[name], tokens)
+        written = _write(document, tokens[f"{name}.step"])
+    return _normal(written.decode("ascii"), tokens).encode("ascii")
+
+
+def read_step(data: bytes) -> list[StepSolid]:
+    """Read the solids of a STEP file.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+
+    Returns
+    -------
+    list of StepSolid
+        In the order of the file; those of a part that comes twice, twice.
+
+    Raises
+    ------
+    MissingExtraError
+        If OCP is not installed.
+    ValueError
+        If it is no STEP file, or holds no shape.
+    """
+    _require()
+    with _silent(), _document() as document:
+        _set_all()
+        reader = occt.STEPCAFControl_Reader()
+        reader.SetNameMode(True)
+        status = reader.ReadStream("step", io.BytesIO(data))
+        if status != occt.IFSelect_ReturnStatus.IFSelect_RetDone or not reader.Transfer(document):
+            raise ValueError("this is no STEP file with shapes")
+        roots = occt.Sequence_TDF_Label()
+        occt.XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(roots)
+        return [solid for root in roots for solid in _solids(root, occt.TopLoc_Location())]
+
+
+def _require() -> None:
+    try:
+        import OCP  # noqa: F401
+    except ImportError as error:
+        raise MissingExtraError("STEP files", "step") from error
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Keep the kernel's messages, which go to the terminal, to itself."""
+    messenger = occt.Message.DefaultMessenger_s()
+    printers = list(messenger.Printers())
+    for printer in printers:
+        messenger.RemovePrinter(printer)
+    try:
+        yield
+    finally:
+        for printer in printers:
+            messenger.AddPrinter(printer)
+
+
+@contextmanager
+def _document() -> Iterator[Any]:
+    """Open a document that holds shapes with names."""
+    application = occt.XCAFApp_Application.GetApplication_s()
+    form = occt.TCollection_ExtendedString("MDTV-XCAF")
+    # the document that it opens is the one returned, not the one that it is given
+    (document,) = application.NewDocument(form, occt.TDocStd_Document(form))
+    try:
+        occt.XCAFDoc_DocumentTool.SetLengthUnit_s(document, _MM)
+        yield document
+    finally:
+        application.Close(document)
+
+
+def _set_all() -> None:
+    occt.STEPControl_Controller.Init_s()  # before this there are no settings
+    for key, value in SETTINGS.items():
+        text = isinstance(value, str)
+        setter = occt.Interface_Static.SetCVal_s if text else occt.Interface_Static.SetIVal_s
+        if not setter(key, value):
+            raise RuntimeError(f"the STEP translator refuses {key} = {value}")
+
+
+def _joined(solids: Sequence[Any]) -> Any:
+    """Return one shape: a solid for itself, or a compound of more."""
+    if len(solids) == 1:
+        return solids[0]
+    builder, compound = occt.BRep_Builder(), occt.TopoDS_Compound()
+    builder.MakeCompound(compound)
+    for solid in solids:
+        builder.Add(compound, solid)
+    return compound
+
+
+def _fill(
+    document: Any,
+    items: Sequence[Placed],
+    shapes: Mapping[Part, Any],
+    name: str,
+    names: Mapping[str, str],
+) -> None:
+    """Put the shapes into the document: one where it stands, more as an assembly."""
+    tool = occt.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    if len(items) == 1:
+        (item,) = items
+        # a shape with a location would be written as an assembly: its points are moved instead
+        moved = occt.BRepBuilderAPI_Transform(shapes[item.part], _motion(item), True).Shape()
+        _call(tool.AddShape(moved, False), names[item.part.name])
+        return
+    root = tool.NewShape()
+    _call(root, name)
+    labels = {part: tool.AddShape(shape, False) for part, shape in shapes.items()}
+    for part, label in labels.items():
+        _call(label, names[part.name])
+    for item in items:
+        place = occt.TopLoc_Location(_motion(item))
+        _call(tool.AddComponent(root, labels[item.part], place), names[item.part.name])
+    tool.UpdateAssemblies()
+
+
+def _motion(item: Placed) -> Any:
+    turn, shift = occt.gp_Trsf(), occt.gp_Trsf()
+    turn.SetRotation(
+        occt.gp_Ax1(occt.gp_Pnt(0.0, 0.0, 0.0), occt.gp_Dir(0.0, 0.0, 1.0)), item.angle
+    )
+    shift.SetTranslation(occt.gp_Vec(*item.offset, 0.0))
+    return shift * turn
+
+
+def _call(label: Any, name: str) -> None:
+    occt.TDataStd_Name.Set_s(label, occt.TCollection_ExtendedString(name, True))  # True: UTF-8
+
+
+def _name(label: Any) -> str:
+    found = occt.TDataStd_Name()
+    return found.Get().ToExtString() if label.FindAttribute(found.GetID_s(), found) else ""
+
+
+def _write(document: Any, file: str) -> bytes:
+    """Return the document as STEP, as the kernel writes it."""
+    _set_all()
+    writer = occt.STEPCAFControl_Writer()
+    writer.SetNameMode(True)
+    for other in (writer.SetColorMode, writer.SetLayerMode, writer.SetPropsMode):
+        other(False)
+    if not writer.Transfer(document, occt.STEPControl_StepModelType.STEPControl_AsIs):
+        raise SolidError("the STEP translator refuses the shapes")
+    header = occt.APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+    header.SetName(occt.TCollection_HAsciiString(file))
+    header.SetTimeStamp(occt.TCollection_HAsciiString(DATE))
+    header.SetAuthorValue(1, occt.TCollection_HAsciiString(""))
+    header.SetOrganizationValue(1, occt.TCollection_HAsciiString(""))
+    header.SetOriginatingSystem(occt.TCollection_HAsciiString("gearcam"))
+    stream = io.BytesIO()
+    if writer.WriteStream(stream) != occt.IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise SolidError("the STEP translator writes nothing")
+    return stream.getvalue()
+
+
+def _normal(text: str, tokens: Mapping[str, str]) -> str:
+    """Count the places in the assembly from 1 and put the names where their tokens stand.
+
+    The kernel breaks long names amid a letter, and writes letters that the format does not know.
+    """
+    count = iter(range(1, 1 + text.count("\n")))
+
+    def use(found: re.Match[str]) -> str:
+        # the number's length moves where the lines break
+        rest = re.sub(r"\n *", "", found[1])
+        return f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{next(count)}'{rest}"
+
+    literals = {token: _literal(name) for name, token in tokens.items()}
+    return _TOKEN.sub(lambda found: literals[found[1]], _USE.sub(use, text))
+
+
+def _literal(name: str) -> str:
+    """Return a name as a string of ISO 10303-21."""
+
+    def encoded(found: re.Match[str]) -> str:
+        wide = max(found[0]) > "\uffff"
+        code = found[0].encode("utf-32-be" if wide else "utf-16-be").hex().upper()
+        return f"\\X{4 if wide else 2}\\{code}\\X0\\"
+
+    safe = name.replace("\\", "\\\\").replace("'", "''")
+    return "'" + re.sub(r"[^\x20-\x7e]+", encoded, safe) + "'"
+
+
+def _solids(label: Any, place: Any) -> Iterator[StepSolid]:
+    """Walk down an assembly."""
+    if not occt.XCAFDoc_ShapeTool.IsAssembly_s(label):
+        shape = occt.XCAFDoc_ShapeTool.GetShape_s(label).Moved(place)
+        yield from (_described(solid, _name(label)) for solid in subshapes(shape, "SOLID"))
+        return
+    components = occt.Sequence_TDF_Label()
+    occt.XCAFDoc_ShapeTool.GetComponents_s(label, components, False)
+    for component in components:
+        target = occt.TDF_Label()
+        occt.XCAFDoc_ShapeTool.GetReferredShape_s(component, target)
+        yield from _solids(target, place * occt.XCAFDoc_ShapeTool.GetLocation_s(component))
+
+
+def _described(solid: Any, name: str) -> StepSolid:
+    kinds = Counter(
+        occt.BRepAdaptor_Surface(occt.TopoDS.Face(face)).GetType().name
+        for face in subshapes(solid, "FACE")
+    )
+    box = occt.Bnd_Box()
+    occt.BRepBndLib.AddOptimal_s(solid, box, False, False)
+    found = properties(solid)
+    return StepSolid(
+        name=name,
+        faces={
+            re.sub("GeomAbs_|SurfaceOf|Surface", "", kind).lower(): count
+            for kind, count in sorted(kinds.items())
+        },
+        volume=found.Mass(),
+        center=_numbers(found.CentreOfMass()),
+        bounds=np.stack([_numbers(box.CornerMin()), _numbers(box.CornerMax())]),
+    )
+
+
+def _numbers(point: Any) -> NDArray[np.float64]:
+    return np.array([point.X(), point.Y(), point.Z()])

@@ -1,0 +1,331 @@
+"""Parts as the solids of a CAD kernel (OCCT), for STEP files.
+
+Each piece of an outline that has a length becomes one face: straight pieces planes, all others
+B-splines within the tolerance. Openings, hubs and marks are exact: their arcs become cylinders.
+Faces are made one by one from their curves, with shared corners; hubs are fused to the plate, marks
+and what goes through a hub are cut out. Nothing is merged or simplified afterwards, so no flank's
+face is lost.
+
+Refused: parts whose solid comes out empty, in pieces, invalid or with a wrong volume.
+
+Depends on parts, numeric and solids; on OCP, the kernel's binding, only through `occt`, which loads
+it when it is used. The binding has no types: its objects are `Any` here. Lengths in millimetres.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam.numeric.bulges import as_complex, bulge_pieces
+from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.splines import DEGREE, Spline, fit_spline
+from gearcam.parts import Circle, Loop, Part
+from gearcam.solids import OVERSHOOT, SolidError
+
+COLLECTIONS: Final = ("Array1", "IndexedMap", "List", "Sequence")
+"""Beginnings of names that the binding keeps in one room; all others name their room."""
+
+RESOLUTION: Final = 1e-7
+"""The kernel's own: what is nearer than this, mm, is the same to it."""
+
+CLEARANCE: Final = 1.0
+"""How far the cutter of a bore stands out at both ends, mm: faces must not coincide."""
+
+VOLUME_PRECISION: Final = 1e-9
+"""Relative, of the kernel's adaptive integration over a face."""
+
+VOLUME_ERROR: Final = 1e-6
+"""Part of the volume that a solid may miss beside what the tolerance explains."""
+
+
+class Kernel:
+    """The kernel: each of its classes by its name, imported when it is first used."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        room = name.partition("_")[0]
+        module = import_module(f"OCP.{'collections' if room in COLLECTIONS else room}")
+        setattr(self, name, getattr(module, name))
+        return getattr(module, name)
+
+
+occt: Final = Kernel()
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Piece:
+    """A curve of the kernel at z = 0, its parameters `first` to `last`, and where it begins."""
+
+    curve: Any
+    first: float
+    last: float
+    start: complex
+
+
+def solids_of(part: Part, tolerance: float) -> list[Any]:
+    """Make the solids of a part, one for each step, from the lowest up.
+
+    Parameters
+    ----------
+    part : Part
+        The part.
+    tolerance : float, mm
+        Largest distance of the B-splines from the outlines' dense points.
+
+    Returns
+    -------
+    list of TopoDS_Solid
+
+    Raises
+    ------
+    SolidError
+        If one comes out empty, in pieces or invalid, or their volume is not that of the part.
+    """
+    try:
+        made = [_step(part, number, tolerance) for number in range(len(part.contours))]
+    except SolidError as error:
+        raise SolidError(f"{part.name}: {error}") from error
+    except Exception as error:
+        # the kernel's own errors have no common base but this
+        if not type(error).__module__.startswith("OCP"):
+            raise
+        raise SolidError(f"{part.name}: the solid could not be made: {error}") from error
+    if not all(occt.BRepCheck_Analyzer(solid).IsValid() for solid in made):
+        raise SolidError(f"{part.name}: the solid came out invalid")
+    missed = abs(sum(properties(solid).Mass() for solid in made) - part.volume)
+    allowed = VOLUME_ERROR * part.volume + _explained(part, tolerance)
+    if missed > allowed:
+        raise SolidError(
+            f"{part.name}: the solid's volume is {missed:.3g} mm3 off,"
+            f" {allowed:.3g} mm3 is explained"
+        )
+    return made
+
+
+def properties(shape: Any) -> Any:
+    """Volume and centre of mass of a shape of the kernel."""
+    found = occt.GProp_GProps()
+    occt.BRepGProp.VolumeProperties_s(shape, found, VOLUME_PRECISION, True, False)
+    return found
+
+
+def subshapes(shape: Any, kind: str) -> list[Any]:
+    """Return the parts of a shape that are of a kind.
+
+    Parameters
+    ----------
+    shape : TopoDS_Shape
+        Any shape of the kernel.
+    kind : {"SOLID", "FACE"}
+        What to look for.
+
+    Returns
+    -------
+    list of TopoDS_Shape
+        Each once, in the shape's order.
+    """
+    found = occt.IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
+    occt.TopExp.MapShapes_s(shape, getattr(occt.TopAbs_ShapeEnum, f"TopAbs_{kind}"), found)
+    return [found.FindKey(number) for number in range(1, found.Extent() + 1)]
+
+
+def _explained(part: Part, tolerance: float) -> float:
+    """Return the volume between the true outlines and curves within the tolerance, mm^3."""
+    total = 0.0
+    for contour, low, high in part.plates:
+        steps = np.diff(contour.vertices, axis=0, append=contour.vertices[:1])
+        total += float(np.hypot(*steps.T).sum()) * tolerance * (high - low)
+    return total
+
+
+def _step(part: Part, number: int, tolerance: float) -> Any:
+    """Return the solid of a step: its plate, with what of the hub stands on it."""
+    contour, low, high = list(part.plates)[number]
+    lowest, topmost = number == 0, number == len(part.contours) - 1
+    hubs = [
+        _prism(_round(0j, part.hub.diameter), [], bottom, top)
+        for bottom, top in part.bosses
+        if part.hub is not None and (lowest if bottom < 0.0 else topmost)
+    ]
+    # what goes through a hub is cut at last: its face must not end where the plate does
+    late = part.in_hub if hubs else ()
+    holes = [_opening(o.shape) for o in part.openings if o not in late]
+    body = _prism(_outline(contour, tolerance), holes, low, high)
+    if hubs:
+        body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
+    cutters = [_cutter(part, opening.shape) for opening in late]
+    if topmost:
+        cutters += [
+            _prism(
+                _round(complex(*mark.center), mark.diameter),
+                [],
+                part.width - mark.depth,
+                part.width + OVERSHOOT * mark.depth,
+            )
+            for mark in part.marks
+        ]
+    return _combined(occt.BRepAlgoAPI_Cut(), body, cutters) if cutters else body
+
+
+def _cutter(part: Part, shape: Circle | Loop) -> Any:
+    """Return what takes an opening out of a plate and its hubs."""
+    ends = [0.0, part.width, *(end for boss in part.bosses for end in boss)]
+    return _prism(_opening(shape), [], min(ends) - CLEARANCE, max(ends) + CLEARANCE)
+
+
+def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
+    """Fuse tools to a body or cut them from it."""
+    left, right = occt.List_TopoDS_Shape(), occt.List_TopoDS_Shape()
+    left.Append(body)
+    for tool in tools:
+        right.Append(tool)
+    operation.SetArguments(left)
+    operation.SetTools(right)
+    operation.SetRunParallel(False)  # the order of faces must not depend on threads
+    operation.SetNonDestructive(True)
+    operation.SetToFillHistory(False)
+    operation.Build()
+    found = subshapes(operation.Shape(), "SOLID") if operation.IsDone() else []
+    if len(found) != 1:
+        raise SolidError(f"the solid came out in {len(found)} pieces")
+    return found[0]
+
+
+def _prism(
+    outer: Sequence[_Piece], holes: Sequence[Sequence[_Piece]], low: float, high: float
+) -> Any:
+    """Return a plate between two heights, one side face for each piece; all run left around."""
+    floor = occt.gp_Pln(occt.gp_Pnt(0.0, 0.0, low), occt.gp_Dir(0.0, 0.0, 1.0))
+    face = occt.BRepBuilderAPI_MakeFace(floor, _wire(outer, low), False)
+    for hole in holes:
+        face.Add(occt.TopoDS.Wire(_wire(hole, low).Reversed()))
+    if not face.IsDone():
+        raise SolidError("an outline encloses no face")
+    prism = occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, high - low)).Shape()
+    # swept curves become B-spline surfaces, which more programs read; planes and cylinders stay
+    found = subshapes(
+        occt.ShapeCustom.ConvertToBSpline_s(prism, True, False, False, False), "SOLID"
+    )
+    if len(found) != 1:
+        raise SolidError("the solid came out empty")
+    return occt.TopoDS.Solid(found[0])
+
+
+def _wire(pieces: Sequence[_Piece], height: float) -> Any:
+    """Return the closed chain of pieces at a height, with one corner between neighbours."""
+    corners = [
+        occt.BRepBuilderAPI_MakeVertex(occt.gp_Pnt(p.start.real, p.start.imag, height)).Vertex()
+        for p in pieces
+    ]
+    builder, wire, lift = occt.BRep_Builder(), occt.TopoDS_Wire(), occt.gp_Vec(0.0, 0.0, height)
+    builder.MakeWire(wire)
+    for piece, start, end in zip(pieces, corners, [*corners[1:], corners[0]], strict=True):
+        curve = piece.curve.Translated(lift)
+        edge = occt.BRepBuilderAPI_MakeEdge(curve, start, end, piece.first, piece.last)
+        if not edge.IsDone():
+            raise SolidError(f"a piece of an outline makes no edge ({edge.Error().name})")
+        builder.Add(wire, edge.Edge())
+    wire.Closed(True)
+    return wire
+
+
+def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
+    """Return a curve for each piece of a contour; each ends exactly where the next begins."""
+    # where one curve's end is another's start, a piece between them has no length
+    pieces = (piece for run in contour.runs for piece in run.pieces)
+    runs = [piece for piece in pieces if _length(piece) > RESOLUTION]
+    starts = [complex(*run.points[0]) for run in runs]
+    made = []
+    for run, start, end in zip(runs, starts, [*starts[1:], starts[0]], strict=True):
+        if _is_straight(run, min(RESOLUTION, tolerance)):
+            made.append(_line(start, end))
+        else:
+            made.append(_curve(fit_spline(run, tolerance), start, end))
+    return made
+
+
+def _length(run: Run) -> float:
+    return float(np.hypot(*np.diff(run.points, axis=0).T).sum())
+
+
+def _is_straight(run: Run, allowed: float) -> bool:
+    """Whether a run and its tangents are within `allowed`, mm, of its chord."""
+    points, tangents = as_complex(run.points), as_complex(run.tangents)
+    chord = points[-1] - points[0]
+    if abs(chord) <= allowed:
+        return False  # closed
+    unit = chord / abs(chord)
+    across = ((points - points[0]) * unit.conjugate()).imag
+    turned = tangents * unit.conjugate()
+    return bool(
+        np.abs(across).max() <= allowed
+        and np.abs(turned.imag).max() * abs(chord) <= allowed
+        and turned.real.min() > 0.0
+    )
+
+
+def _curve(spline: Spline, start: complex, end: complex) -> _Piece:
+    places = [start, *as_complex(spline.poles[1:-1]).tolist(), end]
+    breaks = spline.breaks.tolist()
+    poles, knots = occt.Array1_gp_Pnt(1, len(places)), occt.Array1_double(1, len(breaks))
+    repeats = occt.Array1_int(1, len(breaks))
+    for number, place in enumerate(places, start=1):
+        poles.SetValue(number, occt.gp_Pnt(place.real, place.imag, 0.0))
+    for number, knot in enumerate(breaks, start=1):
+        knots.SetValue(number, knot)
+        repeats.SetValue(number, DEGREE + 1 if number in (1, len(breaks)) else DEGREE - 1)
+    curve = occt.Geom_BSplineCurve(poles, knots, repeats, DEGREE)
+    return _Piece(curve=curve, first=breaks[0], last=breaks[-1], start=start)
+
+
+def _line(start: complex, end: complex) -> _Piece:
+    way = end - start
+    curve = occt.Geom_Line(
+        occt.gp_Pnt(start.real, start.imag, 0.0), occt.gp_Dir(way.real, way.imag, 0.0)
+    )
+    return _Piece(curve=curve, first=0.0, last=abs(way), start=start)
+
+
+def _opening(shape: Circle | Loop) -> list[_Piece]:
+    """Return the exact edge of an opening."""
+    if isinstance(shape, Circle):
+        return _round(complex(*shape.center), shape.diameter)
+    return list(_loop(shape))
+
+
+def _loop(shape: Loop) -> Iterator[_Piece]:
+    for start, chord, bulge in zip(
+        *bulge_pieces(shape.vertices, shape.bulges, closed=True), strict=True
+    ):
+        if abs(chord) <= RESOLUTION:
+            continue
+        half = 2.0 * math.atan(bulge)
+        if half == 0.0:
+            yield _line(complex(start), complex(start + chord))
+        else:
+            centre = start + 0.5 * chord * (1.0 + 1j / math.tan(half))
+            yield _circle(complex(centre), complex(start), 2.0 * half)
+
+
+def _round(centre: complex, diameter: float) -> list[_Piece]:
+    return [_circle(centre, centre + 0.5 * diameter, 2.0 * math.pi)]
+
+
+def _circle(centre: complex, start: complex, sweep: float) -> _Piece:
+    """Return an arc about a centre, to the right where the sweep, rad, is negative."""
+    spoke = cmath.exp(1j * cmath.phase(start - centre))
+    axes = occt.gp_Ax2(
+        occt.gp_Pnt(centre.real, centre.imag, 0.0),
+        occt.gp_Dir(0.0, 0.0, math.copysign(1.0, sweep)),
+        occt.gp_Dir(spoke.real, spoke.imag, 0.0),
+    )
+    curve = occt.Geom_Circle(axes, abs(start - centre))
+    return _Piece(curve=curve, first=0.0, last=abs(sweep), start=start)

@@ -1,0 +1,225 @@
+"""From wheels to parts: what a design orders beyond the teeth, and what that does to the flanks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.gears.checks import tooth_ranges
+from gearcam.gears.pair import Gear, contact_arcs
+from gearcam.gears.rolling import Plane
+from gearcam.parts import Mark, Part, Place, WheelBlank, make_part, timing_mark
+from gearcam.parts.checks import LostFlank, PartsSubject
+from gearcam.parts.parallel import touches
+
+if TYPE_CHECKING:
+    from gearcam.jobs.gear_pair import GearPairJob
+
+Array = NDArray[np.float64]
+
+_PLACES = 65
+"""Places on each flank at which it is asked whether it is still there."""
+
+
+def make_parts(job: GearPairJob) -> tuple[Part, Part]:
+    """Return both wheels as parts.
+
+    Parameters
+    ----------
+    job : GearPairJob
+        With its wheels, and with the steps of stepped ones.
+
+    Returns
+    -------
+    (Part, Part)
+        Driver first.
+
+    Raises
+    ------
+    InfeasibleError
+        If what the design orders has no room.
+    """
+    first, second = (_part(job, number) for number in (1, 2))
+    return first, second
+
+
+def _part(job: GearPairJob, number: int) -> Part:
+    gear = job.gears[number - 1]
+    contours = [gears[number - 1].profile.contour for gears in job.steps]
+    rack = number == 2 and job.law.feeds
+    travel = None
+    if not job.law.lobes.closed and not rack:
+        travel = job.law.lobes.period if number == 1 else job.law.lobes.advance
+    blank = job.design.blank.wheel(number)
+    if rack:
+        blank = replace(
+            blank, bore_diameter=0.0, bolts=0, hub_diameter=0.0, lightening_holes=0, stop_pin=0.0
+        )
+    return make_part(
+        gear.name,
+        contours,
+        job.design.pair.face_width,
+        blank,
+        Place(wheel=number, module=job.pair.module, travel=travel),
+        None if rack else lambda: _mark(job, gear),
+    )
+
+
+def _mark(job: GearPairJob, gear: Gear) -> Mark:
+    frames = job.pair.rolling.frames(gear.wheel, np.zeros(1))
+    radius = complex(frames.p[0])
+    normal = complex(frames.t[0]) * gear.toothing.turn
+    blank = job.design.blank.wheel(gear.wheel)
+    return timing_mark(
+        abs(radius),
+        0.0 if gear.wheel == 1 else math.pi,
+        job.pair.module,
+        gear.toothing.cutter.dedendum,
+        job.design.pair.face_width,
+        bore_reach=max(blank.bore_reach, 0.5 * blank.hub_diameter),
+        tilt=abs(float(np.angle(normal / radius))),
+        diameter=blank.mark_diameter,
+    )
+
+
+def parts_subject(job: GearPairJob) -> PartsSubject:
+    """Return what the checks of parts look at: the `job`'s parts and what its flanks lose."""
+    first, second = (_lost(job, number) for number in (1, 2))
+    return PartsSubject(parts=job.parts, lost=(first, second))
+
+
+def _lost(job: GearPairJob, number: int) -> LostFlank | None:
+    """Find what offset and rounding take off a wheel's flanks."""
+    gears, gear = job.gears, job.gears[number - 1]
+    blank, flanks, toothing = job.design.blank.wheel(number), gear.profile.flanks, gear.toothing
+    if not (blank.offset or blank.tip_rounding):
+        return None
+    low, high = kept_reach(gear, blank)
+    slope = math.sin(toothing.cutter.alpha) * math.cos(toothing.cutter.alpha)
+    height = slope * np.maximum(flanks.highest - high, low - flanks.lowest)
+    height = np.minimum(height, slope * (flanks.highest - flanks.lowest))
+    height[~whole_flanks(gear)] = 0.0
+    made = replace(
+        gear, profile=replace(gear.profile, flanks=replace(flanks, lowest=low, highest=high))
+    )
+    pair = (made, gears[1]) if number == 1 else (gears[0], made)
+    ratio = min(float(contact_arcs(*pair, sigma).ratios.min()) for sigma in (1, -1))
+    worst = height > max(0.999 * float(height.max()), 1e-12)
+    numbers = np.unique(np.tile(np.array(toothing.numbers), 2)[worst]).tolist()
+    return LostFlank(
+        height=float(height.max()),
+        expected=max(abs(blank.offset), blank.tip_rounding),
+        teeth=f"teeth {tooth_ranges(numbers)}",
+        contact_ratio=ratio,
+    )
+
+
+def whole_flanks(gear: Gear) -> NDArray[np.bool_]:
+    """Return which flanks of a `gear` belong to whole teeth, (2z,)."""
+    whole = np.zeros(len(gear.toothing.numbers), dtype=bool)
+    whole[gear.toothing.whole] = True
+    return np.tile(whole, 2)
+
+
+def kept_reach(gear: Gear, blank: WheelBlank) -> tuple[Array, Array]:
+    """Return between which reaches each flank is still there after rounding and offset.
+
+    Parameters
+    ----------
+    gear : Gear
+        The wheel.
+    blank : WheelBlank
+        With offset and rounding.
+
+    Returns
+    -------
+    lowest, highest : (2z,) arrays, mm
+        Reach w; found to a 64th of the flank. The lowest is above the highest where nothing is
+        left.
+    """
+    flanks = gear.profile.flanks
+    by = [value for value in (blank.offset, -blank.tip_rounding) if value]
+    if not by:
+        return flanks.lowest, flanks.highest
+    share = np.linspace(0.0, 1.0, _PLACES)[:, None]
+    reach = flanks.lowest + share * (flanks.highest - flanks.lowest)
+    points, normals = flank_places(gear, reach)
+    free = np.ones(points.size, dtype=bool)
+    for radius in by:
+        free &= touches(gear.profile.contour, points.ravel(), normals.ravel(), radius)
+    free = free.reshape(reach.shape)
+    return np.where(free, reach, np.inf).min(axis=0), np.where(free, reach, -np.inf).max(axis=0)
+
+
+def flank_places(gear: Gear, reach: Array) -> tuple[Plane, Plane]:
+    """Return points and outward unit normals of all flanks at some reaches.
+
+    Parameters
+    ----------
+    gear : Gear
+        The wheel.
+    reach : (k, 2z) array, mm
+        Reach w of k places on each flank.
+
+    Returns
+    -------
+    points, normals : (k, 2z) complex arrays, mm and 1
+        In the wheel's frame.
+    """
+    flanks, toothing = gear.profile.flanks, gear.toothing
+    s = flanks.sf - flanks.sigma * reach
+    frames = toothing.frames(toothing.rolling.angle(s.ravel()))
+    sf, sigma = (np.tile(values, len(reach)) for values in (flanks.sf, flanks.sigma))
+    points = toothing.flank_points(frames, sf, sigma)
+    cosine, sine = math.cos(toothing.cutter.alpha), math.sin(toothing.cutter.alpha)
+    normals = frames.t * (sigma * cosine + sine * toothing.turn)
+    return points.reshape(reach.shape), normals.reshape(reach.shape)
+
+
+def inspection_rows(job: GearPairJob) -> dict[str, Array]:
+    """Return the points of an inspection, by column.
+
+    Parameters
+    ----------
+    job : GearPairJob
+        With its wheels and steps.
+
+    Returns
+    -------
+    dict of str to (n,) array
+        Both wheels, every step, every whole tooth, both sides, from root to tip: points of the
+        flanks as made and the outward normals of the metal, in the wheel's frame.
+    """
+    share = np.linspace(0.0, 1.0, job.design.output.inspection_points)[:, None]
+    blocks: list[list[Array]] = []
+    for step, gears in enumerate(job.steps, start=1):
+        for gear in gears:
+            blank, flanks = job.design.blank.wheel(gear.wheel), gear.profile.flanks
+            low, high = kept_reach(gear, blank)
+            reach = low + share * (high - low)
+            kept = whole_flanks(gear) & (high > low)
+            reach = np.where(kept, reach, 0.0)
+            points, normals = flank_places(gear, reach)
+            points = (points + blank.offset * normals)[:, kept].T.ravel()
+            normals, count = normals[:, kept].T.ravel(), len(share)
+            tooth = np.tile(np.array(gear.toothing.numbers), 2)[kept]
+            order = np.lexsort((-flanks.sigma[kept], tooth))
+            rows = (order[:, None] * count + np.arange(count)).ravel()
+            columns = [
+                np.full(points.size, gear.wheel),
+                np.full(points.size, step),
+                np.repeat(tooth, count),
+                np.repeat(flanks.sigma[kept], count),
+                np.tile(np.arange(1, count + 1), int(kept.sum())),
+                points.real,
+                points.imag,
+                normals.real,
+                normals.imag,
+            ]
+            blocks.append([np.asarray(column, dtype=np.float64)[rows] for column in columns])
+    names = ("wheel", "step", "tooth", "side", "point", "x_mm", "y_mm", "nx", "ny")
+    return {name: np.concatenate([block[k] for block in blocks]) for k, name in enumerate(names)}

@@ -1,0 +1,207 @@
+"""Blanks: what a design says of the wheels beyond their teeth.
+
+Most values are given once for both wheels, or twice, driver first; 0 means that there is none. A
+*keyway* is cut into the bore's circle; its depth counts from that circle, at its middle, as shaft
+standards tabulate it. A *D-bore* has a flat. *Hubs* stand on the faces: front is +z. *Lightening
+holes* lie between hub and rim and are as large as the rim that they keep allows. A *stop slot*
+takes a pin that stands in the housing and ends the way of an open wheel.
+
+Refused by reading: sizes that contradict each other or lack their partner.
+
+Depends on quantities only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Any, Final
+
+from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, Quantity, param
+
+KIND: Final = "gear-pair-parts"
+"""The kind of design that the checks of parts belong to."""
+
+Problem = tuple[str, int | None, str, str]
+"""Field, number of the wheel's value, what is wrong, what is allowed."""
+
+
+def each(quantity: Quantity, **rest: Any) -> Any:
+    """Return a parameter with a value for each wheel (see `param`); `rest` goes to it."""
+    return param(quantity, both=True, **rest)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blank:
+    """Bores, hubs, holes, marks and edges of both wheels, driver first; 0 means none."""
+
+    bore_diameter: tuple[float, float] | None = each(
+        LENGTH, default=None, ge=0, le=1e6, doc="bores; none if left out"
+    )
+    keyway_width: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e6, doc="width of the keyway"
+    )
+    keyway_depth: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e6, doc="its depth from the bore's circle, at its middle"
+    )
+    keyway_angle: tuple[float, float] = each(
+        ANGLE, default=(0, 0), ge=-360, le=360, doc="its direction in the wheel's frame"
+    )
+    bore_flat: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e6, doc="D-bore: from the flat to the far side"
+    )
+    bolts: tuple[int, int] = each(COUNT, default=(0, 0), ge=0, le=100, doc="bolt holes")
+    bolt_circle: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e6, doc="diameter of their circle"
+    )
+    bolt_diameter: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e6, doc="diameter of each"
+    )
+    bolt_angle: tuple[float, float] = each(
+        ANGLE, default=(0, 0), ge=-360, le=360, doc="direction of the first in the wheel's frame"
+    )
+    hub_diameter: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e6, doc="diameter of the hub"
+    )
+    hub_front: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e5, doc="how far the hub stands out in front (+z)"
+    )
+    hub_back: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e5, doc="how far it stands out at the back"
+    )
+    lightening_holes: tuple[int, int] = each(
+        COUNT, default=(0, 0), ge=0, le=36, doc="round holes that take weight off"
+    )
+    rim: tuple[float, float] | None = each(
+        LENGTH, default=None, gt=0, le=1e6,
+        doc="rim that they keep below the roots; 2.7 modules if left out",
+    )  # fmt: skip
+    web: tuple[float, float] | None = each(
+        LENGTH, default=None, gt=0, le=1e6,
+        doc="what they keep to one another, to bore, hub and bolts; as the rim if left out",
+    )  # fmt: skip
+    stop_pin: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=1e5,
+        doc="diameter of the stop pin in the slot of an open wheel",
+    )  # fmt: skip
+    timing_marks: bool = param(TEXT, default=True, doc="dimples that face each other at phi1 = 0")
+    mark_diameter: float | None = param(
+        LENGTH, default=None, gt=0, le=1e5, doc="their diameter; 0.4 modules if left out"
+    )
+    density: tuple[float, float] | None = each(
+        DENSITY, default=None, gt=0, le=1e5, doc="for mass, centroid, unbalance and inertia"
+    )
+    offset: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=-100, le=100,
+        doc="moves every cut edge: + adds material (half the kerf), - takes off (clearance)",
+    )  # fmt: skip
+    tip_rounding: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=100, doc="radius of the teeth's rounded tip edges"
+    )
+
+    def wheel(self, number: int) -> WheelBlank:
+        """Return what is wanted of one wheel: `number` 1 is the driver."""
+        values = {}
+        for field in fields(WheelBlank):
+            value = getattr(self, field.name)
+            values[field.name] = value[number - 1] if isinstance(value, tuple) else value
+        return WheelBlank(**values)
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, wheel, message, allowed."""
+        for number in (1, 2):
+            one = self.wheel(number)
+            for name, message, rule in (*_bore_problems(one), *_other_problems(one)):
+                yield name, number - 1, message, rule
+
+
+@dataclass(frozen=True, kw_only=True)
+class WheelBlank:
+    """The blank of one wheel; 0 or None means none.
+
+    Parameters
+    ----------
+    bore_diameter, keyway_width, keyway_depth, bore_flat, bolt_circle, bolt_diameter : float, mm
+        As of `Blank`.
+    hub_diameter, hub_front, hub_back, rim, web, stop_pin, mark_diameter : float, mm
+        As of `Blank`.
+    offset, tip_rounding : float, mm
+        As of `Blank`.
+    keyway_angle, bolt_angle : float, rad
+        As of `Blank`.
+    bolts, lightening_holes : int
+        As of `Blank`.
+    timing_marks : bool
+        As of `Blank`.
+    density : float or None, kg/m^3
+        As of `Blank`.
+    """
+
+    bore_diameter: float | None = None
+    keyway_width: float = 0.0
+    keyway_depth: float = 0.0
+    keyway_angle: float = 0.0
+    bore_flat: float = 0.0
+    bolts: int = 0
+    bolt_circle: float = 0.0
+    bolt_diameter: float = 0.0
+    bolt_angle: float = 0.0
+    hub_diameter: float = 0.0
+    hub_front: float = 0.0
+    hub_back: float = 0.0
+    lightening_holes: int = 0
+    rim: float | None = None
+    web: float | None = None
+    stop_pin: float = 0.0
+    timing_marks: bool = True
+    mark_diameter: float | None = None
+    density: float | None = None
+    offset: float = 0.0
+    tip_rounding: float = 0.0
+
+    @property
+    def bore(self) -> float:
+        """Diameter of the bore, mm; 0 without one."""
+        return self.bore_diameter or 0.0
+
+    @property
+    def bore_reach(self) -> float:
+        """Largest distance of the bore from the axis, mm: the corners of its keyway or its wall."""
+        if not self.keyway_width:
+            return 0.5 * self.bore
+        floor = 0.5 * self.bore + self.keyway_depth
+        return float((floor**2 + 0.25 * self.keyway_width**2) ** 0.5)
+
+
+_Told = tuple[str, str, str]
+
+
+def _bore_problems(one: WheelBlank) -> Iterator[_Told]:
+    bore = one.bore
+    for name in ("keyway_width", "keyway_depth", "bore_flat"):
+        if getattr(one, name) and not bore:
+            yield name, "there is no bore", "bore_diameter_mm above 0"
+            return
+    if bool(one.keyway_width) != bool(one.keyway_depth):
+        missing = "keyway_width" if one.keyway_depth else "keyway_depth"
+        yield missing, "a keyway has width and depth", "keyway_width_mm with keyway_depth_mm"
+    if bore and one.keyway_width >= bore:
+        yield "keyway_width", "is as wide as the bore", f"below the bore's {bore:.6g} mm"
+    if one.keyway_width and one.bore_flat:
+        yield "bore_flat", "the bore has a keyway already", "keyway or flat"
+    if one.bore_flat and not 0.5 * bore < one.bore_flat < bore:
+        rule = f"above {0.5 * bore:.6g} and below the bore's {bore:.6g} mm"
+        yield "bore_flat", "is no flat of this bore", rule
+
+
+def _other_problems(one: WheelBlank) -> Iterator[_Told]:
+    for name in ("bolt_circle", "bolt_diameter"):
+        if one.bolts and not getattr(one, name):
+            yield name, "is missing beside bolts", "bolts with bolt_circle_mm and bolt_diameter_mm"
+    if (one.hub_front or one.hub_back) and not one.hub_diameter:
+        yield "hub_diameter", "is missing beside the hub's length", "above the bore"
+    if one.hub_diameter and not (one.hub_front or one.hub_back):
+        yield "hub_front", "the hub has no length", "hub_front_mm or hub_back_mm above 0"
+    if one.hub_diameter and one.hub_diameter <= 2.0 * one.bore_reach:
+        rule = f"above {2.0 * one.bore_reach:.6g} mm, what the bore takes"
+        yield "hub_diameter", "the bore leaves no hub", rule

@@ -1,0 +1,151 @@
+"""The checks of parts: walls between openings, flanks that an offset takes away, tools too large.
+
+Importing this room registers them. A check sees a `PartsSubject` and yields findings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from gearcam.findings import Finding, check
+from gearcam.parts.blank import KIND
+from gearcam.parts.part import Part
+from gearcam.parts.tools import ToolLimits, tool_limits
+from gearcam.quantities import LENGTH, Param
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LostFlank:
+    """What rounding or an offset takes off the flanks that touch the mate.
+
+    Parameters
+    ----------
+    height : float, mm
+        Largest height that a flank loses.
+    expected : float, mm
+        What a moved tip takes by itself.
+    teeth : str
+        Where, in words.
+    contact_ratio : float
+        Smallest contact ratio that is left.
+    """
+
+    height: float
+    expected: float
+    teeth: str
+    contact_ratio: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PartsSubject:
+    """The parts of a pair, for checks.
+
+    Parameters
+    ----------
+    parts : (Part, Part)
+        As made.
+    lost : tuple of LostFlank or None
+        What each wheel's flanks lose; None where edges are neither moved nor rounded.
+    """
+
+    parts: tuple[Part, Part]
+    lost: tuple[LostFlank | None, LostFlank | None]
+
+    @cached_property
+    def tools(self) -> tuple[ToolLimits, ToolLimits]:
+        """The largest tools for both outlines; of stepped parts for their lowest."""
+        first, second = (tool_limits(part.contour) for part in self.parts)
+        return first, second
+
+
+@check(
+    "thin-wall",
+    kind=KIND,
+    doc="walls between openings, and between openings and the outline or the hub's edge",
+    limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0),
+)
+def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Finding]:
+    """Warn of thin walls."""
+    for number, part in enumerate(subject.parts, start=1):
+        walls = list(_walls(part))
+        if not walls:
+            continue
+        width, what = min(walls)
+        if width < limit:
+            yield Finding(
+                code="thin-wall",
+                severity="warning",
+                message=f"The wall between the {what} is {width:.4g} mm thick.",
+                value=width,
+                limit=limit,
+                unit="mm",
+                where=f"wheel {number}",
+            )
+
+
+def _walls(part: Part) -> Iterator[tuple[float, str]]:
+    """Thickness and place of every wall."""
+    from shapely import LinearRing, Point
+
+    rings = [LinearRing(opening.shape.points(part.tolerance)) for opening in part.openings]
+    edges = [(contour.polygon.boundary, "outline") for contour in part.contours]
+    if part.hub is not None:
+        circle = Point(0.0, 0.0).buffer(0.5 * part.hub.diameter, quad_segs=256).boundary
+        edges.append((circle, "hub's edge"))
+    for number, (opening, ring) in enumerate(zip(part.openings, rings, strict=True)):
+        for other, name in zip(rings[:number], part.openings[:number], strict=True):
+            yield float(ring.distance(other)), f"{opening.name} and the {name.name}"
+        for edge, what in edges:
+            yield float(ring.distance(edge)), f"{opening.name} and the {what}"
+
+
+@check(
+    "lost-flank",
+    kind=KIND,
+    doc="flank that an offset or rounded tips take away, and the contact ratio that is left",
+    limit=("contact_ratio", Param(doc="least contact ratio", ge=1, le=3), 1.1),
+)
+def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
+    """Warn where more flank is lost than a moved tip takes, an error where too little drives."""
+    for number, lost in enumerate(subject.lost, start=1):
+        if lost is None or (lost.height <= lost.expected and lost.contact_ratio >= limit):
+            continue
+        yield Finding(
+            code="lost-flank",
+            severity="warning" if lost.contact_ratio >= limit else "error",
+            message=f"Offset and rounding take up to {lost.height:.4g} mm of the height of the "
+            f"flanks that touch; the contact ratio that is left is {lost.contact_ratio:.4g}.",
+            value=lost.height,
+            limit=lost.expected,
+            unit="mm",
+            where=f"wheel {number}, {lost.teeth}",
+        )
+
+
+@check(
+    "large-tool",
+    kind=KIND,
+    doc="the largest round tool or wire that reaches every place of an outline",
+    limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
+)
+def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
+    """Warn that the tool at hand (a wire of 0.25 mm with its gap by default) is too large."""
+    for number, tools in enumerate(subject.tools, start=1):
+        if tools.diameter >= limit:
+            continue
+        narrow = tools.slot < 2.0 * tools.inner_radius
+        place = tools.slot_place if narrow else tools.inner_place
+        what = "a slot" if narrow else "an inner corner or radius"
+        where = "" if place is None else f" at x = {place[0]:.4f}, y = {place[1]:.4f} mm"
+        yield Finding(
+            code="large-tool",
+            severity="note",
+            message=f"The largest round tool that reaches every place has {tools.diameter:.4g} mm: "
+            f"{what}{where} limits it.",
+            value=tools.diameter,
+            limit=limit,
+            unit="mm",
+            where=f"wheel {number}",
+        )

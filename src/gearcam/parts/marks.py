@@ -1,0 +1,107 @@
+"""Timing marks: a pair of dimples that faces each other on the line of centres at phi1 = 0.
+
+The wheels then go together in one phase only.
+
+Refused: a rim between bore and root that leaves no room.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.parts.part import Mark
+
+MARK_DIAMETER: Final = 0.4
+"""Diameter of a timing mark, modules: seen by eye, smaller than any rim that carries teeth."""
+
+MARK_GAP: Final = 0.2
+"""Least distance of a timing mark from the root line, modules."""
+
+MARK_DEPTH: Final = 0.5
+"""Depth of a mark, mm, in wheels that are wide enough: a laser's or a drill point's touch."""
+
+MARK_DEPTH_PART: Final = 0.1
+"""Largest part of the width that a mark may take."""
+
+RIM_PART: Final = 1 / 3
+"""Largest part of the rim between bore and root that a mark may take, and its gap with it."""
+
+
+def timing_mark(
+    pitch_radius: float,
+    direction: float,
+    module: float,
+    dedendum_mm: float,
+    width: float,
+    *,
+    bore_reach: float = 0.0,
+    tilt: float = 0.0,
+    diameter: float | None = None,
+) -> Mark:
+    """Place a wheel's timing mark just inside the root, on a given direction.
+
+    Wheel 1 takes the direction 0 and wheel 2 the direction pi: at phi1 = 0 both lie on the line of
+    centres and face each other across the pitch point.
+
+    Parameters
+    ----------
+    pitch_radius : float, mm
+        Radius of the centrode in that direction.
+    direction : float, rad
+        Polar angle in the wheel's frame.
+    module : float, mm
+        Sets the mark's size: 0.4 modules.
+    dedendum_mm : float, mm
+        Distance of the root from the centrode, along the centrode's normal.
+    width : float, mm
+        Width of the wheel; the depth is the lesser of 0.5 mm and a tenth of it.
+    bore_reach : float, mm
+        Radius within which bore, keyway and hub lie: the mark stays clear of it, and shrinks where
+        the rim is thin.
+    tilt : float, rad
+        Angle between the radius and the centrode's normal, 0 where the centrode crosses the line of
+        centres squarely.
+    diameter : float or None, mm
+        Diameter that is asked for, instead of 0.4 modules.
+
+    Returns
+    -------
+    Mark
+
+    Raises
+    ------
+    InfeasibleError
+        If bore and root leave no rim, or none for the diameter that is asked for.
+    """
+    lean = math.cos(tilt)
+    rim = (pitch_radius - bore_reach) * lean - dedendum_mm
+    if rim <= 0:
+        root = pitch_radius - dedendum_mm / lean
+        raise InfeasibleError(
+            "no room for a timing mark between bore and root",
+            where=f"direction {math.degrees(direction):.6g} deg",
+            value=2 * bore_reach,
+            limit=2 * root,
+            unit="mm",
+            nearest=f"a bore or hub below {2 * root:.6g} mm leaves a rim there",
+        )
+    largest = RIM_PART * rim
+    if diameter is not None and diameter > largest:
+        raise InfeasibleError(
+            "no room for so large a timing mark between bore and root",
+            where=f"direction {math.degrees(direction):.6g} deg, blank.mark_diameter_mm",
+            value=diameter,
+            limit=largest,
+            unit="mm",
+            nearest=f"at most {largest:.6g} mm, or timing_marks = false",
+        )
+    diameter = diameter or min(MARK_DIAMETER * module, largest)
+    gap = min(MARK_GAP * module, RIM_PART * rim)
+    radius = pitch_radius - (dedendum_mm + gap + 0.5 * diameter) / lean
+    center = radius * np.array([math.cos(direction), math.sin(direction)])
+    depth = min(MARK_DEPTH, MARK_DEPTH_PART * width)
+    return Mark(center=center, diameter=diameter, depth=depth)

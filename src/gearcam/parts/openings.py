@@ -1,0 +1,326 @@
+"""Openings of a wheel: bore with keyway or flat, bolt holes, lightening holes, stop slot.
+
+All are exact chains of arcs and straight pieces. Round lightening holes stand in equal sectors;
+in each the largest circle is found that leaves the rim below the roots and the web to everything
+else. The slot of an open wheel is an arc about the shaft: a pin in the housing, on the line of
+centres, meets its ends when the way is over.
+
+Refused: openings that meet each other, the hub's edge or the outline, and holes for which rim
+and web leave no room, with the largest size that fits.
+
+Depends on parts' shapes and numeric; shapely inside the functions.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.numeric.contour import Contour
+from gearcam.parts.blank import WheelBlank
+from gearcam.parts.part import Opening
+from gearcam.parts.shapes import Circle, Loop
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+Array = NDArray[np.float64]
+
+RIM: Final = 2.7
+"""Rim below the roots, in modules, where the design gives none: 1.2 tooth depths."""
+
+_SEARCH: Final = 1e-3
+"""How exactly the largest circle is found, in rims; the hole is made smaller by it."""
+
+
+_QUARTER: Final = 64
+"""Chords of a quarter of what is kept free around core and openings."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where a blank is made.
+
+    Parameters
+    ----------
+    wheel : int
+        1 or 2, for messages.
+    module : float, mm
+        Sizes that the design leaves open follow it.
+    travel : float or None, rad
+        How far an open wheel turns; None for a closed one.
+    """
+
+    wheel: int
+    module: float
+    travel: float | None = None
+
+
+def bore(blank: WheelBlank) -> Circle | Loop:
+    """Return the bore with its keyway or flat.
+
+    Parameters
+    ----------
+    blank : WheelBlank
+        Its sizes, with a bore; the keyway's direction is also the flat's.
+
+    Returns
+    -------
+    Circle or Loop
+        About the axis.
+    """
+    radius = 0.5 * blank.bore
+    turn = cmath.exp(1j * blank.keyway_angle)
+    if blank.keyway_width:
+        half, floor = 0.5 * blank.keyway_width, radius + blank.keyway_depth
+        foot = math.sqrt(radius**2 - half**2)
+        corners = [foot + 1j * half, foot - 1j * half, floor - 1j * half, floor + 1j * half]
+        return _with_arc(corners, 2.0 * (math.pi - math.asin(half / radius)), turn)
+    if blank.bore_flat:
+        away = blank.bore_flat - radius
+        half = math.sqrt(radius**2 - away**2)
+        angle = 2.0 * (math.pi - math.acos(away / radius))
+        return _with_arc([away + 1j * half, away - 1j * half], angle, turn)
+    return Circle(center=np.zeros(2), diameter=blank.bore)
+
+
+def _with_arc(corners: list[complex], angle: float, turn: complex) -> Loop:
+    """Join corners by straight pieces, the first two by an arc about the origin in two halves."""
+    middle = corners[0] * cmath.exp(0.5j * angle)
+    points = np.array([corners[0], middle, *corners[1:]]) * turn
+    bulges = np.zeros(len(points))
+    bulges[:2] = math.tan(0.125 * angle)
+    return Loop(vertices=np.column_stack([points.real, points.imag]), bulges=bulges)
+
+
+def _bolts(blank: WheelBlank) -> Iterator[Opening]:
+    for number in range(blank.bolts):
+        angle = blank.bolt_angle + 2.0 * math.pi * number / blank.bolts
+        yield _hole(0.5 * blank.bolt_circle, angle, blank.bolt_diameter, f"bolt hole {number + 1}")
+
+
+def _hole(radius: float, angle: float, diameter: float, name: str) -> Opening:
+    center = radius * np.array([math.cos(angle), math.sin(angle)])
+    return Opening(kind="HOLE", shape=Circle(center=center, diameter=diameter), name=name)
+
+
+def openings(blank: WheelBlank, contours: Sequence[Contour], place: Place) -> tuple[Opening, ...]:
+    """Return everything that goes through a wheel.
+
+    Parameters
+    ----------
+    blank : WheelBlank
+        What is wanted.
+    contours : sequence of Contour
+        The outlines of its steps.
+    place : Place
+        Which wheel.
+
+    Returns
+    -------
+    tuple of Opening
+        Bore, bolt holes, stop slot, lightening holes: those that are wanted.
+
+    Raises
+    ------
+    InfeasibleError
+        If they meet each other, the hub's edge or the outline, or have no room.
+    """
+    solid = common(contours)
+    found = [Opening(kind="BORE", shape=bore(blank), name="bore")] if blank.bore else []
+    found += _bolts(blank)
+    if blank.stop_pin:
+        found.append(_slot(blank, solid, place))
+    demand_apart(found, blank, solid, place)
+    if blank.lightening_holes:
+        found += _lightening(blank, solid, found, place)
+    return tuple(found)
+
+
+def common(contours: Sequence[Contour]) -> Polygon:
+    """Return what all steps' `contours` have in common."""
+    from shapely import intersection_all
+
+    if len(contours) == 1:
+        return contours[0].polygon
+    shared: Any = intersection_all([contour.polygon for contour in contours])
+    return shared
+
+
+def demand_apart(found: Sequence[Opening], blank: WheelBlank, solid: Polygon, place: Place) -> None:
+    """Refuse openings that meet each other, the hub's edge or the outline.
+
+    Parameters
+    ----------
+    found : sequence of Opening
+        All of them.
+    blank : WheelBlank
+        With the hub.
+    solid : Polygon
+        The toothed plate.
+    place : Place
+        Which wheel.
+
+    Raises
+    ------
+    InfeasibleError
+        With what meets what.
+    """
+    from shapely import Point, Polygon
+
+    regions = [Polygon(opening.shape.points(1e-4 * place.module)) for opening in found]
+    hub = Point(0.0, 0.0).buffer(0.5 * blank.hub_diameter, quad_segs=256).boundary
+    for number, (opening, region) in enumerate(zip(found, regions, strict=True)):
+        if not solid.contains(region):
+            raise _no_room(opening, solid, "the outline", place)
+        if blank.hub_diameter and region.intersects(hub):
+            raise _no_room(opening, solid, "the edge of the hub", place)
+        for other, second in zip(found[:number], regions[:number], strict=True):
+            if region.intersects(second):
+                raise _no_room(opening, solid, f"the {other.name}", place)
+
+
+def _no_room(opening: Opening, solid: Polygon, what: str, place: Place) -> InfeasibleError:
+    from shapely import Point
+
+    shape, value, limit = opening.shape, None, None
+    nearest = "make one of them smaller, or move it"
+    if isinstance(shape, Circle) and what == "the outline":
+        center = Point(*shape.center)
+        inside = solid.contains(center)
+        value, limit = shape.diameter, 2.0 * solid.boundary.distance(center) if inside else None
+        nearest = (
+            f"there a diameter below {limit:.6g} mm stays inside"
+            if limit
+            else "its middle lies outside the roots: take a smaller circle"
+        )
+    return InfeasibleError(
+        f"the {opening.name} meets {what}",
+        where=f"wheel {place.wheel}, [blank]",
+        value=value,
+        limit=limit,
+        unit="mm",
+        nearest=nearest,
+    )
+
+
+def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
+    """Return the slot in which the stop pin of an open wheel runs.
+
+    Wheel 1 turns by -phi1 and wheel 2 by phi2: in the wheel's frame the pin, on the line of
+    centres, goes from the polar angle 0 to the travel, or from pi back by the travel.
+    """
+    from shapely import LineString, Point
+
+    if place.travel is None:
+        raise InfeasibleError(
+            "a wheel that turns for ever has no stop",
+            where=f"wheel {place.wheel}, blank.stop_pin_mm",
+            value=blank.stop_pin,
+            unit="mm",
+            nearest="leave stop_pin_mm out, or give an open law (driven_travel_deg)",
+        )
+    start = 0.0 if place.wheel == 1 else math.pi - place.travel
+    angles = start + place.travel * np.linspace(0.0, 1.0, 181)
+    rays = np.column_stack([np.cos(angles), np.sin(angles)])
+    inner = max(blank.bore_reach, 0.5 * blank.hub_diameter)
+    edge = solid.boundary
+    far = 2.0 * float(np.hypot(*np.array(edge.coords).T).max())
+    outer = min(
+        Point(0.0, 0.0).distance(edge.intersection(LineString([(0.0, 0.0), far * ray])))
+        for ray in rays
+    )
+    radius = 0.5 * (inner + outer)
+    # The ends are round: beside the end faces of the sector there must be room as well.
+    room = min(edge.distance(Point(*(radius * ray))) for ray in rays)
+    room = 2.0 * min(room, radius - inner)  # the outline, or the hub
+    if blank.stop_pin >= room:
+        raise InfeasibleError(
+            "no room for the slot of the stop pin between shaft and roots",
+            where=f"wheel {place.wheel}, blank.stop_pin_mm",
+            value=blank.stop_pin,
+            limit=room,
+            unit="mm",
+            nearest=f"a pin below {room:.6g} mm",
+        )
+    return Opening(
+        kind="SLOT", shape=_arc_slot(radius, start, place.travel, blank.stop_pin), name="stop slot"
+    )
+
+
+def _arc_slot(radius: float, start: float, sweep: float, width: float) -> Loop:
+    """Return a slot of constant width along an arc about the origin, its ends half circles."""
+    parts = max(1, math.ceil(sweep / (0.9 * math.pi)))
+    outwards = start + sweep * np.linspace(0.0, 1.0, parts + 1)
+    outer = (radius + 0.5 * width) * np.exp(1j * outwards)
+    inner = (radius - 0.5 * width) * np.exp(1j * outwards[::-1])
+    points = np.concatenate([outer, inner])
+    bend = math.tan(0.25 * sweep / parts)
+    bulges = [*[bend] * parts, 1.0, *[-bend] * parts, 1.0]
+    return Loop(vertices=np.column_stack([points.real, points.imag]), bulges=np.array(bulges))
+
+
+def _lightening(
+    blank: WheelBlank, solid: Polygon, others: Sequence[Opening], place: Place
+) -> Iterator[Opening]:
+    """Yield the largest circle in each sector that keeps rim and web."""
+    from shapely import Point, Polygon, maximum_inscribed_circle, union_all
+
+    rim = blank.rim if blank.rim is not None else RIM * place.module
+    web = blank.web if blank.web is not None else rim
+    count = blank.lightening_holes
+    core = max(blank.bore_reach, 0.5 * blank.hub_diameter)
+    outside = 1.0 / math.cos(math.pi / (4 * _QUARTER))  # chords around the arcs, not inside
+    taken = [Point(0.0, 0.0).buffer((core + web) * outside, quad_segs=_QUARTER)]
+    taken += [
+        Polygon(other.shape.points(_SEARCH * rim)).buffer(web * outside, quad_segs=_QUARTER)
+        for other in others
+        if other.kind != "BORE"
+    ]
+    free: Any = solid.buffer(-rim, quad_segs=32).difference(union_all(taken))
+    far = 2.0 * float(np.abs(solid.bounds).max())
+    for number in range(count):
+        middle = 2.0 * math.pi * (number + 0.5) / count
+        room = free if count == 1 else free.intersection(_sector(middle, math.pi / count, far, web))
+        size, center = 0.0, None
+        for piece in getattr(room, "geoms", (room,)):
+            if not piece.is_empty and piece.geom_type == "Polygon":
+                spoke = maximum_inscribed_circle(piece, tolerance=_SEARCH * rim)
+                if spoke.length > size:
+                    size, center = float(spoke.length), np.array(spoke.coords[0])
+        size -= _SEARCH * rim
+        if center is None or size <= 0.0:
+            raise _no_lightening(number + 1, solid, core, place)
+        name = f"lightening hole {number + 1}"
+        yield Opening(kind="HOLE", shape=Circle(center=center, diameter=2.0 * size), name=name)
+
+
+def _sector(middle: float, half: float, far: float, web: float) -> Polygon:
+    """Return the sector between two spokes of width `web`."""
+    from shapely import Polygon
+
+    apex = 0.5 * web / math.sin(half) * cmath.exp(1j * middle)
+    rays = [apex + far * cmath.exp(1j * (middle + side * half)) for side in (-1.0, 0.0, 1.0)]
+    rays[1] = apex + 2.0 * far * cmath.exp(1j * middle)
+    return Polygon([(point.real, point.imag) for point in (apex, *rays)])
+
+
+def _no_lightening(number: int, solid: Polygon, core: float, place: Place) -> InfeasibleError:
+    from shapely import Point
+
+    least = solid.boundary.distance(Point(0.0, 0.0))
+    return InfeasibleError(
+        f"lightening hole {number} has no room between hub and rim",
+        where=f"wheel {place.wheel}, [blank]",
+        value=least - core,
+        unit="mm",
+        nearest="this is what lies between hub or bore and the nearest root: take a smaller rim_mm "
+        "or web_mm, or fewer holes",
+    )

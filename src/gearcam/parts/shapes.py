@@ -1,0 +1,184 @@
+"""Exact closed shapes of straight pieces and arcs: what is drilled, broached or milled.
+
+A *circle* is kept as what it is; a *loop* is a closed bulge polyline. Both know their moments in
+closed form and their chords within a tolerance.
+
+Refused: loops that run clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.numeric.bulges import bulge_pieces, flatten_bulges
+from gearcam.numeric.moments import Moments, arc_moments
+
+Array = NDArray[np.float64]
+
+FEWEST: Final = 12
+"""Fewest chords of a circle."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Circle:
+    """A full circle.
+
+    Parameters
+    ----------
+    center : (2,) array, mm
+        Its middle.
+    diameter : float, mm
+        Above 0.
+
+    Raises
+    ------
+    ValueError
+        If the diameter is not positive.
+    """
+
+    center: Array
+    diameter: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "center", frozen(self.center))
+        if not self.diameter > 0.0:
+            raise ValueError(f"the diameter must be positive, not {self.diameter} mm")
+
+    @property
+    def moments(self) -> Moments:
+        """Moments about the origin."""
+        area = 0.25 * math.pi * self.diameter**2
+        place = complex(*self.center)
+        return Moments(
+            area=area,
+            first=area * place,
+            polar=area * (abs(place) ** 2 + 0.125 * self.diameter**2),
+        )
+
+    @property
+    def reach(self) -> float:
+        """Largest distance from the origin, mm."""
+        return float(np.hypot(*self.center)) + 0.5 * self.diameter
+
+    @property
+    def length(self) -> float:
+        """Circumference, mm."""
+        return math.pi * self.diameter
+
+    def points(self, sagitta: float) -> Array:
+        """Return points on the circle (see `circle_points`)."""
+        return circle_points(self.center, self.diameter, sagitta)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Loop:
+    """A closed chain of straight pieces and arcs, counter-clockwise.
+
+    Parameters
+    ----------
+    vertices : (k, 2) array, mm
+        First not repeated.
+    bulges : (k,) array
+        Tangent of a quarter of the angle of each arc, 0 for straight pieces.
+
+    Raises
+    ------
+    ValueError
+        If the loop runs clockwise.
+    """
+
+    vertices: Array
+    bulges: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", frozen(self.vertices))
+        object.__setattr__(self, "bulges", frozen(self.bulges))
+        if not self.moments.area > 0.0:
+            raise ValueError("a loop must run counter-clockwise")
+
+    @cached_property
+    def moments(self) -> Moments:
+        """Moments about the origin."""
+        return arc_moments(self.vertices, self.bulges)
+
+    @property
+    def reach(self) -> float:
+        """Largest distance from the origin, mm: of a vertex, or of an arc's farthest place."""
+        start, chord, bends = bulge_pieces(self.vertices, self.bulges, closed=True)
+        bent = bends != 0.0
+        start, chord, bends = start[bent], chord[bent], bends[bent]
+        half = 2.0 * np.arctan(bends)
+        center = start + 0.5 * chord * (1.0 + 1j / np.tan(half))
+        away = np.abs(center)
+        radius = 0.5 * np.abs(chord / np.sin(half))
+        toward = np.divide(center, away, out=np.ones_like(center), where=away > 0.0)
+        # an arc that turns left lies to the right of its chord
+        side = (np.conj(chord) * (center + radius * toward - start)).imag * bends
+        arcs = np.where(side < 0.0, away + radius, 0.0)
+        return float(max(np.hypot(*self.vertices.T).max(), arcs.max(initial=0.0)))
+
+    @property
+    def length(self) -> float:
+        """Length of the boundary, mm."""
+        chords = np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T)
+        half = 2.0 * np.arctan(self.bulges)
+        return float((chords / np.sinc(half / np.pi)).sum())
+
+    def points(self, sagitta: float) -> Array:
+        """Return points on the loop, (n, 2), mm, no chord farther from it than `sagitta`, mm."""
+        return flatten_bulges(self.vertices, self.bulges, sagitta)
+
+
+def frozen(values: object) -> Array:
+    """Return values as a float64 array of their own that cannot be written."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+def circle_segments(diameter: float, sagitta: float) -> int:
+    """Return how many chords a circle needs.
+
+    Parameters
+    ----------
+    diameter : float, mm
+        Diameter of the circle.
+    sagitta : float, mm
+        Largest distance of a chord from the circle.
+
+    Returns
+    -------
+    int
+        Even, at least 12.
+    """
+    ratio = min(sagitta / diameter, 0.5)
+    # Sagitta of n chords: (d/2)*(1 - cos(pi/n)) = d*sin(pi/(2n))^2.
+    return max(FEWEST, 2 * math.ceil(math.pi / (4 * math.asin(math.sqrt(ratio)))))
+
+
+def circle_points(center: tuple[float, float] | Array, diameter: float, sagitta: float) -> Array:
+    """Return points on a circle, counter-clockwise, first not repeated.
+
+    Parameters
+    ----------
+    center : (2,) array, mm
+        Centre.
+    diameter : float, mm
+        Diameter.
+    sagitta : float, mm
+        Largest distance of a chord from the circle.
+
+    Returns
+    -------
+    (n, 2) array, mm
+    """
+    count = circle_segments(diameter, sagitta)
+    angle = 2 * math.pi * np.arange(count) / count
+    spokes = np.column_stack([np.cos(angle), np.sin(angle)])
+    return np.asarray(center, dtype=np.float64) + 0.5 * diameter * spokes

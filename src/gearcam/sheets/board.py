@@ -1,0 +1,370 @@
+"""The board: a sheet while it is drawn, and the free places for its dimensions.
+
+What is drawn is kept in a grid of half millimetres of paper, texts in another. A text stands where
+neither grid has anything; leaders never cross a text, and as few lines as can be. *Levels* are the
+distances of linear dimensions from the view, so that they stand above one another.
+
+Depends on drawings and sheets.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.drawings import Cross, Feature, Path, Shape
+from gearcam.parts import Circle, Loop
+from gearcam.sheets.sheet import (
+    ARROW_ROOM,
+    CENTERLINE,
+    DIMENSION,
+    GAP,
+    HEIGHT,
+    TAIL,
+    Array,
+    Box,
+    Dimension,
+    LinearDimension,
+    RoundDimension,
+    Text,
+    arrow_head,
+    number,
+    strokes,
+    text_box,
+    text_width,
+)
+
+CELL: Final = 0.5
+"""Of the grids, mm of paper."""
+
+LEVEL: Final = 9.0
+FIRST_LEVEL: Final = 11.0
+"""From one dimension line to the next, and from the view to the first, mm of paper."""
+
+CLEAR: Final = 1.0
+"""Around a text nothing is drawn, mm of paper."""
+
+TIGHT: Final = 2.0
+"""What a circle must be wider than a text within, mm of paper."""
+
+OVERHANG: Final = 3.0
+"""Of centre lines over what they belong to, mm of paper."""
+
+CROSSING: Final = 6.0
+"""A crossed line is as bad as a leader longer by this, mm of paper."""
+
+MOST: Final = 20
+"""Cells of a leader that may lie on lines: more means that it runs along one."""
+
+_REACHES: Final = np.concatenate([np.arange(5.0, 30.0, 2.5), np.arange(30.0, 160.0, 6.0)])
+"""Lengths of leaders that are tried, mm of paper."""
+
+AROUND: Final = np.radians(np.arange(7.5, 367.5, 7.5))
+"""Directions that are tried where a leader may have any."""
+
+
+def _resampled(points: Array, step: float, closed: bool) -> Array:
+    """Return points at most `step` apart along a chain, (n, 2), mm."""
+    chain = np.vstack([points, points[:1]]) if closed else points
+    ways = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(chain, axis=0).T))])
+    count = max(2, math.ceil(ways[-1] / step) + 1)
+    at = np.linspace(0.0, ways[-1], count)
+    return np.column_stack([np.interp(at, ways, chain[:, k]) for k in (0, 1)])
+
+
+def shape_points(shape: Shape, step: float) -> Array:
+    """Return points on a shape.
+
+    Parameters
+    ----------
+    shape : Contour or Circle or Loop or Path or Cross
+        What is drawn.
+    step : float, mm
+        Largest distance of neighbours.
+
+    Returns
+    -------
+    (n, 2) array, mm
+    """
+    match shape:
+        case Circle() | Loop():
+            return _resampled(shape.points(0.1 * step), step, closed=True)
+        case Path():
+            return _resampled(shape.points, step, closed=shape.closed)
+        case Cross():
+            arm = 0.5 * shape.size * np.linspace(-1.0, 1.0, math.ceil(shape.size / step) + 1)
+            flat = np.column_stack([arm, np.zeros(len(arm))])
+            return shape.center + np.vstack([flat, flat[:, ::-1]])
+        case _:
+            return _resampled(shape.vertices, step, closed=True)
+
+
+@dataclass(eq=False, kw_only=True)
+class Board:
+    """A sheet while it is drawn.
+
+    Parameters
+    ----------
+    scale : float
+        Millimetres of paper over millimetres of the part.
+    area : (2,) array, (2,) array, mm of the part
+        Where texts of the views may stand.
+    features, dimensions, texts, rows : list
+        As of `Sheet`.
+    """
+
+    scale: float
+    area: Box
+    features: list[Feature] = field(default_factory=list)
+    dimensions: list[Dimension] = field(default_factory=list)
+    texts: list[Text] = field(default_factory=list)
+    rows: list[tuple[str, str]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        size = np.ceil((self.area[1] - self.area[0]) * self.scale / CELL).astype(int) + 1
+        self._lines = np.zeros(size, dtype=bool)
+        self._taken = np.zeros(size, dtype=bool)
+
+    @property
+    def unit(self) -> float:
+        """Millimetres of the part in a millimetre of paper."""
+        return 1.0 / self.scale
+
+    def draw(self, layer: str, shape: Shape) -> None:
+        """Draw a `shape` on a `layer`."""
+        self.features.append(Feature(layer=layer, shape=shape))
+        self._ink(shape_points(shape, 0.8 * CELL * self.unit))
+
+    def line(self, layer: str, start: tuple[float, float], end: tuple[float, float]) -> None:
+        """Draw a straight line on a `layer` from `start` to `end`, mm of the part."""
+        self.draw(layer, Path(points=np.array([start, end], dtype=np.float64), closed=False))
+
+    def centre(self, place: Array, radius: float, gap: tuple[float, float] | None = None) -> None:
+        """Draw centre lines over a circle.
+
+        Parameters
+        ----------
+        place : (2,) array, mm
+            Its middle.
+        radius : float, mm
+            Its radius.
+        gap : (float, float), mm of paper, optional
+            Where the upright one is left out, from the middle: a text stands there.
+        """
+        (x, y), arm = place.tolist(), radius + OVERHANG * self.unit
+        if gap is None:
+            self.line(CENTERLINE, (x - arm, y), (x + arm, y))
+            self.line(CENTERLINE, (x, y - arm), (x, y + arm))
+            return
+        low, high = (y + value * self.unit for value in gap)
+        self.line(CENTERLINE, (x, y - arm), (x, low))
+        if high < y + arm:
+            self.line(CENTERLINE, (x, high), (x, y + arm))
+
+    def write(self, text: Text) -> None:
+        """Write a text where it says."""
+        self.texts.append(text)
+        self._take(text)
+
+    def linear(
+        self,
+        first: tuple[float, float] | Array,
+        second: tuple[float, float] | Array,
+        at: float,
+        *,
+        vertical: bool = False,
+        prefix: str = "",
+        suffix: str = "",
+    ) -> None:
+        """Draw a distance along x or y.
+
+        Parameters
+        ----------
+        first, second : (2,) array, mm
+            The points.
+        at : float, mm
+            y of the dimension line, x of a vertical one.
+        vertical : bool
+            Whether it is measured along y.
+        prefix, suffix : str
+            Before and after the number.
+        """
+        ends = np.array([first, second], dtype=np.float64)
+        along = int(vertical)
+        low, high = np.sort(ends[:, along])
+        label = prefix + number(float(high - low)) + suffix
+        wide = text_width(label) * self.unit
+        place = np.full(2, at)
+        place[1 - along] += (GAP + 0.5 * HEIGHT) * self.unit * (-1.0 if vertical else 1.0)
+        place[along] = 0.5 * (low + high)
+        if wide + 2 * GAP * self.unit > high - low:
+            behind = TAIL if high - low < ARROW_ROOM * self.unit else GAP
+            place[along] = high + (behind + GAP) * self.unit + 0.5 * wide
+        line = np.full(2, at)
+        line[along] = low
+        self._measure(
+            LinearDimension(
+                first=ends[0], second=ends[1], line=line, place=place, vertical=vertical,
+                prefix=prefix, suffix=suffix,
+            )
+        )  # fmt: skip
+
+    def round(
+        self,
+        center: Array,
+        radius: float,
+        *,
+        angles: Array | None = None,
+        diameter: bool = True,
+        prefix: str = "",
+        suffix: str = "",
+    ) -> bool:
+        """Draw a diameter or radius where there is room.
+
+        Parameters
+        ----------
+        center : (2,) array, mm
+            Middle of the circle.
+        radius : float, mm
+            Of the circle.
+        angles : (n,) array, rad, optional
+            Directions in which the arrow may stand; any if left out.
+        diameter : bool
+            Whether the diameter is told.
+        prefix, suffix : str
+            Before and after the number.
+
+        Returns
+        -------
+        bool
+            False if there is no room: nothing is drawn, the table must tell it.
+        """
+        words: dict[str, Any] = {"diameter": diameter, "prefix": prefix, "suffix": suffix}
+        made = RoundDimension(center=center, radius=radius, **words)
+        within = 2.0 * radius * self.scale - text_width(made.label)
+        if diameter and angles is None and within > TIGHT and self._free(made):
+            self._measure(made)
+            return True
+        tried = AROUND if angles is None else angles
+        reaches = _REACHES if diameter else np.concatenate([_REACHES, -_REACHES])
+        found = self._search(made, tried, reaches)
+        if found is None:
+            return False
+        self._measure(found)
+        return True
+
+    def label(self, point: Array, text: str) -> bool:
+        """Write a text with a leader.
+
+        Parameters
+        ----------
+        point : (2,) array, mm
+            Where the leader points.
+        text : str
+            What is written.
+
+        Returns
+        -------
+        bool
+            False if there is no room: nothing is drawn.
+        """
+        made = RoundDimension(center=point, radius=0.1 * self.unit)
+        found = self._search(made, AROUND, _REACHES, text)
+        if found is None or found.knee is None:
+            return False
+        ends = np.array([found.edge, found.point(found.knee)])
+        left = bool(ends[1, 0] <= ends[0, 0])
+        wide = text_width(text) * self.unit
+        place = ends[1] + np.array([-0.5 * wide if left else 0.5 * wide, GAP * self.unit])
+        shelf = ends[1] + np.array([-wide if left else wide, 0.0])
+        self.draw(DIMENSION, Path(points=np.vstack([ends, shelf]), closed=False))
+        head = arrow_head(ends[0], (ends[0] - ends[1]) / np.hypot(*(ends[0] - ends[1])), self.unit)
+        self.draw(DIMENSION, Path(points=head[[1, 0, 2]], closed=False))
+        self.write(Text(text=text, place=place, anchor="middle"))
+        return True
+
+    def _free(self, made: RoundDimension) -> bool:
+        low, high = text_box(strokes(made, self.unit).text, self.unit)
+        return bool(self._empty(low[None, :], high[None, :])[0])
+
+    def _search(
+        self, made: RoundDimension, angles: Array, reaches: Array, label: str | None = None
+    ) -> RoundDimension | None:
+        """Return the dimension with the best knee, None if its text has no room anywhere."""
+        angle, reach = (axis.ravel() for axis in np.meshgrid(angles, reaches, indexing="ij"))
+        spokes = np.column_stack([np.cos(angle), np.sin(angle)])
+        knees = made.radius + reach * self.unit
+        at = made.center + knees[:, None] * spokes
+        left = reach * spokes[:, 0] <= 0.0
+        wide = text_width(label or made.label) * self.unit
+        low = np.column_stack([at[:, 0] - wide * left, at[:, 1]])
+        high = low + np.array([wide, (HEIGHT + GAP) * self.unit])
+        good = self._empty(low, high) & (knees > 0.0)
+        best, least = None, math.inf
+        for index in np.argsort(np.abs(reach), kind="stable").tolist():
+            if abs(reach[index]) >= least:
+                break
+            if good[index]:
+                edge = made.center + made.radius * spokes[index]
+                cost = abs(reach[index]) + CROSSING * self._crossed(edge, at[index])
+                if cost < least:
+                    best, least = index, cost
+        if best is None:
+            return None
+        return RoundDimension(
+            center=made.center, radius=made.radius, angle=float(angle[best]),
+            diameter=made.diameter, knee=float(knees[best]), prefix=made.prefix,
+            suffix=made.suffix,
+        )  # fmt: skip
+
+    def _crossed(self, start: Array, end: Array) -> float:
+        """Return how many lines a leader crosses; infinite along one, or through a text."""
+        way = end - start
+        length = float(np.hypot(*way))
+        skip = min(1.0, 2.0 * CELL * self.unit / length)
+        count = max(2, math.ceil(length * self.scale / CELL))
+        cells, inside = self._cells(start + np.linspace(skip, 1.0, count)[:, None] * way)
+        if not inside.all() or self._taken[cells[:, 0], cells[:, 1]].any():
+            return math.inf
+        hits = int(self._lines[cells[:, 0], cells[:, 1]].sum())
+        return float(hits) if hits <= MOST else math.inf
+
+    def _cells(self, points: Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Return the cells of points, and which of them lie on the grid."""
+        cells = np.floor((points - self.area[0]) * self.scale / CELL).astype(np.int64)
+        inside = np.logical_and.reduce((cells >= 0) & (cells < self._lines.shape), axis=1)
+        return cells, inside
+
+    def _empty(self, low: Array, high: Array) -> NDArray[np.bool_]:
+        """Return which of some boxes, (n, 2) each, hold nothing and lie in the area."""
+        edge = CLEAR * self.unit
+        first, inside = self._cells(low - edge)
+        last, also = self._cells(high + edge)
+        sums = np.zeros(np.add(self._lines.shape, 1), dtype=np.int64)
+        sums[1:, 1:] = (self._lines | self._taken).cumsum(axis=0).cumsum(axis=1)
+        limit = np.array(self._lines.shape) - 1
+        (i, j), (k, m) = np.clip(first, 0, limit).T, np.clip(last, 0, limit).T + 1
+        held = sums[k, m] - sums[i, m] - sums[k, j] + sums[i, j]
+        return inside & also & (held == 0)
+
+    def _ink(self, points: Array) -> None:
+        cells, inside = self._cells(points)
+        self._lines[cells[inside, 0], cells[inside, 1]] = True
+
+    def _take(self, text: Text) -> None:
+        low, high = text_box(text, self.unit)
+        edge = CLEAR * self.unit
+        corners, _ = self._cells(np.array([low - edge, high + edge]))
+        (i, j), (k, m) = np.clip(corners, 0, None)
+        self._taken[i : k + 1, j : m + 1] = True
+
+    def _measure(self, dimension: Dimension) -> None:
+        self.dimensions.append(dimension)
+        drawn = strokes(dimension, self.unit)
+        for line in drawn.lines:
+            self._ink(_resampled(line, 0.8 * CELL * self.unit, closed=False))
+        self._take(drawn.text)

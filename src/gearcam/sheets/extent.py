@@ -1,0 +1,52 @@
+"""How far outlines reach: sizes of the true curve, not of its chords.
+
+Depends on numeric.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.numeric.contour import Contour
+
+Array = NDArray[np.float64]
+
+_BETWEEN: Final = 129
+"""Points of a cubic that stands for the curve between two dense points."""
+
+
+def true_points(contours: Iterable[Contour]) -> Array:
+    """Return points on true outlines, (n, 2), mm: dense, and much denser where they reach farthest.
+
+    The places farthest along x and y, and farthest from and nearest to the origin, are good to
+    1e-8 mm: between dense points the curve is a cubic with the tangents at its ends.
+    """
+    runs = [run for contour in contours for run in contour.runs]
+    points = np.vstack([run.points for run in runs])
+    tangents = np.vstack([run.tangents for run in runs])
+    reach = np.hypot(*points.T)
+    extremes = {
+        int(pick(values)) for values in (*points.T, reach) for pick in (np.argmin, np.argmax)
+    }
+    starts = np.cumsum([0, *(len(run.points) for run in runs)])
+    # the last point of a run and the first of the next have nothing between them
+    pieces = [
+        slice(first, first + 2)
+        for place in sorted(extremes)
+        for first in (place - 1, place)
+        if first >= 0 and first + 1 not in starts
+    ]
+    return np.vstack([points, *(_cubic(points[piece], tangents[piece]) for piece in pieces)])
+
+
+def _cubic(ends: Array, tangents: Array) -> Array:
+    """Points between two points with unit tangents."""
+    u = np.linspace(0.0, 1.0, _BETWEEN)[:, None]
+    length = float(np.hypot(*(ends[1] - ends[0])))
+    bend = u * (1.0 - u) * ((1.0 - u) * tangents[0] - u * tangents[1]) * length
+    rise = u * u * (3.0 - 2.0 * u)
+    return ends[0] + rise * (ends[1] - ends[0]) + bend

@@ -1,0 +1,142 @@
+"""The sheet of a pair: both wheels assembled, their centrodes and the point where these touch.
+
+The pair stands as in the drawing that it is made from, at any angle of the driver. The *pitch
+point* lies on the line of centres, where the driver's centrode crosses it.
+
+Refused: a drawing without outlines.
+
+Depends on drawings and sheets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+
+from gearcam.drawings import CENTER, CENTRODE, Circle, Contour, Cross, Drawing, Path
+from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
+from gearcam.sheets.extent import true_points
+from gearcam.sheets.paper import choose, finish, start
+from gearcam.sheets.sheet import CENTERLINE, Array, Sheet, fine
+
+LEFT: Final = 24.0
+RIGHT: Final = 20.0
+ABOVE: Final = 14.0
+"""Room for dimensions beside and above the wheels, mm of paper."""
+
+POINT: Final = 2.0
+"""Diameter of the ring about the pitch point, mm of paper."""
+
+LEVELS: Final = 3
+"""Linear dimensions below the wheels."""
+
+
+def pair_sheet(
+    drawing: Drawing,
+    center_distance: float,
+    facts: Mapping[str, str],
+    title: str,
+    *,
+    pitch_radius: float | None = None,
+    names: tuple[str, str] = ("gear1", "gear2"),
+) -> Sheet:
+    """Draw the sheet of the assembled pair.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        The pair with its centrodes (see `gearcam.drawings.pair_drawing`).
+    center_distance : float, mm
+        Distance of the shafts, at (0, 0) and (center_distance, 0); 0 for a rack.
+    facts : mapping of str to str
+        Rows of the parameter table.
+    title : str
+        First line of the title block.
+    pitch_radius : float, optional, mm
+        Distance of the pitch point from the driver's axis, dimensioned; if left out, the point is
+        found on the drawn centrode, and only marked.
+    names : (str, str)
+        What the wheels are called.
+
+    Returns
+    -------
+    Sheet
+        Named as the drawing.
+
+    Raises
+    ------
+    ValueError
+        If the drawing has no outline, or is too large for the smallest scale.
+    """
+    if not drawing.contours:
+        raise ValueError(f"{drawing.name}: nothing to draw")
+    points = true_points(drawing.contours)
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float(high[0] - low[0]), float(high[1] - low[1])
+    below = FIRST_LEVEL + LEVEL * LEVELS
+    form = choose(size, (LEFT + RIGHT, below + ABOVE), len(facts) + 2)
+    room = np.array([LEFT, below]), np.array([RIGHT, ABOVE])
+    board, corner = start(form, size, room, low)
+    _views(board, drawing, (0.0, center_distance) if center_distance else (0.0,))
+    _sizes(board, points, center_distance, pitch_radius)
+    place = _pitch_point(drawing) if pitch_radius is None else np.array([pitch_radius, 0.0])
+    if place is not None:
+        board.draw(CENTERLINE, Circle(center=place, diameter=POINT * board.unit))
+        board.label(place, "pitch point")
+    for shaft, name in zip((0.0, center_distance), names, strict=True):
+        if shaft or name == names[0]:
+            board.label(np.array([shaft, 0.0]), name)
+    tolerance = max(contour.tolerance for contour in drawing.contours)
+    notes = [
+        f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
+        "Dashed: centrodes; they touch at the pitch point.",
+        "Each wheel is made to its own sheet and file.",
+    ]
+    return finish(board, form, corner, name=drawing.name, title=title, facts=facts, notes=notes)
+
+
+def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
+    for feature in drawing.features:
+        if feature.kind != CENTER and not isinstance(feature.shape, Cross):
+            board.draw(feature.layer, feature.shape)
+    over, contours = OVERHANG * board.unit, drawing.contours
+    for shaft, contour in zip(shafts, contours, strict=False):
+        (_, low), (_, high) = _corners(contour)
+        board.line(CENTERLINE, (shaft, low - over), (shaft, high + over))
+    ends = [_corners(contour)[:, 0] for contour in contours]
+    left, right = float(np.min(ends)), float(np.max(ends))
+    board.line(CENTERLINE, (left - over, 0.0), (right + over, 0.0))
+
+
+def _corners(contour: Contour) -> Array:
+    return np.array([contour.vertices.min(axis=0), contour.vertices.max(axis=0)])
+
+
+def _sizes(board: Board, points: Array, center_distance: float, pitch_radius: float | None) -> None:
+    """Draw the linear dimensions: pitch radius, centre distance, largest sizes."""
+    unit = board.unit
+    left, low, right, high = points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
+    levels = [float(low[1]) - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
+    if pitch_radius is not None:
+        board.linear((0.0, 0.0), (pitch_radius, 0.0), levels.pop(0))
+    if center_distance:
+        board.linear((0.0, 0.0), (center_distance, 0.0), levels.pop(0))
+    board.linear(left, right, levels.pop(0))
+    board.linear(low, high, float(left[0]) - FIRST_LEVEL * unit, vertical=True)
+
+
+def _pitch_point(drawing: Drawing) -> Array | None:
+    """Return where the first centrode crosses the line of centres, on the mate's side."""
+    for feature in drawing.features:
+        if feature.kind == CENTRODE and isinstance(feature.shape, Path):
+            points = feature.shape.points
+            if feature.shape.closed:
+                points = np.vstack([points, points[:1]])
+            (x, u), (y, v) = points[:-1].T, points[1:].T
+            crosses = np.flatnonzero((u <= 0.0) != (v <= 0.0))
+            at = x[crosses] - u[crosses] * (y - x)[crosses] / (v - u)[crosses]
+            ahead = at[at > 0.0]
+            return np.array([ahead.min(), 0.0]) if len(ahead) else None
+    return None

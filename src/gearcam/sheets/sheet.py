@@ -1,0 +1,380 @@
+"""What a sheet is made of: features, dimensions and texts, in true millimetres of the part.
+
+A *sheet* has a *paper* and a *scale*, millimetres of paper over millimetres of the part. Everything
+on it is placed in the part's millimetres, y upwards, the front view in the part's own frame;
+heights of texts, gaps and arrow heads are in millimetres of paper. A *dimension* knows what it
+measures; `strokes` turns it into lines, arrow heads and a text, for formats that have no
+dimensions of their own. Text heights are those of capital letters.
+
+Depends on drawings.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.drawings import Feature
+
+Array = NDArray[np.float64]
+
+Box = tuple[Array, Array]
+"""Lower left and upper right corner."""
+
+DIMENSION: Final = "DIMENSION"
+TEXT: Final = "TEXT"
+CENTERLINE: Final = "CENTERLINE"
+HIDDEN: Final = "HIDDEN"
+FRAME: Final = "FRAME"
+EDGE: Final = "EDGE"
+"""Layers beside those of drawings; EDGE holds visible edges that no cutter follows."""
+
+HEIGHT: Final = 2.5
+"""Height of the numbers, mm of paper."""
+
+GLYPH: Final = 0.9
+"""Width of a letter over the height of a capital, on the safe side."""
+
+GAP: Final = 0.8
+"""From a line to the text above it, mm of paper."""
+
+ARROW: Final = 3.0
+"""Length of an arrow head, mm of paper."""
+
+TAIL: Final = 5.0
+"""Length of the line behind an arrow that points inwards, mm of paper."""
+
+LEAST_GAP: Final = 1.0
+PAST: Final = 1.5
+"""From the part to an extension line, and how far that goes past the dimension line, mm of paper.
+"""
+
+ARROW_ROOM: Final = 2 * ARROW + GAP
+"""Dimension lines shorter than this, mm of paper, have their arrows outside."""
+
+
+def number(value: float) -> str:
+    """Return at most three decimals, no idle zeros."""
+    text = f"{value:.3f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def fine(value: float) -> str:
+    """Return a small length, such as a tolerance, to two digits and without exponent."""
+    digits = max(3, 1 - math.floor(math.log10(value)))
+    return f"{value:.{digits}f}".rstrip("0").rstrip(".")
+
+
+def text_width(text: str, height: float = HEIGHT) -> float:
+    """Return the room that a `text` of a `height`, mm of paper, takes, mm of paper."""
+    return GLYPH * height * len(text)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Text:
+    """A line of text.
+
+    Parameters
+    ----------
+    text : str
+        What it says.
+    place : (2,) array, mm of the part
+        Of its base line.
+    height : float, mm of paper
+        Of its capitals.
+    anchor : {"start", "middle", "end"}
+        Which point of the base line stands at `place`.
+    upright : bool
+        Whether it reads from below to above.
+    """
+
+    text: str
+    place: Array
+    height: float = HEIGHT
+    anchor: Literal["start", "middle", "end"] = "start"
+    upright: bool = False
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LinearDimension:
+    """A distance of two points along x or y.
+
+    Parameters
+    ----------
+    first, second : (2,) array, mm
+        The points.
+    line : (2,) array, mm
+        A point of the dimension line.
+    place : (2,) array, mm
+        Middle of the text.
+    vertical : bool
+        Whether it is measured along y.
+    prefix, suffix : str
+        Before and after the number.
+    """
+
+    first: Array
+    second: Array
+    line: Array
+    place: Array
+    vertical: bool = False
+    prefix: str = ""
+    suffix: str = ""
+
+    @property
+    def value(self) -> float:
+        """What it measures, mm."""
+        return abs(float((self.second - self.first)[int(self.vertical)]))
+
+    @property
+    def label(self) -> str:
+        """Its text."""
+        return f"{self.prefix}{number(self.value)}{self.suffix}"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RoundDimension:
+    """A diameter or a radius.
+
+    Parameters
+    ----------
+    center : (2,) array, mm
+        Middle of the circle.
+    radius : float, mm
+        Of the circle.
+    angle : float, rad
+        Direction from the middle to the arrow.
+    diameter : bool
+        Whether it tells the diameter.
+    knee : float or None, mm
+        Where the leader bends into the line under the text, from the middle; None for a diameter
+        inside its circle, with its text at the middle.
+    prefix, suffix : str
+        Before and after the number.
+    """
+
+    center: Array
+    radius: float
+    angle: float = 0.0
+    diameter: bool = True
+    knee: float | None = None
+    prefix: str = ""
+    suffix: str = ""
+
+    @property
+    def value(self) -> float:
+        """What it measures, mm."""
+        return 2.0 * self.radius if self.diameter else self.radius
+
+    @property
+    def sign(self) -> str:
+        """The sign before the number."""
+        return "Ø" if self.diameter else "R"
+
+    @property
+    def label(self) -> str:
+        """Its text."""
+        return f"{self.prefix}{self.sign}{number(self.value)}{self.suffix}"
+
+    def point(self, distance: float) -> Array:
+        """Return the point on the leader at a distance from the middle, (2,), mm."""
+        return self.center + distance * np.array([math.cos(self.angle), math.sin(self.angle)])
+
+    @property
+    def edge(self) -> Array:
+        """Where the arrow points."""
+        return self.point(self.radius)
+
+
+Dimension = LinearDimension | RoundDimension
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Strokes:
+    """A dimension as it is drawn: `lines` (2, 2) and arrow `heads` (3, 2), mm, and its `text`."""
+
+    lines: tuple[Array, ...]
+    heads: tuple[Array, ...]
+    text: Text
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Sheet:
+    """A workshop drawing.
+
+    Parameters
+    ----------
+    name : str
+        Stem of its file, such as ``gear1``.
+    title : str
+        What the title block says above all.
+    paper : str
+        Such as ``A3``, landscape.
+    size : (float, float), mm of paper
+        Width and height of the paper.
+    scale : float
+        Millimetres of paper over millimetres of the part.
+    corner : (2,) array, mm of the part
+        Lower left corner of the paper.
+    features : tuple of Feature
+        All lines but those of dimensions.
+    dimensions : tuple of LinearDimension or RoundDimension
+        What is measured.
+    texts : tuple of Text
+        All texts but those of dimensions.
+    rows : tuple of (str, str)
+        The parameter table: label and value.
+    notes : tuple of str
+        Beside the title block.
+    """
+
+    name: str
+    title: str
+    paper: str
+    size: tuple[float, float]
+    scale: float
+    corner: Array
+    features: tuple[Feature, ...]
+    dimensions: tuple[Dimension, ...]
+    texts: tuple[Text, ...]
+    rows: tuple[tuple[str, str], ...]
+    notes: tuple[str, ...]
+
+    @property
+    def unit(self) -> float:
+        """Millimetres of the part in a millimetre of paper."""
+        return 1.0 / self.scale
+
+    @property
+    def drawn(self) -> tuple[Strokes, ...]:
+        """The dimensions as strokes."""
+        return tuple(strokes(dimension, self.unit) for dimension in self.dimensions)
+
+    def on_paper(self, points: Array) -> Array:
+        """Return points, (n, 2), mm of the part, in mm of paper from its lower left corner."""
+        return (np.asarray(points, dtype=np.float64) - self.corner) * self.scale
+
+
+def text_box(text: Text, unit: float) -> Box:
+    """Return the room of a text.
+
+    Parameters
+    ----------
+    text : Text
+        A line.
+    unit : float
+        Millimetres of the part in a millimetre of paper.
+
+    Returns
+    -------
+    (2,) array, (2,) array, mm of the part
+        Its lower left and upper right corner, letters below the base line included.
+    """
+    wide, tall = text_width(text.text, text.height), text.height
+    start = {"start": 0.0, "middle": -0.5 * wide, "end": -wide}[text.anchor]
+    low, high = np.array([start, -0.25 * tall]), np.array([start + wide, tall])
+    if text.upright:
+        low, high = np.array([-tall, start]), np.array([0.25 * tall, start + wide])
+    return text.place + unit * low, text.place + unit * high
+
+
+def strokes(dimension: Dimension, unit: float) -> Strokes:
+    """Return a dimension as lines, arrow heads and text.
+
+    Parameters
+    ----------
+    dimension : LinearDimension or RoundDimension
+        What is measured.
+    unit : float
+        Millimetres of the part in a millimetre of paper.
+
+    Returns
+    -------
+    Strokes
+    """
+    if isinstance(dimension, LinearDimension):
+        return _linear(dimension, unit)
+    return _inside(dimension, unit) if dimension.knee is None else _leader(dimension, unit)
+
+
+def arrow_head(tip: Array, way: Array, unit: float) -> Array:
+    """Return an arrow head.
+
+    Parameters
+    ----------
+    tip : (2,) array, mm
+        Where it points to.
+    way : (2,) array
+        Unit vector of its direction.
+    unit : float
+        Millimetres of the part in a millimetre of paper.
+
+    Returns
+    -------
+    (3, 2) array, mm
+        Tip and back corners.
+    """
+    back = tip - ARROW * unit * way
+    side = ARROW * unit / 6.0 * np.array([-way[1], way[0]])
+    return np.array([tip, back + side, back - side])
+
+
+def _linear(dimension: LinearDimension, unit: float) -> Strokes:
+    along = int(dimension.vertical)
+    feet = [point.copy() for point in (dimension.first, dimension.second)]
+    lines = []
+    for foot, point in zip(feet, (dimension.first, dimension.second), strict=True):
+        foot[1 - along] = dimension.line[1 - along]
+        away = foot - point
+        length = float(np.hypot(*away))
+        if length > LEAST_GAP * unit:
+            away = away / length
+            lines.append(np.array([point + LEAST_GAP * unit * away, foot + PAST * unit * away]))
+    low, high = sorted(feet, key=lambda foot: float(foot[along]))
+    way = np.zeros(2)
+    way[along] = 1.0
+    inwards = dimension.value < ARROW_ROOM * unit
+    start, end = low, high
+    if inwards:
+        start, end = low - TAIL * unit * way, high + TAIL * unit * way
+    half = 0.5 * text_width(dimension.label) * unit
+    if float(dimension.place[along]) > float(high[along]):
+        end = end.copy()
+        end[along] = max(float(end[along]), float(dimension.place[along]) + half)
+    turn = -1.0 if inwards else 1.0
+    base = dimension.place.copy()
+    base[1 - along] += 0.5 * HEIGHT * unit * (1.0 if dimension.vertical else -1.0)
+    text = Text(text=dimension.label, place=base, anchor="middle", upright=dimension.vertical)
+    heads = (arrow_head(low, -turn * way, unit), arrow_head(high, turn * way, unit))
+    return Strokes(lines=(*lines, np.array([start, end])), heads=heads, text=text)
+
+
+def _leader(dimension: RoundDimension, unit: float) -> Strokes:
+    distance = dimension.knee or 0.0
+    knee, edge = dimension.point(distance), dimension.edge
+    wide = text_width(dimension.label) * unit
+    left = bool(knee[0] <= edge[0])
+    end = knee + np.array([-wide if left else wide, 0.0])
+    way = dimension.point(1.0) - dimension.center
+    way = -way if distance > dimension.radius else way
+    place = 0.5 * (knee + end) + np.array([0.0, GAP * unit])
+    return Strokes(
+        lines=(np.array([edge, knee]), np.array([knee, end])),
+        heads=(arrow_head(edge, way, unit),),
+        text=Text(text=dimension.label, place=place, anchor="middle"),
+    )
+
+
+def _inside(dimension: RoundDimension, unit: float) -> Strokes:
+    ends = [dimension.point(-dimension.radius), dimension.edge]
+    way = (ends[1] - ends[0]) / (2.0 * dimension.radius)
+    place = dimension.center + np.array([0.0, GAP * unit])
+    return Strokes(
+        lines=(np.array(ends),),
+        heads=(arrow_head(ends[0], -way, unit), arrow_head(ends[1], way, unit)),
+        text=Text(text=dimension.label, place=place, anchor="middle"),
+    )

@@ -1,0 +1,360 @@
+"""The sheet of a wheel: front view, side view, and the bore by itself where it is not round.
+
+The front view lies in the part's own frame, seen from +z; the side view is that from the left, on
+the right (first angle), with the front face on its right. A bore with a keyway or a flat is shown a
+second time, turned so that this is at the top. Holes of one size on one circle at equal angles are
+a *pattern*, with one diameter, the circle and the direction of the first; other holes have a letter
+and their places in the table.
+
+Depends on parts, drawings and sheets.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from gearcam.drawings import part_features, placed
+from gearcam.parts import Circle, Hub, Loop, Part
+from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
+from gearcam.sheets.extent import true_points
+from gearcam.sheets.paper import choose, finish, start
+from gearcam.sheets.sheet import (
+    CENTERLINE,
+    EDGE,
+    GAP,
+    HEIGHT,
+    HIDDEN,
+    Array,
+    Sheet,
+    Text,
+    fine,
+    number,
+    text_width,
+)
+
+LEFT: Final = 24.0
+BETWEEN: Final = 36.0
+RIGHT: Final = 24.0
+ABOVE: Final = 14.0
+BORE_ROOM: Final = 44.0
+"""Room for dimensions left of, between, right of and above the views, and for those of the bore's
+view, mm of paper."""
+
+SAME: Final = 1e-6
+"""Sizes that differ by less, mm, and angles, rad, are the same."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Bore:
+    """The bore: its radius, how far keyway or flat is from the axis, and in which direction."""
+
+    radius: float
+    floor: float = 0.0
+    half: float = 0.0
+    angle: float = 0.0
+    flat: bool = False
+    shape: Loop | None = None
+
+
+def _bore(part: Part) -> _Bore | None:
+    """Read the bore's sizes from its shape."""
+    shapes = [opening.shape for opening in part.openings if opening.kind == "BORE"]
+    if not shapes:
+        return None
+    shape = shapes[0]
+    if isinstance(shape, Circle):
+        return _Bore(radius=0.5 * shape.diameter)
+    corners = shape.vertices @ np.array([1.0, 1j])
+    floor = corners[[-1, -2]] if len(corners) == 5 else corners[[0, -1]]
+    middle = complex(floor.mean())
+    return _Bore(
+        radius=float(abs(corners[0])),
+        floor=abs(middle),
+        half=0.5 * float(abs(floor[1] - floor[0])),
+        angle=cmath.phase(middle),
+        flat=len(corners) != 5,
+        shape=shape,
+    )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Wheel:
+    """A part and what its sheet needs to know of it; its points are on the true curve."""
+
+    part: Part
+    points: Array
+    bore: _Bore | None
+
+    @property
+    def low(self) -> Array:
+        return self.points.min(axis=0)
+
+    @property
+    def high(self) -> Array:
+        return self.points.max(axis=0)
+
+    @property
+    def hub(self) -> Hub:
+        return self.part.hub or Hub(diameter=0.0)
+
+    @property
+    def turns(self) -> bool:
+        """Whether the axis lies within the outline: racks have none."""
+        corners = self.part.contours[-1].vertices @ np.array([1.0, 1j])
+        if not np.abs(corners).all():
+            return False
+        turn = float(np.angle(np.roll(corners, -1) / corners).sum())
+        return abs(turn) > math.pi
+
+    @property
+    def levels(self) -> int:
+        """Linear dimensions below the side view."""
+        return 1 + (self.hub.front > 0.0) + (self.hub.back > 0.0) + (self.part.hub is not None)
+
+
+def _sized(part: Part) -> _Wheel:
+    points = true_points(part.contours[-1:])
+    return _Wheel(part=part, points=points, bore=_bore(part))
+
+
+def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
+    """Draw the sheet of a wheel.
+
+    Parameters
+    ----------
+    part : Part
+        The wheel, as made; of a stepped one the front view shows the step in front.
+    facts : mapping of str to str
+        Rows of the parameter table, such as module and teeth; those of the holes follow.
+    title : str
+        First line of the title block.
+
+    Returns
+    -------
+    Sheet
+        Named as the part.
+
+    Raises
+    ------
+    ValueError
+        If the part is too large for the smallest scale.
+    """
+    wheel = _sized(part)
+    bore = wheel.bore
+    shown = 2.0 * bore.radius if bore is not None and bore.shape is not None else 0.0
+    wide, tall = (wheel.high - wheel.low).tolist()
+    size = wide + part.thickness + shown, tall
+    below = FIRST_LEVEL + LEVEL * wheel.levels
+    across = BETWEEN + RIGHT + (BORE_ROOM if shown else 0.0)
+    rows = len(facts) + len(part.openings) + 2
+    form = choose(size, (LEFT + across, below + ABOVE), rows)
+    room = np.array([LEFT, below]), np.array([across, ABOVE])
+    board, corner = start(form, size, room, wheel.low)
+    _front_view(board, wheel)
+    side = float(wheel.high[0]) + BETWEEN * board.unit
+    _side_view(board, wheel, side)
+    if shown and bore is not None:
+        right = side + part.thickness + (RIGHT + 0.5 * BORE_ROOM) * board.unit
+        _bore_view(board, bore, np.array([right + bore.radius, 0.0]))
+    _callouts(board, wheel)
+    about = " R, X, Y and angles from the axis." if wheel.turns else ""
+    notes = [
+        f"Chord tolerance of the outline: {fine(part.tolerance)} mm.",
+        "Outline: the DXF file of this wheel.",
+        f"Sizes as made.{about}",
+    ]
+    return finish(board, form, corner, name=part.name, title=title, facts=facts, notes=notes)
+
+
+def _front_view(board: Board, wheel: _Wheel) -> None:
+    part = wheel.part
+    for feature in part_features(part, len(part.contours) - 1):
+        board.draw(feature.layer, feature.shape)
+    if part.hub is not None:
+        circle = Circle(center=np.zeros(2), diameter=part.hub.diameter)
+        board.draw(EDGE if part.hub.front > 0.0 else HIDDEN, circle)
+    if wheel.turns:
+        (x, y), (u, v) = wheel.low.tolist(), wheel.high.tolist()
+        over = OVERHANG * board.unit
+        board.line(CENTERLINE, (x - over, 0.0), (u + over, 0.0))
+        board.line(CENTERLINE, (0.0, y - over), (0.0, v + over))
+    first = FIRST_LEVEL * board.unit
+    left, low = wheel.points[wheel.points.argmin(axis=0)]
+    right, high = wheel.points[wheel.points.argmax(axis=0)]
+    board.linear(left, right, float(low[1]) - first)
+    board.linear(low, high, float(left[0]) - first, vertical=True)
+
+
+def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
+    """Draw the view from the left, its back at x = `left`."""
+    part, hub, unit = wheel.part, wheel.hub, board.unit
+    back, end = left + hub.back, left + part.thickness
+    for contour, low, high in part.plates:
+        ys = true_points([contour])[:, 1]
+        _rectangle(board, (back + low, float(ys.min())), (back + high, float(ys.max())))
+    for low, high in part.bosses:
+        _rectangle(board, (back + low, -0.5 * hub.diameter), (back + high, 0.5 * hub.diameter))
+    if wheel.turns:
+        over = OVERHANG * unit
+        board.line(CENTERLINE, (left - over, 0.0), (end + over, 0.0))
+    if wheel.bore is not None:
+        for y in (-wheel.bore.radius, wheel.bore.radius):
+            board.line(HIDDEN, (left, y), (end, y))
+    base = float(wheel.low[1])
+    lengths = [(back, back + part.width)]
+    lengths += [(back + low, back + high) for low, high in part.bosses]
+    lengths += [(left, end)] if part.hub is not None else []
+    for level, (low, high) in enumerate(lengths):
+        y = [base if (x in (back, back + part.width)) else -0.5 * hub.diameter for x in (low, high)]
+        at = base - (FIRST_LEVEL + LEVEL * level) * unit
+        board.linear((low, y[0]), (high, y[1]), at)
+    level = 0
+    if wheel.bore is not None and wheel.bore.shape is None:
+        radius = wheel.bore.radius
+        at = end + FIRST_LEVEL * unit
+        board.linear((end, -radius), (end, radius), at, vertical=True, prefix="Ø")
+        level = 1
+    if part.hub is not None:
+        radius, front = 0.5 * hub.diameter, hub.front > 0.0
+        x = end if front else left
+        at = end + (FIRST_LEVEL + LEVEL * level) * unit if front else left - FIRST_LEVEL * unit
+        board.linear((x, -radius), (x, radius), at, vertical=True, prefix="Ø")
+
+
+def _rectangle(board: Board, low: tuple[float, float], high: tuple[float, float]) -> None:
+    corners = [low, (high[0], low[1]), high, (low[0], high[1])]
+    for start_, end in zip(corners, corners[1:] + corners[:1], strict=True):
+        board.line(EDGE, start_, end)
+
+
+def _bore_view(board: Board, bore: _Bore, place: Array) -> None:
+    """Draw the bore once more about a `place`, its keyway or flat at the top."""
+    if bore.shape is None:
+        return
+    unit, (x, y) = board.unit, place.tolist()
+    board.draw(EDGE, placed(bore.shape, 0.5 * math.pi - bore.angle, (x, y)))
+    board.centre(place, max(bore.radius, bore.floor))
+    first, top = FIRST_LEVEL * unit, y + bore.floor
+    below = y - bore.radius - first
+    board.linear((x - bore.radius, y), (x + bore.radius, y), below, prefix="Ø")
+    if not bore.flat:
+        high = max(top, y + bore.radius) + first
+        board.linear((x - bore.half, top), (x + bore.half, top), high)
+    at = x - bore.radius - first
+    board.linear((x, y - bore.radius), (x - bore.half, top), at, vertical=True)
+    words = f"bore, {'flat' if bore.flat else 'keyway'} turned up"
+    line = np.array([x, below - 5.0 * unit - HEIGHT * unit])
+    board.write(Text(text=words, place=line, anchor="middle"))
+    kind = "flat" if bore.flat else "keyway"
+    board.rows.append((f"{kind}, direction", f"{number(math.degrees(bore.angle))} deg"))
+
+
+def _callouts(board: Board, wheel: _Wheel) -> None:
+    """Draw what points into the front view: places that are fixed first."""
+    part = wheel.part
+    _holes(board, part)
+    if wheel.turns:
+        _radii(board, wheel)
+    for opening in part.openings:
+        if opening.kind == "SLOT" and isinstance(opening.shape, Loop):
+            _slot(board, opening.shape)
+    for mark in part.marks:
+        words = f", {number(mark.depth)} deep"
+        if not board.round(mark.center, 0.5 * mark.diameter, prefix="mark ", suffix=words):
+            board.rows.append(("mark", f"Ø{number(mark.diameter)}{words}"))
+
+
+def _radii(board: Board, wheel: _Wheel) -> None:
+    """Tell the farthest and the nearest point of the outline from the axis."""
+    reach = np.hypot(*wheel.points.T)
+    for place, words in ((int(reach.argmax()), "max"), (int(reach.argmin()), "min")):
+        x, y = wheel.points[place].tolist()
+        radius, ways = float(reach[place]), np.array([math.atan2(y, x)])
+        end = f" {words}"
+        if board.round(np.zeros(2), radius, angles=ways, diameter=False, suffix=end):
+            continue
+        # a leader need not point to the axis
+        if not board.label(np.array([x, y]), f"R{number(radius)}{end}"):
+            board.rows.append((f"{words}. radius from axis", number(radius)))
+
+
+def _holes(board: Board, part: Part) -> None:
+    """Draw the centre lines of all holes, then tell their sizes, large ones first."""
+    groups: dict[tuple[int, int], list[Circle]] = {}
+    for opening in part.openings:
+        if opening.kind == "HOLE" and isinstance(opening.shape, Circle):
+            circle, away = opening.shape, float(np.hypot(*opening.shape.center))
+            key = round(circle.diameter / SAME), round(away / SAME)
+            groups.setdefault(key, []).append(circle)
+    patterns = [group for group in groups.values() if _even(group)]
+    singles = [one for group in groups.values() if not _even(group) for one in group]
+    for group in patterns:
+        _ring(board, group)
+    named = [(circle, f"H{k}") for k, circle in enumerate(singles, start=1)]
+    for circle, letter in named:
+        size = f"{letter} Ø{number(circle.diameter)}"
+        inside = circle.diameter * board.scale > text_width(size) + TIGHT
+        gap = (-CLEAR - GAP, HEIGHT + GAP + 2.0 * CLEAR) if inside else None
+        board.centre(circle.center, 0.5 * circle.diameter, gap)
+    for circle, letter in sorted(named, key=lambda one: -one[0].diameter):
+        board.round(circle.center, 0.5 * circle.diameter, prefix=f"{letter} ")
+    for group in patterns:
+        _pattern(board, group)
+    for circle, letter in named:
+        x, y = (number(value) for value in circle.center.tolist())
+        board.rows.append((f"{letter} Ø{number(circle.diameter)}", f"X {x}  Y {y}"))
+
+
+def _even(circles: list[Circle]) -> bool:
+    """Whether holes on one circle stand at equal angles."""
+    if len(circles) < 2:
+        return False
+    angles = np.sort([math.atan2(*circle.center[::-1]) for circle in circles])
+    steps = np.diff(np.append(angles, angles[0] + 2.0 * math.pi))
+    return bool((np.abs(steps - 2.0 * math.pi / len(circles)) < SAME).all())
+
+
+def _ring(board: Board, circles: list[Circle]) -> None:
+    """Draw the centre lines of a pattern: its circle, and a spoke through each hole."""
+    away = float(np.hypot(*circles[0].center))
+    board.draw(CENTERLINE, Circle(center=np.zeros(2), diameter=2.0 * away))
+    arm = 0.5 * circles[0].diameter + 0.5 * OVERHANG * board.unit
+    for circle in circles:
+        spoke = arm / away * circle.center
+        (a, b), (c, d) = (circle.center - spoke).tolist(), (circle.center + spoke).tolist()
+        board.line(CENTERLINE, (a, b), (c, d))
+
+
+def _pattern(board: Board, circles: list[Circle]) -> None:
+    one, count = circles[0], len(circles)
+    away = float(np.hypot(*one.center))
+    first = math.atan2(*one.center[::-1])
+    board.round(one.center, 0.5 * one.diameter, angles=AROUND, prefix=f"{count} x ")
+    # the arrow points at the circle between two holes
+    ring = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
+    board.round(np.zeros(2), away, angles=ring)
+    words = f"on Ø{number(2.0 * away)}, at {number(math.degrees(first))} deg"
+    board.rows.append((f"{count} x Ø{number(one.diameter)}", words))
+
+
+def _slot(board: Board, shape: Loop) -> None:
+    """Tell the width of a slot along an arc about the axis, and where its middle line ends."""
+    corners = shape.vertices @ np.array([1.0, 1j])
+    half = len(corners) // 2
+    radii = np.abs(corners[[0, half]])
+    middle, width = float(radii.mean()), float(radii[0] - radii[1])
+    sweep = float(np.angle(corners[1:half] / corners[: half - 1]).sum())
+    first = math.degrees(cmath.phase(complex(corners[0])))
+    end = corners[[half - 1, half]].mean()
+    place = np.array([end.real, end.imag])
+    if not board.round(place, 0.5 * width, diameter=False, prefix="slot "):
+        board.rows.append(("slot, width", number(width)))
+    board.rows.append(("slot, mid radius", number(middle)))
+    last = first + math.degrees(sweep)
+    board.rows.append(("slot, ends at", f"{number(first)}, {number(last)} deg"))

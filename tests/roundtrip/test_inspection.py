@@ -1,0 +1,114 @@
+"""Inspection points lie on the flanks as made, with the outward normals of the metal."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearcam.design import OutputSpec
+from gearcam.jobs import GearPairJob
+from gearcam.jobs.files import export
+from gearcam.parts import Blank
+from helpers_pairs import profile
+
+
+def job(name: str, count: int = 7, **blank: Any) -> GearPairJob:
+    design = replace(
+        profile(name).design,
+        blank=Blank(**blank),
+        output=OutputSpec(files=("inspection",), inspection_points=count),
+    )
+    return GearPairJob(design)
+
+
+def read(made: GearPairJob) -> dict[str, np.ndarray]:
+    """The file, by the standard library's reader."""
+    text = export(made, "inspection", {})["inspection.csv"].decode("ascii")
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def distances(made: GearPairJob, rows: dict[str, np.ndarray], wheel: int) -> np.ndarray:
+    """Of a wheel's points from the outline of its part."""
+    from shapely import LinearRing, points
+
+    ring = LinearRing(made.parts[wheel - 1].contour.vertices)
+    here = rows["wheel"] == wheel
+    return np.asarray(ring.distance(points(rows["x_mm"][here], rows["y_mm"][here])))
+
+
+@pytest.mark.parametrize(
+    ("name", "blank"),
+    [
+        ("nail_machine_two_phase", {}),
+        ("nail_machine_two_phase", {"offset": (0.15, -0.1), "tip_rounding": (0.4, 0.0)}),
+        ("furnace_door", {}),
+        ("ellipse", {"offset": -0.05}),
+    ],
+)
+def test_points_lie_on_the_part(name: str, blank: dict[str, Any]) -> None:
+    made = job(name, **blank)
+    rows = read(made)
+    for gear in made.gears:
+        away = distances(made, rows, gear.wheel)
+        assert len(away) == 7 * 2 * len(
+            range(*gear.toothing.whole.indices(len(gear.toothing.numbers)))
+        )
+        assert np.max(away) < 2 * gear.profile.chord_error
+
+
+def test_points_of_another_offset_do_not() -> None:
+    made, other = job("ellipse"), job("ellipse", offset=0.004)
+    assert distances(other, read(made), 1).min() > 0.003
+
+
+def test_normals_point_out_of_the_metal_and_stand_on_the_flanks() -> None:
+    from shapely import Polygon, contains_xy
+
+    made = job("nail_machine_two_phase", 65)
+    rows = read(made)
+    assert np.hypot(rows["nx"], rows["ny"]) == pytest.approx(1.0, abs=1e-14)
+    for wheel, gear in enumerate(made.gears, start=1):
+        here = rows["wheel"] == wheel
+        x, y, nx, ny = (rows[key][here] for key in ("x_mm", "y_mm", "nx", "ny"))
+        metal = Polygon(gear.outline)
+        inner = (rows["point"][here] > 1) & (rows["point"][here] < 65)
+        assert contains_xy(metal, x - 0.01 * nx, y - 0.01 * ny)[inner].all()
+        assert not contains_xy(metal, x + 0.01 * nx, y + 0.01 * ny)[inner].any()
+        # along a flank the chord between neighbours stands on the mean of their normals
+        step = np.stack([np.diff(x), np.diff(y)]).T.reshape(-1, 2)
+        mean = np.stack([nx[1:] + nx[:-1], ny[1:] + ny[:-1]]).T
+        same = np.diff(rows["point"][here]) == 1
+        lean = np.abs((step * mean).sum(axis=1)[same]) / np.hypot(*step[same].T)
+        assert lean.max() < 4e-3
+        # from root to tip
+        radius = np.hypot(x, y)
+        assert (np.diff(radius)[same] > 0).mean() > 0.95
+
+
+def test_sides_and_teeth_are_told_apart() -> None:
+    made = job("ellipse")
+    rows = read(made)
+    first = (rows["wheel"] == 1) & (rows["tooth"] == 1)
+    # tooth 1 of wheel 1 is centred on the x axis, its + side is at rising angle
+    assert (rows["y_mm"][first & (rows["side"] == 1)] > 0).all()
+    assert (rows["y_mm"][first & (rows["side"] == -1)] < 0).all()
+    assert set(rows["tooth"]) == set(range(1, 42))
+    assert set(rows["step"]) == {1}
+
+
+def test_rounded_tips_have_no_points() -> None:
+    plain, round_ = job("ellipse"), job("ellipse", tip_rounding=0.2)
+    reach = [np.hypot(r["x_mm"], r["y_mm"]).max() for r in (read(plain), read(round_))]
+    assert 0.1 < reach[0] - reach[1] < 0.2
+
+
+def test_the_command_writes_the_file(tmp_path: Path) -> None:
+    written = job("ellipse").write(tmp_path)
+    assert written.files == ("inspection.csv", "summary.json")

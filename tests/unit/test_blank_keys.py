@@ -1,0 +1,124 @@
+"""The table [blank]: one value for both wheels or two, and what contradicts itself is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from gearcam.design import loads
+from gearcam.errors import DesignError, Problem
+
+GOOD = """\
+kind = "gear-pair"
+name = "good"
+[law]
+type = "constant"
+[pair]
+module_mm = 2
+teeth = [40, 40]
+[output]
+files = ["csv"]
+[blank]
+"""
+
+
+def problems(blank: str) -> list[Problem]:
+    with pytest.raises(DesignError) as caught:
+        loads(GOOD + blank)
+    return list(caught.value.problems)
+
+
+def test_one_value_holds_for_both_wheels() -> None:
+    keyway = "keyway_angle_deg = 90\nkeyway_depth_mm = 2\nkeyway_width_mm = 5\n"
+    bolts = "bolts = 3\nbolt_circle_mm = 40\nbolt_diameter_mm = 5\n"
+    one = loads(GOOD + "bore_diameter_mm = 20\n" + keyway + bolts).blank
+    assert one.bore_diameter == (20.0, 20.0)
+    assert one.keyway_angle == pytest.approx((math.pi / 2, math.pi / 2))
+    assert one.bolts == (3, 3)
+    two = loads(GOOD + "bore_diameter_mm = [20, 0]\ndensity_kg_m3 = [7850, 1200]").blank
+    assert two.wheel(1).bore == 20.0
+    assert two.wheel(2).bore == 0.0
+    assert two.wheel(2).density == 1200.0
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "words"),
+    [
+        ('bore_diameter_mm = "20"', "blank.bore_diameter_mm", "not a number"),
+        ("bore_diameter_mm = -1", "blank.bore_diameter_mm", "out of range"),
+        ("bore_diameter_mm = [20, -1]", "blank.bore_diameter_mm[1]", "out of range"),
+        ("bore_diameter_mm = [20]", "blank.bore_diameter_mm", "has 1 value"),
+        ("bore_diameter_mm = [1, 2, 3]", "blank.bore_diameter_mm", "has 3 values"),
+        ("bore_diameter_mm = []", "blank.bore_diameter_mm", "empty"),
+        ("bolts = 2.5", "blank.bolts", "not a whole number"),
+        ("bores_mm = 2", "blank.bores_mm", "unknown key"),
+        ("timing_marks = 1", "blank.timing_marks", "not true or false"),
+    ],
+)
+def test_wrong_values_are_named(text: str, key: str, words: str) -> None:
+    (problem,) = problems(text)
+    assert problem.key == key
+    assert words in problem.message
+    assert problem.allowed
+    assert problem.line == 11
+
+
+KEYED = "bore_diameter_mm = 20\nkeyway_width_mm = {}\nkeyway_depth_mm = {}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "words"),
+    [
+        ("keyway_width_mm = 5\nkeyway_depth_mm = 2", "blank.keyway_width_mm", "no bore"),
+        ("bore_diameter_mm = 20\nkeyway_width_mm = 5", "blank.keyway_depth_mm", "width and depth"),
+        (KEYED.format(20, 2), "blank.keyway_width_mm", "as wide as the bore"),
+        (KEYED.format(5, 2) + "bore_flat_mm = 18", "blank.bore_flat_mm", "keyway already"),
+        ("bore_diameter_mm = 20\nbore_flat_mm = 10", "blank.bore_flat_mm", "no flat"),
+        ("bore_diameter_mm = 20\nbore_flat_mm = 20", "blank.bore_flat_mm", "no flat"),
+        ("bolts = 4\nbolt_diameter_mm = 5", "blank.bolt_circle_mm", "missing beside bolts"),
+        ("bolts = 4\nbolt_circle_mm = 40", "blank.bolt_diameter_mm", "missing beside bolts"),
+        ("hub_front_mm = 5", "blank.hub_diameter_mm", "missing beside"),
+        ("hub_diameter_mm = 30", "blank.hub_front_mm", "no length"),
+        (
+            "bore_diameter_mm = 20\nhub_diameter_mm = 20\nhub_back_mm = 5",
+            "blank.hub_diameter_mm",
+            "leaves no hub",
+        ),
+    ],
+)
+def test_contradictions_are_refused_by_reading(text: str, key: str, words: str) -> None:
+    (problem,) = problems(text)
+    assert problem.key == key
+    assert words in problem.message
+    assert problem.allowed
+
+
+def test_two_values_are_judged_one_by_one() -> None:
+    (problem,) = problems("bore_diameter_mm = [20, 10]\nbore_flat_mm = [18, 18]\n")
+    assert problem.key == "blank.bore_flat_mm[1]"
+    assert problem.value == 18
+    assert "above 5 and below the bore's 10 mm" in problem.allowed
+
+
+@pytest.mark.parametrize(
+    ("change", "good"),
+    [
+        ({"bore_diameter": (20.0, 20.0), "bore_flat": (18.0, 0.0)}, True),
+        ({"bore_diameter": 20.0}, True),
+        ({"bore_diameter": (20.0, 20.0), "bore_flat": (21.0, 0.0)}, False),
+    ],
+)
+def test_a_blank_made_in_python_meets_the_same_rules(change: dict[str, Any], good: bool) -> None:
+    from dataclasses import replace
+
+    from gearcam.parts import Blank
+
+    design = loads(GOOD)
+    if good:
+        made = replace(design, blank=Blank(**change))
+        assert made.blank.wheel(2).bore == 20.0
+    else:
+        with pytest.raises(DesignError, match="no flat"):
+            replace(design, blank=Blank(**change))

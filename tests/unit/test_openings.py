@@ -1,0 +1,372 @@
+"""Openings have the sizes that are asked for, keep what they must keep, and are refused else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from gearcam.errors import InfeasibleError
+from gearcam.numeric.contour import Contour
+from gearcam.parts import Mark, Opening, Part, Place, WheelBlank, make_part, timing_mark
+from gearcam.parts.openings import bore, openings
+from gearcam.parts.shapes import Circle, Loop
+from helpers_contour import disc_contour, gear_contour
+from helpers_pairs import profile
+
+FINE = 1e-6
+"""Chords of openings in these tests, mm."""
+
+PLACE = Place(wheel=1, module=2.0)
+
+
+def blank(**sizes: Any) -> WheelBlank:
+    return WheelBlank(**{"timing_marks": False, **sizes})
+
+
+def made(contour: Contour, sizes: WheelBlank, place: Place = PLACE, **rest: Any) -> Part:
+    return make_part("g", [contour], 10.0, sizes, place, **rest)
+
+
+def region(opening: Opening | Circle | Loop, sagitta: float = FINE) -> shapely.Polygon:
+    shape = opening.shape if isinstance(opening, Opening) else opening
+    return shapely.Polygon(shape.points(sagitta))
+
+
+def turned(shape: Circle | Loop, angle: float) -> shapely.Polygon:
+    return shapely.affinity.rotate(region(shape), -angle, origin=(0, 0), use_radians=True)
+
+
+def across(polygon: shapely.Polygon, x: float) -> tuple[float, float]:
+    """Where a line parallel to y enters and leaves a polygon."""
+    cut = shapely.LineString([(x, -1e3), (x, 1e3)]).intersection(polygon)
+    return cut.bounds[1], cut.bounds[3]
+
+
+KEYED = blank(bore_diameter=20.0, keyway_width=6.0, keyway_depth=2.8)
+FLAT = blank(bore_diameter=20.0, bore_flat=17.5)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, -2.0, math.pi])
+def test_a_keyway_is_measured_across_and_from_the_bore(angle: float) -> None:
+    shape = bore(replace(KEYED, keyway_angle=angle))
+    assert isinstance(shape, Loop)
+    polygon = turned(shape, angle)
+    assert across(polygon, 11.5) == pytest.approx((-3.0, 3.0), abs=1e-9)
+    assert polygon.bounds == pytest.approx((-10.0, -10.0, 12.8, 10.0), abs=2 * FINE)
+    assert np.abs(shape.bulges).max() <= 1.0, "an arc beyond a half circle"
+    strip = 2 * 3 * 12.8 - (3 * math.sqrt(91) + 100 * math.asin(0.3))
+    assert shape.moments.area == pytest.approx(100 * math.pi + strip, rel=1e-12)
+    assert np.hypot(*shape.vertices.T).max() == pytest.approx(KEYED.bore_reach, rel=1e-14)
+    assert KEYED.bore_reach == pytest.approx(math.hypot(12.8, 3.0), rel=1e-14)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, -2.0])
+def test_a_flat_is_measured_from_the_far_side(angle: float) -> None:
+    shape = bore(replace(FLAT, keyway_angle=angle))
+    polygon = turned(shape, angle)
+    assert polygon.bounds == pytest.approx((-10.0, -10.0, 7.5, 10.0), abs=2 * FINE)
+    half = math.acos(7.5 / 10)
+    segment = 100 * (half - math.sin(half) * math.cos(half))
+    assert shape.moments.area == pytest.approx(100 * math.pi - segment, rel=1e-12)
+
+
+def test_bolts_stand_on_their_circle() -> None:
+    sizes = blank(bolts=5, bolt_circle=60.0, bolt_diameter=6.6, bolt_angle=0.3)
+    found = made(disc_contour(50.0), sizes).openings
+    assert [opening.name for opening in found] == [f"bolt hole {k}" for k in range(1, 6)]
+    for k, opening in enumerate(found):
+        assert isinstance(opening.shape, Circle)
+        wanted = 30 * np.exp(1j * (0.3 + 2 * math.pi * k / 5))
+        assert opening.shape.center == pytest.approx([wanted.real, wanted.imag], abs=1e-13)
+        assert opening.shape.diameter == 6.6
+
+
+def test_what_is_not_wanted_is_not_there() -> None:
+    part = made(disc_contour(50.0), blank())
+    assert (part.openings, part.hub, part.marks) == ((), None, ())
+
+
+@cache
+def toothed() -> Contour:
+    return gear_contour(16, 5.0)
+
+
+@cache
+def roots_away() -> tuple[np.ndarray, np.ndarray]:
+    """Points of a grid, and how far each is within the outline, mm; negative outside."""
+    axis = np.linspace(-36.0, 36.0, 241)
+    grid = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    polygon = toothed().polygon
+    away = shapely.distance(polygon.boundary, shapely.points(grid))
+    return grid, np.where(shapely.contains_xy(polygon, *grid.T), away, -away)
+
+
+LIGHT = {"bore_diameter": 12.0, "hub_diameter": 18.0, "hub_front": 2.0, "rim": 5.0, "web": 3.0}
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+@pytest.mark.parametrize("bolts", [0, 3])
+def test_lightening_holes_keep_rim_and_web_and_are_the_largest(count: int, bolts: int) -> None:
+    """Against circles about all points of a grid: none that keeps the rules is 2 % larger."""
+    if bolts and count > 3:
+        return
+    sizes = blank(**LIGHT, lightening_holes=count)
+    if bolts:
+        sizes = replace(sizes, bolts=bolts, bolt_circle=40.0, bolt_diameter=3.0, bolt_angle=0.2)
+    every = made(toothed(), sizes).openings
+    found, others = ([o for o in every if o.name.startswith(n)] for n in ("light", "bolt"))
+    holes = [o.shape for o in found if isinstance(o.shape, Circle)]
+    assert len(holes) == count
+    ring = toothed().polygon.boundary
+    grid, room = roots_away()
+    room = room - 5.0
+    room = np.minimum(room, np.hypot(*grid.T) - 9.0 - 3.0)
+    for other in others:
+        assert isinstance(other.shape, Circle)
+        room = np.minimum(room, np.hypot(*(grid - other.shape.center).T) - 1.5 - 3.0)
+    for number, hole in enumerate(holes):
+        radius, place = hole.diameter / 2, complex(*hole.center)
+        turn = place * np.exp(-2j * math.pi * (number + 0.5) / count)
+        walls = [ring.distance(shapely.Point(hole.center)) - radius - 5.0]
+        walls.append(abs(place) - radius - 9.0 - 3.0)
+        walls += [
+            np.hypot(*(hole.center - o.shape.center)) - radius - 4.5  # pyright: ignore[reportAttributeAccessIssue]
+            for o in others
+        ]
+        beside = np.full(len(grid), np.inf)
+        if count > 1:
+            spokes = grid @ [1, 1j] * np.exp(-2j * math.pi * (number + 0.5) / count)
+            half = math.pi / count
+            beside = spokes.real * math.sin(half) - np.abs(spokes.imag) * math.cos(half) - 1.5
+            away = turn.real * math.sin(half) - abs(turn.imag) * math.cos(half)
+            walls.append(away - radius - 1.5)
+        assert min(walls) > -1e-3, "a rule is broken"
+        assert min(walls) < 0.01 * 5.0, "it touches nothing"
+        assert radius > np.minimum(room, beside).max() / 1.02
+    for one, other in zip(holes, holes[1:] + holes[:1], strict=True):
+        if one is not other:
+            away = float(np.hypot(*(one.center - other.center)))
+            assert away - (one.diameter + other.diameter) / 2 >= 3.0 - 1e-3
+
+
+@pytest.mark.parametrize("angle", [60.0, 120.0])
+def test_of_a_sector_in_two_pieces_the_larger_is_taken(angle: float) -> None:
+    """A bolt hole of 30 mm closes the ring between bore and rim of one sector."""
+    sizes = blank(
+        bore_diameter=20.0, bolts=1, bolt_circle=56.0, bolt_diameter=30.0,
+        bolt_angle=math.radians(angle), lightening_holes=2, rim=5.0, web=3.0,
+    )  # fmt: skip
+    hole = made(disc_contour(50.0), sizes).openings[2]
+    assert isinstance(hole.shape, Circle)
+    place = math.degrees(np.angle(complex(*hole.shape.center)))
+    assert (place > 60.0) if angle == 60.0 else (place < 120.0)
+    # the ring's whole width, rim and web taken off
+    assert hole.shape.diameter == pytest.approx(45.0 - 13.0, abs=0.02)
+
+
+@pytest.mark.parametrize("core", [10.0, 40.0])
+def test_a_thin_rim_leaves_the_web_whole(core: float) -> None:
+    """A web is kept as exactly as the rim, also where the bore is large."""
+    sizes = blank(bore_diameter=2 * core, lightening_holes=4, rim=0.2, web=2.0)
+    for opening in made(disc_contour(60.0), sizes).openings[1:]:
+        assert isinstance(opening.shape, Circle)
+        away = float(np.hypot(*opening.shape.center)) - opening.shape.diameter / 2 - core
+        assert away >= 2.0 - 1e-4
+
+
+def test_rim_and_web_have_their_defaults() -> None:
+    """2.7 modules, and the web as the rim; a bore of 20 in a disc of 100: touching both."""
+    (hole,) = made(disc_contour(50.0), blank(lightening_holes=1, bore_diameter=20.0)).openings[1:]
+    assert isinstance(hole.shape, Circle)
+    assert hole.shape.diameter == pytest.approx(40 - 4 * 2.7, abs=0.02)
+    (hole,) = made(
+        disc_contour(50.0), blank(lightening_holes=1, bore_diameter=20.0, rim=3.0)
+    ).openings[1:]
+    assert hole.shape.moments.area == pytest.approx(math.pi * 17**2, abs=1.0)
+
+
+@pytest.mark.parametrize("wheel", [1, 2])
+@pytest.mark.parametrize("travel", [0.4, 2.0, 5.0])
+def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> None:
+    """The housing's pin stands on the line of centres: wheel 1 turns by -phi1, wheel 2 by +phi2.
+
+    Turned back into the wheel's frame it is at +phi1, or at pi - phi2.
+    """
+    pin = 5.0
+    place = Place(wheel=wheel, module=2.0, travel=travel)
+    part = made(disc_contour(50.0), blank(bore_diameter=20.0, stop_pin=pin), place)
+    slot = next(o for o in part.openings if o.kind == "SLOT")
+    assert isinstance(slot.shape, Loop)
+    assert np.abs(slot.shape.bulges).max() <= 1.0, "an arc beyond a half circle"
+    # midway between bore and roots
+    radius = 30.0
+    wanted = travel * radius * pin + math.pi * pin**2 / 4
+    assert slot.shape.moments.area == pytest.approx(wanted, abs=travel * pin * 1e-3)
+    grown = region(slot, 1e-5).buffer(1e-3, quad_segs=8)
+    # in the world: the pin at the side where the mate is
+    world = radius if wheel == 1 else -radius
+
+    def seat(phi: float) -> shapely.Polygon:
+        turn = np.exp(-1j * phi) if wheel == 1 else np.exp(1j * phi)
+        spot = world / turn
+        return shapely.Point(spot.real, spot.imag).buffer(pin / 2, quad_segs=64)
+
+    for phi in np.linspace(0.0, travel, 33):
+        assert grown.contains(seat(float(phi)))
+    beyond = math.radians(0.1)
+    for phi in (-beyond, travel + beyond):
+        assert not grown.contains(seat(phi))
+
+
+@pytest.mark.parametrize("wheel", [1, 2])
+def test_the_slot_of_an_open_pair_takes_its_own_travel(wheel: int) -> None:
+    job = profile("log_spiral")
+    lobes = job.law.lobes
+    assert not lobes.closed
+    travel = lobes.period if wheel == 1 else float(job.law.phi2(lobes.period))
+    contour = (job.gear1, job.gear2)[wheel - 1].profile.contour
+    place = Place(wheel=wheel, module=2.0, travel=travel)
+    (slot,) = openings(blank(stop_pin=2.0), [contour], place)
+    angles = np.angle(slot.shape.points(1e-4) @ [1, 1j] * (1 if wheel == 1 else -1))
+    middle = travel / 2 if wheel == 1 else math.pi - travel / 2
+    assert contour.polygon.contains(region(slot, 1e-4))
+    inside = np.abs(np.angle(np.exp(1j * (angles * (1 if wheel == 1 else -1) - middle))))
+    assert inside.max() > travel / 2
+
+
+SLOTTED = Place(wheel=1, module=2.0, travel=1.5)
+
+REFUSED: list[tuple[str, dict[str, Any], str, float, float, str]] = [
+    ("bolt and outline", {"bolts": 3, "bolt_circle": 80.0}, "bolt_diameter", 19.9, 20.1,
+     "bolt hole 1 meets the outline"),
+    ("bore and outline", {}, "bore_diameter", 99.9, 100.1, "bore meets the outline"),
+    ("bolts", {"bolts": 6, "bolt_circle": 40.0}, "bolt_diameter", 19.95, 20.05,
+     "bolt hole 2 meets the bolt hole 1"),
+    ("bolt and bore", {"bore_diameter": 20.0, "bolts": 1, "bolt_diameter": 10.0}, "bolt_circle",
+     30.1, 29.9, "bolt hole 1 meets the bore"),
+    ("bolt within the hub", {"hub_diameter": 40.0, "hub_front": 5.0, "bolts": 3,
+     "bolt_diameter": 6.0}, "bolt_circle", 33.9, 34.1, "meets the edge of the hub"),
+    ("bolt beside the hub", {"hub_diameter": 40.0, "hub_front": 5.0, "bolts": 3,
+     "bolt_diameter": 6.0}, "bolt_circle", 46.1, 45.9, "meets the edge of the hub"),
+    ("hub", {"bore_diameter": 10.0, "hub_front": 5.0}, "hub_diameter", 99.9, 100.1,
+     "hub reaches the roots"),
+    ("pin", {"bore_diameter": 20.0}, "stop_pin", 39.9, 40.1, "no room for the slot"),
+    ("pin and hub", {"hub_diameter": 40.0, "hub_front": 5.0}, "stop_pin", 29.9, 30.1,
+     "no room for the slot"),
+    ("lightening", {"bore_diameter": 20.0, "lightening_holes": 4, "web": 20.0}, "rim", 19.8, 20.1,
+     "lightening hole 1 has no room"),
+    ("offset and bolt", {"bolts": 3, "bolt_circle": 60.0, "bolt_diameter": 4.0}, "offset", 1.99,
+     2.0, "closes the bolt hole 1"),
+    ("offset and keyway", {"bore_diameter": 20.0, "keyway_width": 6.0, "keyway_depth": 2.8},
+     "offset", 2.99, 3.0, "closes the bore"),
+    ("offset and slot", {"stop_pin": 5.0}, "offset", 2.49, 2.5, "closes the stop slot"),
+    ("grown bolts", {"bolts": 6, "bolt_circle": 40.0, "bolt_diameter": 19.0}, "offset", -0.49,
+     -0.51, "meets"),
+    ("grown bolts and outline", {"bolts": 3, "bolt_circle": 80.0, "bolt_diameter": 19.0},
+     "offset", -0.24, -0.26, "meets the outline"),
+    ("grown keyway and hub", {"bore_diameter": 20.0, "keyway_width": 6.0, "keyway_depth": 2.8,
+     "hub_diameter": 27.0, "hub_front": 5.0}, "offset", -0.1, -0.3, "hub"),
+    ("shrunk outline and hub", {"hub_diameter": 99.0, "hub_front": 5.0}, "offset", -0.4, -0.6,
+     "hub"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("sizes", "name", "fits", "fails", "message"),
+    [case[1:] for case in REFUSED],
+    ids=[case[0] for case in REFUSED],
+)
+def test_what_has_no_room_is_refused_and_what_has_is_made(
+    sizes: dict[str, Any], name: str, fits: float, fails: float, message: str
+) -> None:
+    """Limits on a disc of 100 mm, each from the drawing."""
+    contour = disc_contour(50.0)
+    part = made(contour, blank(**sizes, **{name: fits}), SLOTTED)
+    assert part.region.is_valid
+    assert part.area == pytest.approx(part.region.area, rel=1e-3)
+    with pytest.raises(InfeasibleError, match=message) as caught:
+        made(contour, blank(**sizes, **{name: fails}), SLOTTED)
+    error = caught.value
+    if error.limit is not None and error.value == fails:
+        assert min(fits, fails) - 1e-2 <= error.limit <= max(fits, fails) + 1e-2
+
+
+def test_a_closed_wheel_has_no_stop() -> None:
+    with pytest.raises(InfeasibleError, match="turns for ever"):
+        made(disc_contour(50.0), blank(stop_pin=3.0))
+
+
+@pytest.mark.parametrize("wall", [1e-3, 0.1])
+def test_a_bore_goes_through_its_hub_however_thin(wall: float) -> None:
+    reach = 2 * KEYED.bore_reach
+    part = made(disc_contour(50.0), replace(KEYED, hub_diameter=reach + wall, hub_front=5.0))
+    assert [opening.name for opening in part.in_hub] == ["bore"]
+
+
+def test_a_mark_must_lie_on_metal() -> None:
+    """Beside a bolt hole, the hub and the outline, each with the size that still fits."""
+    sizes = WheelBlank(
+        hub_diameter=40.0, hub_front=5.0, bolts=1, bolt_circle=70.0, bolt_diameter=6.0
+    )
+    for x, y, room in (
+        (24.0, 0.0, 2 * (24 - 20)), (48.0, 0.0, 2 * (50 - 48)), (35.0, 5.0, 2 * (5 - 3)),
+    ):  # fmt: skip
+        center = np.array([x, y])
+        for diameter, good in ((0.99 * room, True), (1.01 * room, False)):
+            mark = Mark(center=center, diameter=diameter, depth=0.5)
+            if good:
+                assert made(disc_contour(50.0), sizes, marker=lambda m=mark: m).marks == (mark,)
+                continue
+            with pytest.raises(InfeasibleError, match="timing mark meets") as caught:
+                made(disc_contour(50.0), sizes, marker=lambda m=mark: m)
+            assert caught.value.limit == pytest.approx(room, abs=5e-3)
+    for bad in ((0.0, 0.0), (60.0, 0.0), (35.0, 0.0)):
+        mark = Mark(center=np.array(bad), diameter=0.1, depth=0.5)
+        with pytest.raises(InfeasibleError, match="timing mark meets"):
+            made(disc_contour(50.0), sizes, marker=lambda m=mark: m)
+
+
+def test_a_mark_that_is_asked_for_takes_a_third_of_the_rim() -> None:
+    """Pitch radius 100, root 6.25 below, bore reach 81.75: a rim of 12."""
+    given = {"module": 5.0, "dedendum_mm": 6.25, "width": 10.0, "bore_reach": 81.75}
+    assert timing_mark(100.0, 0.0, diameter=3.999, **given).diameter == 3.999
+    with pytest.raises(InfeasibleError, match="so large a timing mark") as caught:
+        timing_mark(100.0, 0.0, diameter=4.001, **given)
+    assert caught.value.limit == pytest.approx(4.0)
+    assert timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_reach=93.74).diameter > 0
+    with pytest.raises(InfeasibleError, match="no room for a timing mark"):
+        timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_reach=93.76)
+
+
+SHIFTED = {
+    "bore": blank(bore_diameter=20.0),
+    "keyway": replace(KEYED, keyway_angle=0.7),
+    "flat": replace(FLAT, keyway_angle=-1.0),
+    "bolts": blank(bolts=2, bolt_circle=50.0, bolt_diameter=8.0),
+    "slot": blank(stop_pin=5.0),
+}
+
+
+@pytest.mark.parametrize("by", [-0.3, 0.2, 1.0])
+@pytest.mark.parametrize("name", SHIFTED)
+def test_an_offset_moves_every_edge_along_its_normal(name: str, by: float) -> None:
+    """Against shapely's buffer with sharp corners, as they stay in keyways and at flats."""
+    contour = disc_contour(50.0)
+    plain = made(contour, SHIFTED[name], SLOTTED)
+    part = made(contour, replace(SHIFTED[name], offset=by), SLOTTED)
+    assert part.contour.moments.area == pytest.approx(math.pi * (50 + by) ** 2, rel=1e-9)
+    for before, after in zip(plain.openings, part.openings, strict=True):
+        wanted = region(before, 1e-5).buffer(-by, join_style="mitre", mitre_limit=10.0)
+        got = region(after, 1e-5)
+        # inner corners of the opening are outer ones of the metal: sharp too, by definition
+        corner = 0.25 * by**2 if name in ("keyway", "flat") else 0.0
+        assert got.symmetric_difference(wanted).area < corner + 1e-4 * got.length
+        assert after.name == before.name
+        wrong = region(before, 1e-5).buffer(by, join_style="mitre", mitre_limit=10.0)
+        assert got.symmetric_difference(wrong).area > abs(by) * got.length
