@@ -122,6 +122,30 @@ def feeder_scale() -> float:
     return 80 * math.pi / float(mp.quad(speed, mp.linspace(0, 2 * mp.pi, 17)))
 
 
+
+def ellipse_distance(module_times_teeth: int, eccentricity: str) -> float:
+    """Centre distance of a pair of ellipses about their foci."""
+    with mp.workdps(30):
+        e = mp.mpf(eccentricity)
+        return float(mp.pi * module_times_teeth / (2 * mp.ellipe(e**2)))
+
+
+def keyed_area(radius: int, width: int, depth: str) -> float:
+    """Bore with a keyway: the circle, and what of the keyway lies beyond its arc."""
+    with mp.workdps(30):
+        half, floor = mp.mpf(width) / 2, radius + mp.mpf(depth)
+        angle = mp.asin(half / radius)
+        under = radius**2 * angle + half * mp.sqrt(radius**2 - half**2)
+        return float(mp.pi * radius**2 + 2 * half * floor - under)
+
+
+def flat_area(radius: str, away: str) -> float:
+    """Circle less the segment beyond a chord at a distance from its middle."""
+    with mp.workdps(30):
+        r, d = mp.mpf(radius), mp.mpf(away)
+        return float(mp.pi * r**2 - r**2 * mp.acos(d / r) + d * mp.sqrt(r**2 - d**2))
+
+
 NUMBERS: dict[str, dict[str, Number]] = {
     "furnace_door": {
         # printed lengths over A, and (3.26); the driven wheel's smallest radius
@@ -225,5 +249,19 @@ NUMBERS: dict[str, dict[str, Number]] = {
     "feeder": {
         "pair.way_per_turn_mm": (2 * math.pi * feeder_scale(), 1e-9),
         "pair.radius_mm.max": (1.2 * feeder_scale(), 1e-10),
+    },
+    "shop_order": {
+        # about its focus: A = 2a with the perimeter 4*a*E(e) = pi*m*z
+        "pair.center_distance_mm": (ellipse_distance(3 * 32, "0.25"), 1e-9),
+        # bore, and a slot of 6 x 12.8 from the axis less half a circle's segment within it
+        "gears[0].openings[0].area_mm2": (keyed_area(10, 6, "2.8"), 1e-10),
+        "gears[1].openings[0].area_mm2": (keyed_area(8, 5, "2.3"), 1e-10),
+        "gears[1].openings[1].center_mm[0]": (18.0, 1e-12),
+    },
+    "stepped_ellipse": {
+        "pair.center_distance_mm": (ellipse_distance(2 * 24, "0.3"), 1e-9),
+        "helix.moved_mm[3]": (1.5 * math.pi, 1e-12),
+        # a circle of 8.2 mm less the segment beyond the flat, 3.1 mm from the axis
+        "gears[0].openings[0].area_mm2": (flat_area("4.1", "3.1"), 1e-10),
     },
 }

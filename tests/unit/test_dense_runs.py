@@ -8,7 +8,7 @@ import pytest
 from gearcam.gears.flank import trace
 from helpers_pairs import profile
 
-NAMES = ["rounded_square", "nail_machine_two_phase", "log_spiral"]
+NAMES = ["rounded_square", "log_spiral"]
 
 
 @pytest.mark.parametrize("name", NAMES)

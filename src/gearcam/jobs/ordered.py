@@ -107,14 +107,17 @@ def _lost(job: GearPairJob, number: int) -> LostFlank | None:
         gear, profile=replace(gear.profile, flanks=replace(flanks, lowest=low, highest=high))
     )
     pair = (made, gears[1]) if number == 1 else (gears[0], made)
-    ratio = min(float(contact_arcs(*pair, sigma).ratios.min()) for sigma in (1, -1))
+    whole, ratio = (
+        min(float(contact_arcs(*wheels, sigma).ratios.min()) for sigma in (1, -1))
+        for wheels in (gears, pair)
+    )
     worst = height > max(0.999 * float(height.max()), 1e-12)
     numbers = np.unique(np.tile(np.array(toothing.numbers), 2)[worst]).tolist()
     return LostFlank(
         height=float(height.max()),
-        expected=max(abs(blank.offset), blank.tip_rounding),
+        expected=max(-blank.offset, blank.tip_rounding, 0.0),
         teeth=f"teeth {tooth_ranges(numbers)}",
-        contact_ratio=ratio,
+        contact_ratio=(whole, ratio),
     )
 
 

@@ -8,12 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 from gearcam.findings import Finding, check
 from gearcam.parts.blank import KIND
 from gearcam.parts.part import Part
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
+
+
+_ROUNDING: Final = 1e-9
+"""Contact ratio that rounding may cost."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -25,17 +30,22 @@ class LostFlank:
     height : float, mm
         Largest height that a flank loses.
     expected : float, mm
-        What a moved tip takes by itself.
+        What the edge of a tip takes by itself when it is moved inwards or rounded.
     teeth : str
         Where, in words.
-    contact_ratio : float
-        Smallest contact ratio that is left.
+    contact_ratio : (float, float)
+        Smallest contact ratio of the whole flanks, and of what is left of them.
     """
 
     height: float
     expected: float
     teeth: str
-    contact_ratio: float
+    contact_ratio: tuple[float, float]
+
+    def harmless(self, limit: float) -> bool:
+        """Return whether no more is lost than expected, or nothing that touches; `limit` kept."""
+        whole, left = self.contact_ratio
+        return left >= whole - _ROUNDING or (left >= limit and self.height <= self.expected)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -110,13 +120,14 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
 def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
     """Warn where more flank is lost than a moved tip takes, an error where too little drives."""
     for number, lost in enumerate(subject.lost, start=1):
-        if lost is None or (lost.height <= lost.expected and lost.contact_ratio >= limit):
+        if lost is None or lost.harmless(limit):
             continue
+        whole, left = lost.contact_ratio
         yield Finding(
             code="lost-flank",
-            severity="warning" if lost.contact_ratio >= limit else "error",
-            message=f"Offset and rounding take up to {lost.height:.4g} mm of the height of the "
-            f"flanks that touch; the contact ratio that is left is {lost.contact_ratio:.4g}.",
+            severity="warning" if left >= limit else "error",
+            message=f"Offset and rounding take up to {lost.height:.4g} mm of the height of flanks; "
+            f"the contact ratio falls from {whole:.4g} to {left:.4g}.",
             value=lost.height,
             limit=lost.expected,
             unit="mm",

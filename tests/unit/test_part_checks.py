@@ -1,0 +1,94 @@
+"""The checks of parts speak beyond their limit only, and say what a person can measure."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearcam.findings import Finding
+from gearcam.gears.pair import contact_arcs
+from gearcam.jobs import GearPairJob
+from gearcam.jobs.ordered import kept_reach
+from gearcam.parts import Blank
+from helpers_pairs import profile
+
+
+def found(code: str, name: str = "ellipse", limits: Any = None, **blank: Any) -> list[Finding]:
+    design = replace(profile(name).design, blank=Blank(**blank), limits=limits or {})
+    return [finding for finding in GearPairJob(design).findings if finding.code == code]
+
+
+BOLTS = {"bolts": (3, 0), "bolt_diameter": (4.0, 0.0), "bolt_circle": (16.0, 0.0)}
+
+
+@pytest.mark.parametrize(("bore", "spoken"), [(9.99, False), (10.01, True)])
+def test_a_wall_is_thin_below_the_limit(bore: float, spoken: bool) -> None:
+    """Holes of 4 mm on a circle of 16 mm leave 6 mm about the axis: 1 mm of wall at 10 mm."""
+    heard = found("thin-wall", bore_diameter=(bore, 0.0), **BOLTS)
+    assert bool(heard) == spoken
+    if spoken:
+        assert heard[0].value == pytest.approx(6.0 - bore / 2, abs=1e-4)
+        assert "bolt hole" in heard[0].message
+        assert "bore" in heard[0].message
+        assert heard[0].where == "wheel 1"
+
+
+def test_the_limit_of_walls_can_be_set() -> None:
+    wide = {"wall": 1.2}
+    assert found("thin-wall", limits=wide, bore_diameter=(9.8, 0.0), **BOLTS)
+    assert not found("thin-wall", bore_diameter=(9.8, 0.0), **BOLTS)
+
+
+def test_the_tool_at_hand_is_compared_with_the_sharpest_fillet() -> None:
+    """The smallest fillet of a rack-cut wheel lies between the tip radius and the root's."""
+    small = GearPairJob(replace(profile("ellipse").design, blank=Blank(density=(1.0, 1.0))))
+    limits = small.parts_subject.tools[0]
+    assert 2 * 0.38 < limits.diameter < 2.0
+    for part, speaks in ((0.999, False), (1.001, True)):
+        limit = {"tool_diameter": part * limits.diameter}
+        heard = found("large-tool", limits=limit, density=(1.0, 1.0))
+        assert any(finding.where == "wheel 1" for finding in heard) == speaks
+
+
+def test_rounded_tips_cost_what_moved_tips_cost() -> None:
+    assert not found("lost-flank", tip_rounding=(0.15, 0.15))
+    assert not found("lost-flank", offset=(-0.1, -0.1))
+    assert not found("lost-flank", offset=(0.1, 0.1))
+
+
+def test_a_kerf_that_eats_flanks_is_reported() -> None:
+    """A beam of 1.2 mm does not get to the bottom of spaces of module 1: their flanks are lost."""
+    heard = found("lost-flank", offset=(0.6, 0.0))
+    assert [finding.where[:7] for finding in heard] == ["wheel 1"]
+    assert heard[0].limit == 0.0
+    assert heard[0].value is not None
+    assert 0.1 < heard[0].value < 2.0
+    assert "contact ratio falls from 1.705 to" in heard[0].message
+
+
+@pytest.mark.parametrize("rounding", [0.1, 0.2, 0.3])
+def test_the_contact_ratio_left_is_that_of_shorter_flanks(rounding: float) -> None:
+    """A flank loses w = height/(sin*cos) of reach, its contact arc as much: by the kept reach."""
+    blank = Blank(tip_rounding=(rounding, 0.0))
+    job = GearPairJob(replace(profile("circular").design, blank=blank))
+    lost = job.parts_subject.lost[0]
+    assert lost is not None
+    low, high = kept_reach(job.gear1, blank.wheel(1))
+    whole = job.gear1.profile.flanks
+    assert low == pytest.approx(whole.lowest)
+    shorter = whole.highest - high
+    # a corner of angle 90 + a degrees loses r/tan(45 + a/2) of its side, a the tip's pressure angle
+    z, m = job.pair.teeth[0], job.pair.module
+    a = math.acos(0.5 * z * math.cos(math.radians(20)) / (0.5 * z + 1))
+    along = rounding / math.tan(math.pi / 4 + a / 2)
+    assert lost.height == pytest.approx(along * math.cos(a), rel=0.1, abs=m / 32)
+    arcs = contact_arcs(job.gear1, job.gear2, 1)
+    before = float(arcs.ratios.min())
+    assert lost.contact_ratio[0] == pytest.approx(before)
+    assert before - lost.contact_ratio[1] == pytest.approx(
+        float(np.max(shorter)) / arcs.pitch, rel=0.05
+    )
