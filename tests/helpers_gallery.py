@@ -122,7 +122,6 @@ def feeder_scale() -> float:
     return 80 * math.pi / float(mp.quad(speed, mp.linspace(0, 2 * mp.pi, 17)))
 
 
-
 def ellipse_distance(module_times_teeth: int, eccentricity: str) -> float:
     """Centre distance of a pair of ellipses about their foci."""
     with mp.workdps(30):

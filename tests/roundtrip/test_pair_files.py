@@ -1,4 +1,4 @@
-"""The assembled pair in files: two named bodies at their places, turned as the driver's angle asks."""
+"""The assembled pair in files: two named bodies at their places, turned as the angle asks."""
 
 from __future__ import annotations
 
@@ -56,9 +56,7 @@ def expected(number: int) -> tuple[float, np.ndarray]:
         angle = 2 * math.atan(0.7 / 1.3 * math.tan(PHI1 / 2))
     x, y, z = found.centroid
     place = complex(x, y) * np.exp(1j * angle)
-    return found.volume, np.array(
-        [place.real + number * job().pair.center_distance, place.imag, z]
-    )
+    return found.volume, np.array([place.real + number * job().pair.center_distance, place.imag, z])
 
 
 def bodies(kind: str) -> dict[str, np.ndarray]:
@@ -80,9 +78,7 @@ def bodies(kind: str) -> dict[str, np.ndarray]:
         for body in model.iterfind(".//c:object", space):
             if body.find("c:mesh", space) is None:
                 continue
-            places = [
-                [float(v.get(k)) for k in "xyz"] for v in body.iterfind(".//c:vertex", space)
-            ]
+            places = [[float(v.get(k)) for k in "xyz"] for v in body.iterfind(".//c:vertex", space)]
             index = [
                 [int(t.get(k)) for k in ("v1", "v2", "v3")]
                 for t in body.iterfind(".//c:triangle", space)

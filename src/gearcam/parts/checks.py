@@ -16,7 +16,6 @@ from gearcam.parts.part import Part
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
 
-
 _ROUNDING: Final = 1e-9
 """Contact ratio that rounding may cost."""
 

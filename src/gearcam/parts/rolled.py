@@ -32,8 +32,6 @@ from gearcam.numeric.cubics import on_cubics
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_FIRST: Final = np.zeros(1, dtype=np.int64)
-
 _SMOOTH: Final = 1e-9
 """Gap between parallels, in tolerances, below which no corner is between their runs."""
 
@@ -42,7 +40,9 @@ _DENSE: Final = 1 / 40
 
 _ROUNDS: Final = 16
 _NARROWER: Final = 0.125
-"""Rounds in which a crossing is refined, and how much narrower each looks: to rounding."""
+_TOGETHER: Final = 1e-15
+"""Rounds in which a crossing is refined, how much narrower each looks, and the distance over that
+from the axis at which it is found: rounding."""
 
 _BESIDE: Final = 0.1
 """Steps of a run that its new ends keep from the points inside."""
@@ -74,7 +74,8 @@ class Stretch:
         """Return point and unit tangent at a place: of the cubic through its neighbours."""
         p, t = as_complex(self.run.points), as_complex(self.run.tangents)
         k = min(max(int(at), 0), len(p) - 2)
-        points, tangents = on_cubics(p[k : k + 2], t[k : k + 2], _FIRST, np.array([at - k]))
+        share = np.array([at - k])
+        points, tangents = on_cubics(p[k : k + 2], t[k : k + 2], np.array([0]), share)
         return complex(points[0]), complex(tangents[0])
 
     def touched(self, at: float) -> complex:
@@ -126,8 +127,8 @@ class Rolled:
     @property
     def pairs(self) -> list[tuple[Stretch, Stretch, complex | None]]:
         """Each stretch with the next one and what is between them."""
-        parts = self.stretches
-        return list(zip(parts, parts[1:] + parts[:1], self.centers, strict=True))
+        following = self.stretches[1:] + self.stretches[:1]
+        return list(zip(self.stretches, following, self.centers, strict=True))
 
 
 def roll(contour: Contour, radius: float) -> Rolled:
@@ -280,15 +281,15 @@ def _segments(chain: _Chain, ring: Complex) -> Ints:
     from shapely import STRtree, linestrings, points
 
     p, q = chain.points, np.roll(chain.points, -1)
-    middle = 0.5 * (ring + np.roll(ring, -1))
-    first = {(complex(a), complex(b)): k for k, (a, b) in enumerate(zip(p, q, strict=True))}
+    first = {edge: k for k, edge in enumerate(zip(p.tolist(), q.tolist(), strict=True))}
     edges = zip(ring.tolist(), np.roll(ring, -1).tolist(), strict=True)
     made = np.array([first.get(edge, -1) for edge in edges], dtype=np.int64)
     cut = np.flatnonzero(made < 0)  # a part of a segment only: beside a crossing
     if cut.size:
         lines: Any = linestrings(np.stack([as_pairs(p), as_pairs(q)], axis=1))
         tree = STRtree(lines)
-        made[cut] = tree.query_nearest(points(as_pairs(middle[cut])), all_matches=False)[1]
+        middle = points(as_pairs(0.5 * (ring + np.roll(ring, -1))[cut]))
+        made[cut] = tree.query_nearest(middle, all_matches=False)[1]
     return made
 
 
@@ -329,8 +330,7 @@ def _joined(parts: list[Stretch], contour: Contour, radius: float) -> Rolled:
         following = (number + 1) % len(parts)
         one, two = parts[number], parts[following]
         gap = abs(one.middle(one.high) - two.middle(two.low))
-        ended = one.high == len(one.run.points) - 1.0 and two.low == 0.0
-        if ended and gap <= _SMOOTH * contour.tolerance + 1e-12:
+        if gap <= _SMOOTH * contour.tolerance and one.high == len(one.run.points) - 1.0:
             centers.append(None)
             continue
         center, high, low = _refined(one, two)
@@ -366,6 +366,8 @@ def _refined(one: Stretch, two: Stretch) -> tuple[complex, float, float]:
         else:
             high, low = found
             reach *= _NARROWER
+            if abs(one.middle(high) - two.middle(low)) < _TOGETHER * abs(one.middle(high)):
+                break
     return 0.5 * (one.middle(high) + two.middle(low)), high, low
 
 
