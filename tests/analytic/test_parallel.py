@@ -339,7 +339,7 @@ def test_nothing_is_done_for_nothing() -> None:
     assert rounded(contour, 0.0) is contour
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=10, deadline=None, derandomize=True)
 @given(by=st.floats(-2.4, 2.4))
 @example(by=-0.05)
 def test_any_distance_gives_the_points_at_that_distance(by: float) -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 PAIR = "pair"
 """Stem of the files of the assembled pair."""
 
-STEP_PART = 1e-2
+STEP_PART = 2e-3
 """Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
 
 

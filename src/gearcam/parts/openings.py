@@ -40,6 +40,10 @@ _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
 
 
+_RADII: Final = 128
+_RAYS: Final = 91
+"""Radii and directions among which the roomiest place of a stop slot is sought."""
+
 _QUARTER: Final = 64
 """Chords of a quarter of what is kept free around core and openings."""
 
@@ -217,8 +221,6 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
     Wheel 1 turns by -phi1 and wheel 2 by phi2: in the wheel's frame the pin, on the line of
     centres, goes from the polar angle 0 to the travel, or from pi back by the travel.
     """
-    from shapely import LineString, Point
-
     if place.travel is None:
         raise InfeasibleError(
             "a wheel that turns for ever has no stop",
@@ -228,19 +230,8 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
             nearest="leave stop_pin_mm out, or give an open law (driven_travel_deg)",
         )
     start = 0.0 if place.wheel == 1 else math.pi - place.travel
-    angles = start + place.travel * np.linspace(0.0, 1.0, 181)
-    rays = np.column_stack([np.cos(angles), np.sin(angles)])
     inner = max(blank.bore_reach, 0.5 * blank.hub_diameter)
-    edge = solid.boundary
-    far = 2.0 * float(np.hypot(*np.array(edge.coords).T).max())
-    outer = min(
-        Point(0.0, 0.0).distance(edge.intersection(LineString([(0.0, 0.0), far * ray])))
-        for ray in rays
-    )
-    radius = 0.5 * (inner + outer)
-    # The ends are round: beside the end faces of the sector there must be room as well.
-    room = min(edge.distance(Point(*(radius * ray))) for ray in rays)
-    room = 2.0 * min(room, radius - inner)  # the outline, or the hub
+    radius, room = _roomiest(solid, start, place.travel, inner)
     if blank.stop_pin >= room:
         raise InfeasibleError(
             "no room for the slot of the stop pin between shaft and roots",
@@ -253,6 +244,28 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
     return Opening(
         kind="SLOT", shape=_arc_slot(radius, start, place.travel, blank.stop_pin), name="stop slot"
     )
+
+
+def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tuple[float, float]:
+    """Return the radius of the arc with the most room around it, and how wide a slot it takes.
+
+    Beside the end faces of the sector there must be room as well: the ends are round.
+    """
+    from shapely import STRtree, get_coordinates, linestrings, points
+
+    ring = get_coordinates(solid.boundary)
+    segments: Any = linestrings(np.stack([ring[:-1], ring[1:]], axis=1))
+    radii = inner + (np.hypot(*ring.T).max() - inner) * np.arange(1, _RADII) / _RADII
+    rays = np.exp(1j * (start + travel * np.linspace(0.0, 1.0, _RAYS)))
+    places = (radii[:, None] * rays).ravel()
+    made: Any = points(places.real, places.imag)
+    index, away = STRtree(segments).query_nearest(made, return_distance=True, all_matches=False)
+    free = np.empty(len(places))
+    free[index[0]] = away
+    free[~np.asarray(solid.contains(made))] = 0.0
+    room = np.minimum(free.reshape(len(radii), _RAYS).min(axis=1), radii - inner)
+    best = int(room.argmax())
+    return float(radii[best]), 2.0 * float(room[best])
 
 
 def _arc_slot(radius: float, start: float, sweep: float, width: float) -> Loop:
