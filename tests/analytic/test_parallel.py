@@ -188,6 +188,7 @@ def test_a_real_wheel_moves_as_a_buffer_does(name: str, number: int, modules: fl
     demand_true(made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "number", "modules"),
     [

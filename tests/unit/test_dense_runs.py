@@ -11,6 +11,7 @@ from helpers_pairs import profile
 NAMES = ["rounded_square", "log_spiral"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_no_place_of_the_curve_is_far_from_the_dense_points(name: str) -> None:
     """At 97 places of every row, evenly in phi1: not where the dense points were chosen."""

@@ -11,7 +11,7 @@ import pytest
 from gearcam.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour, Run
-from gearcam.parts import Blank, Mark, Part, circle_points, timing_mark
+from gearcam.parts import Blank, Loop, Mark, Part, circle_points, timing_mark
 from gearcam.quantities import params_of
 from helpers_contour import bore, gear_contour, square_contour
 
@@ -141,3 +141,14 @@ def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:
     )  # fmt: skip
     with pytest.raises(ValueError, match="two parts"):
         pair_drawing([part], 24.0)
+
+
+@pytest.mark.parametrize("center", [(0.0, 0.0), (7.0, -3.0), (0.5, 0.2)])
+def test_a_loop_reaches_as_far_as_its_arcs(center: tuple[float, float]) -> None:
+    """A circle of two half circles: its reach is that of the circle, between the vertices."""
+    x, y = center
+    loop = Loop(vertices=np.array([[x + 2.0, y], [x - 2.0, y]]), bulges=np.ones(2))
+    assert loop.reach == pytest.approx(math.hypot(x, y) + 2.0, rel=1e-14)
+    for height, reach in ((5.0, 7.0), (-5.0, math.hypot(2.0, 5.0))):
+        half = np.array([[2.0, height], [-2.0, height]])  # the upper half of a disc
+        assert Loop(vertices=half, bulges=np.array([1.0, 0.0])).reach == pytest.approx(reach)
