@@ -235,7 +235,7 @@ def growth() -> Result:
             peaks.append(answer["peak"] / 2**20)
             raw = ", ".join(show(sample) for sample in answer["samples"])
             rows.append(f"| {teeth} | {show(medians[-1])} | {peaks[-1]:.1f} MiB | {raw} |")
-    slopes = [_slope(counts, values) for values in (medians, peaks)]
+    slopes = [slope(counts, values) for values in (medians, peaks)]
     last = [values[-1] / values[-2] for values in (medians, peaks)]
     return Result(
         title="(d) From 20 to 640 teeth",
@@ -313,5 +313,6 @@ def _whole(outlines: tuple[Any, Any], turning: Turning, phases: Any, advance: fl
     return areas
 
 
-def _slope(counts: list[int], values: list[float]) -> float:
+def slope(counts: list[int], values: list[float]) -> float:
+    """Exponent of growth by least squares."""
     return float(np.polyfit(np.log(counts), np.log(values), 1)[0])

@@ -8,6 +8,7 @@ from pathlib import Path
 # the sweep is the witness of the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
+import cam_cases
 import cases
 from measuring import ROOT, Result, environment
 
@@ -33,6 +34,8 @@ def main() -> int:
     results = []
     for case in (
         cases.whole_process,
+        cam_cases.against_subtraction,
+        cam_cases.cam_growth,
         cases.growth,
         cases.against_whole_outlines,
         cases.against_sweep,

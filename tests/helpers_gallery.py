@@ -30,7 +30,7 @@ def length(ratio: Callable[[Any], Any], breaks: Sequence[Any]) -> float:
             return mp.sqrt(share(phi) ** 2 + slope**2)
 
         parts = [mp.linspace(a, b, 5) for a, b in pairwise(breaks)]
-        return float(sum(mp.quad(speed, part) for part in parts))
+        return float(sum(mp.quadgl(speed, part) for part in parts))
 
 
 def by_module(ratio: Callable[[Any], Any], breaks: Sequence[Any], size: float) -> float:

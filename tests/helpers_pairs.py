@@ -13,7 +13,7 @@ import shapely
 import gearcam
 from gearcam.design import GearPairDesign, OutputSpec
 from gearcam.gears.spec import PairSpec, Rack
-from gearcam.jobs import GearPairJob
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.base import LAWS
 from gearcam.parts import Blank
 
@@ -58,6 +58,7 @@ def job(
 def profile(name: str, tolerance: float | None = None) -> GearPairJob:
     """Return the job of a file in ``profiles/``, at a tolerance of its own where one is given."""
     design = gearcam.load(PROFILES / f"{name}.toml")
+    assert isinstance(design, GearPairDesign)
     if tolerance is None:
         return gearcam.build(design)
     return job(
@@ -68,6 +69,12 @@ def profile(name: str, tolerance: float | None = None) -> GearPairJob:
         tolerance=tolerance,
         rack=design.rack,
     )
+
+
+def unadvised(made: GearPairJob) -> GearPairJob:
+    """Return a job that refuses without the search for what would work."""
+    made._advises = False
+    return made
 
 
 def explained(made: GearPairJob) -> float:

@@ -1,4 +1,4 @@
-"""gearcam: from a description of a motion to a pair of non-circular gears that can be cut.
+"""gearcam: from a description of a motion to a cam, or a pair of non-circular gears, to be cut.
 
     design = gearcam.load("profiles/nail_machine_two_phase.toml")
     result = gearcam.build(design)
@@ -10,20 +10,21 @@ Importing the package loads nothing else: `load` and `build` bring in what they 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 if TYPE_CHECKING:
     import os
 
-    from gearcam.design import GearPairDesign
-    from gearcam.jobs import GearPairJob
+    from gearcam.design import CamDesign, Design, GearPairDesign
+    from gearcam.jobs.cam import CamJob
+    from gearcam.jobs.gear_pair import GearPairJob
 
 __all__ = ["__version__", "build", "load"]
 
 __version__ = "0.1.0"
 
 
-def load(path: str | os.PathLike[str]) -> GearPairDesign:
+def load(path: str | os.PathLike[str]) -> Design:
     """Read a design file.
 
     Parameters
@@ -33,8 +34,8 @@ def load(path: str | os.PathLike[str]) -> GearPairDesign:
 
     Returns
     -------
-    GearPairDesign
-        What is asked for, in mm and rad.
+    GearPairDesign or CamDesign
+        What is asked for, in mm and rad, as the file's kind says.
 
     Raises
     ------
@@ -46,19 +47,23 @@ def load(path: str | os.PathLike[str]) -> GearPairDesign:
     return read(path)
 
 
-def build(design: GearPairDesign) -> GearPairJob:
+@overload
+def build(design: GearPairDesign) -> GearPairJob: ...
+@overload
+def build(design: CamDesign) -> CamJob: ...
+def build(design: GearPairDesign | CamDesign) -> GearPairJob | CamJob:
     """Return the job of a design; nothing is computed until it is asked for.
 
     Parameters
     ----------
-    design : GearPairDesign
+    design : GearPairDesign or CamDesign
         What is asked for.
 
     Returns
     -------
-    GearPairJob
+    GearPairJob or CamJob
         Its attributes compute what they name and raise `InfeasibleError` for what cannot be made.
     """
-    from gearcam.jobs import GearPairJob
+    from gearcam.jobs import make_job
 
-    return GearPairJob(design)
+    return make_job(design)

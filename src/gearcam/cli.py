@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.console import (
+    cam_lines,
     complain,
     finding_lines,
     infeasible_text,
@@ -31,7 +32,7 @@ from gearcam.console import (
     wrapped,
     written_lines,
 )
-from gearcam.design import FORMATS, KIND, GearPairDesign, load
+from gearcam.design import FORMATS, KINDS, Design, load
 from gearcam.errors import (
     DesignError,
     InfeasibleError,
@@ -41,7 +42,7 @@ from gearcam.errors import (
 )
 
 if TYPE_CHECKING:
-    from gearcam.jobs import GearPairJob, Written
+    from gearcam.jobs import Job, Written
 
 GOOD: Final = 0
 FINDINGS: Final = 1
@@ -52,7 +53,7 @@ INTERRUPTED: Final = 130
 
 _DEBUG: Final = "GEARCAM_DEBUG"
 
-_ABOUT: Final = "Non-circular gears from a description of the motion."
+_ABOUT: Final = "Non-circular gears and cams from a description of the motion."
 _CODES: Final = (
     "exit codes: 0 good, 1 findings at error level, 2 wrong by reading, 3 impossible, "
     "4 a fault of the program, 130 interrupted"
@@ -121,11 +122,16 @@ def _dispatch(words: list[str]) -> None:
 def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]:
     """Return a parser and a function for each command; its help is the function's docstring."""
     parsers = {}
-    for command in (_build, _check, _mesh, _laws, _new, _schema):
+    for command in (_build, _check, _mesh, _follow, _laws, _new, _schema):
         name = command.__name__.lstrip("_")
         parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
         if command in (_build, _check, _mesh):
             parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
+        if command is _follow:
+            parser.add_argument("file", metavar="FILE", help="design file (TOML) of a cam")
+            words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
+            parser.add_argument("profile", metavar="PROFILE", help=words)
+        if command in (_build, _check, _mesh, _follow):
             parser.add_argument(
                 "-o", "--output", metavar="DIR", default="output", help="where to write"
             )
@@ -138,7 +144,8 @@ def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]
         if command is _mesh:
             _mesh_options(parser)
         if command is _new:
-            parser.add_argument("kind", metavar="KIND", help=f"the kind of design: {KIND}")
+            words = f"the kind of design: {' or '.join(KINDS)}"
+            parser.add_argument("kind", metavar="KIND", help=words)
             parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
         parsers[name] = (parser, command)
     return parsers
@@ -146,10 +153,8 @@ def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]
 
 def _mesh_options(parser: argparse.ArgumentParser) -> None:
     """Add the settings of a study: they stand before those of the file's table [meshing]."""
-    from gearcam.design.tables import table
-
     kinds = {"steps": int, "helix_step": int, "teeth": _numbers}
-    for key, entry in table("meshing").entries.items():
+    for key, entry in KINDS["gear-pair"].table("meshing").entries.items():
         names = {"center_distance_mm": "center", "helix_step": "step"}
         word = names.get(key, key.removesuffix("_deg"))
         unit = entry.param.quantity.unit.upper()
@@ -184,7 +189,7 @@ def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -
     """Build designs into DIR/<name>/."""
     kinds = _kinds(only)
 
-    def action(job: GearPairJob, progress: Progress | None) -> Written:
+    def action(job: Job, progress: Progress | None) -> Written:
         return job.write(output, files=kinds, progress=progress)
 
     _each(files, "built", action, debug=debug)
@@ -193,7 +198,7 @@ def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -
 def _check(files: list[str], output: str, debug: bool) -> None:
     """Check designs and write nothing but DIR/<name>/summary.json."""
 
-    def action(job: GearPairJob, progress: Progress | None) -> Written:  # noqa: ARG001
+    def action(job: Job, progress: Progress | None) -> Written:  # noqa: ARG001
         return job.check(output)
 
     _each(files, "checked", action, debug=debug)
@@ -205,45 +210,60 @@ def _mesh(files: list[str], output: str, debug: bool, **settings: Any) -> None:
 
     given = {key: value for key, value in settings.items() if value is not None}
 
-    def action(job: GearPairJob, progress: Progress | None) -> Written:
+    def adapt(design: Design) -> Design:
+        return with_meshing(_demand_kind(design, "gear-pair"), given)
+
+    def action(job: Any, progress: Progress | None) -> Written:
         return job.mesh(output, progress=progress)
 
-    _each(files, "meshed", action, debug=debug, adapt=lambda design: with_meshing(design, given))
+    _each(files, "meshed", action, debug=debug, adapt=adapt)
+
+
+def _follow(file: str, profile: str, output: str, debug: bool) -> None:
+    """Put a cam's follower on a given profile; writes DIR/<name>/followed.csv."""
+
+    def action(job: Any, progress: Progress | None) -> Written:
+        return job.follow(profile, output, progress=progress)
+
+    _each([file], "followed", action, debug=debug, adapt=lambda d: _demand_kind(d, "cam"))
+
+
+def _demand_kind(design: Design, kind: str) -> Any:
+    """Refuse a design of another kind."""
+    if design.kind != kind:
+        message = f"this command is for designs of kind {kind}"
+        raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
+    return design
 
 
 def _laws() -> None:
-    """Show every law: parameters, continuity, source."""
-    from gearcam.design.models import description
-    from gearcam.design.tables import law_table
-    from gearcam.laws.base import LAWS
+    """Show every law, of ratios and of lifts: parameters, continuity, source."""
+    from gearcam.design.listing import law_groups
 
-    for name, law in LAWS.items():
-        say(f'{name}\n{wrapped(law.doc)}\n    law.type = "{name}"')
-        width = 2 + max(map(len, (*law_table(name).entries, "continuity")))
-        rows = [(entry.key, description(entry)) for entry in law_table(name).entries.values()]
-        for key, words in rows:
-            say(wrapped(words, first=f"    {key:<{width}}", rest=" " * (4 + width)))
-        say(wrapped(law.continuity, first=f"    {'continuity':<{width}}", rest=" " * (4 + width)))
-        say(wrapped(law.source, first=f"    {'source':<{width}}", rest=" " * (4 + width)) + "\n")
+    for heading, laws in law_groups():
+        say(f"{heading}\n")
+        for law in laws:
+            say(f"{law.name}\n{wrapped(law.doc)}\n    {law.line}")
+            width = 2 + max(len(key) for key, _ in law.rows)
+            for key, words in law.rows:
+                say(wrapped(words, first=f"    {key:<{width}}", rest=" " * (4 + width)))
+            say("")
 
 
 def _new(kind: str, file: str | None) -> None:
     """Write a commented design file to start from; an existing file is never overwritten."""
-    from gearcam.design.examine import LATER_KINDS
     from gearcam.design.template import template
     from gearcam.design.wording import did_you_mean, show
 
-    if kind != KIND:
-        later = kind in LATER_KINDS
-        what = f"{kind}s are not built by this version yet" if later else "is not a kind of design"
-        hint = "" if later else did_you_mean(kind, [KIND])
-        _refuse([Problem(f"{show(kind)}: {what}", key="KIND", allowed=KIND, hint=hint)])
+    if kind not in KINDS:
+        message, hint = f"{show(kind)} is not a kind of design", did_you_mean(kind, KINDS)
+        _refuse([Problem(message, key="KIND", allowed=", ".join(KINDS), hint=hint)])
     if file is None:
-        say(template().rstrip("\n"))
+        say(template(kind).rstrip("\n"))
         return
     try:
         with Path(file).open("x", encoding="utf-8", newline="\n") as stream:
-            stream.write(template(_stem(file)))
+            stream.write(template(kind, Path(file).stem))
     except FileExistsError:
         _refuse([Problem("exists, and is not overwritten", file=file)])
     except (OSError, ValueError) as error:
@@ -259,14 +279,6 @@ def _schema() -> None:
     from gearcam.design.schema import schema as made
 
     say(json.dumps(made(), indent=2))
-
-
-def _stem(file: str) -> str:
-    """Return a file's stem where it can name a design, or the template's own name."""
-    from gearcam.design.examine import name_fault
-
-    stem = Path(file).stem
-    return "my_gear_pair" if name_fault(stem) else stem
 
 
 def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
@@ -294,8 +306,8 @@ def _refuse(problems: Sequence[Problem]) -> None:
 
 
 Progress = Callable[[str, int, int], None]
-Action = Callable[["GearPairJob", Progress | None], "Written"]
-Adapt = Callable[[GearPairDesign], GearPairDesign]
+Action = Callable[["Job", Progress | None], "Written"]
+Adapt = Callable[[Design], Design]
 
 
 def _each(
@@ -335,14 +347,15 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     start = time.perf_counter()
     design = load(file) if adapt is None else adapt(load(file))
     _demand_new_name(design, file, names)
-    from gearcam.jobs import GearPairJob  # a file that is refused needs none of it
+    from gearcam.jobs import make_job  # a file that is refused needs none of it
 
-    job = GearPairJob(design)
+    job = make_job(design)
     with progress_bar(file) as progress:
         written = action(job, progress)
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
     told = [
         pair_lines(written.summary),
+        cam_lines(written.summary),
         meshing_lines(written.summary),
         finding_lines(written.findings),
         written_lines(written),
@@ -355,7 +368,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     return FINDINGS if any(finding.severity == "error" for finding in written.findings) else GOOD
 
 
-def _demand_new_name(design: GearPairDesign, file: str, names: dict[str, str]) -> None:
+def _demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:
     """Refuse a second design that would be written over the first one of the same call."""
     before = names.setdefault(design.name.casefold(), file)
     if before != file:

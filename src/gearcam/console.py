@@ -33,6 +33,35 @@ def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         yield f"wheel and rack, {way:.6g} mm a turn, module {module:.6g} mm, teeth {teeth}"
 
 
+def cam_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the lines on the cam of a summary, and on a profile that was followed."""
+    cam, motion = summary.get("cam"), summary.get("motion", {})
+    if cam is None:
+        return
+    lift = motion["lift"]["max"] - motion["lift"]["min"]
+    radius = "base" if cam["follower"].endswith("flat") else "prime"
+    follower = f"{'an' if cam['follower'][0] == 'o' else 'a'} {cam['follower']} follower"
+    yield (
+        f"{cam['form']} cam for {follower}, lift {lift:.6g} {motion['unit']}, "
+        f"{radius} radius {cam[f'{radius}_radius_mm']:.6g} mm"
+    )
+    angles = cam["pressure_angle_deg"]
+    told = [
+        f"{angles[f'{kind}_max']:.6g} deg on the {kind}"
+        for kind in ("rise", "return")
+        if angles.get(f"{kind}_max", 0.0) > 0.0
+    ]
+    pressure = f"pressure angle up to {' and '.join(told)}; " if told else ""
+    yield f"{pressure}motion C{motion['continuity']}"
+    found = summary.get("followed")
+    if found is not None:
+        yield (
+            f"the profile's lift differs from the program by up to "
+            f"{found['largest_difference']:.4g} {found['unit']} (at {found['at_deg']:.6g} deg), "
+            f"error of its chords {found['error']:.2g} {found['unit']}"
+        )
+
+
 def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     """Yield the table of the numbers of a meshing study, if the summary has one."""
     found = summary.get("meshing")

@@ -2,7 +2,9 @@
 
 A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the kind of
 what they hold: OUTLINE, BORE, HOLE, SLOT, MARK, CENTRODE, CENTER; a pair's layers begin with the
-wheel, such as ``GEAR1_OUTLINE``. *Placing* turns and shifts shapes without changing them otherwise.
+wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME and FOLLOWER show
+what it is for, and TOOL is the way of a cutter's centre. *Placing* turns and shifts shapes without
+changing them otherwise.
 
 Refused: a pair of other than two parts.
 
@@ -31,6 +33,14 @@ SLOT: Final = "SLOT"
 MARK: Final = "MARK"
 CENTRODE: Final = "CENTRODE"
 CENTER: Final = "CENTER"
+PROFILE: Final = "PROFILE"
+PITCH: Final = "PITCH"
+PRIME: Final = "PRIME"
+FOLLOWER: Final = "FOLLOWER"
+TOOL: Final = "TOOL"
+
+CLOSED: Final = (OUTLINE, PROFILE, PITCH, TOOL)
+"""Kinds whose shapes are contours."""
 
 CROSS_SIZE: Final = 0.04
 """Size of a centre's cross, in centre distances."""
@@ -129,6 +139,15 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
             return replace(shape, center=move(shape.center))
 
 
+def reach(shape: Shape) -> Array:
+    """Return points (n, 2), mm, whose box is the box of a `shape`."""
+    match shape:
+        case Contour(vertices=points) | Path(points=points) | Loop(vertices=points):
+            return points
+        case Circle(center=center, diameter=size) | Cross(center=center, size=size):
+            return np.array([center - 0.5 * size, center + 0.5 * size])
+
+
 def place(
     features: Iterable[Feature], angle: float, offset: tuple[float, float], prefix: str = ""
 ) -> tuple[Feature, ...]:
@@ -139,10 +158,10 @@ def place(
     )
 
 
-def part_features(part: Part, step: int = 0) -> tuple[Feature, ...]:
-    """Return the outline of a `step`, openings and marks of a `part`, in its own frame."""
+def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Feature, ...]:
+    """Return the `outline` of a `step`, openings and marks of a `part`, in its own frame."""
     return (
-        Feature(layer=OUTLINE, shape=part.contours[step]),
+        Feature(layer=outline, shape=part.contours[step]),
         *(Feature(layer=opening.kind, shape=opening.shape) for opening in part.openings),
         *(Feature(layer=MARK, shape=mark.circle) for mark in part.marks),
     )
@@ -206,3 +225,42 @@ def pair_drawing(
         cross = Cross(center=np.array(offset), size=size)
         features.append(Feature(layer=CENTER, shape=cross))
     return Drawing(name=name, features=tuple(features))
+
+
+def cam_drawing(
+    part: Part,
+    pitch: Contour | None,
+    prime_radius: float,
+    follower: Sequence[Shape] = (),
+    *,
+    angle: float = 0.0,
+) -> Drawing:
+    """Draw a cam with its pitch curve and prime circle, turned, below its follower.
+
+    Parameters
+    ----------
+    part : Part
+        The cam.
+    pitch : Contour or None
+        Its pitch curve, in the part's frame; None where that is the profile.
+    prime_radius : float, mm
+        Of the prime circle; of a flat follower the base circle.
+    follower : sequence of Shape
+        Where it stands; may be empty.
+    angle : float, rad
+        Turn of the cam, counter-clockwise.
+
+    Returns
+    -------
+    Drawing
+        Named as the part.
+    """
+    features = list(place(part_features(part, outline=PROFILE), angle, (0.0, 0.0)))
+    if pitch is not None:
+        features += place([Feature(layer=PITCH, shape=pitch)], angle, (0.0, 0.0))
+    circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
+    features.append(Feature(layer=PRIME, shape=circle))
+    features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
+    cross = Cross(center=np.zeros(2), size=CROSS_SIZE * float(np.ptp(part.contour.vertices)))
+    features.append(Feature(layer=CENTER, shape=cross))
+    return Drawing(name=part.name, features=tuple(features))

@@ -62,7 +62,7 @@ class Check:
     code : str
         Its name in findings.
     kind : str
-        The kind of design it belongs to.
+        The kind of subject that it looks at.
     doc : str
         What it looks at, one line.
     limit : tuple of (str, Param, float) or None
@@ -78,26 +78,32 @@ class Check:
     run: Callable[[Any, float], Iterable[Finding]]
 
 
-CHECKS: Final[dict[str, Check]] = {}
+CHECKS: Final[dict[tuple[str, str], Check]] = {}
+"""The checks by kind and code."""
 
 
 def check(
-    code: str, *, kind: str, doc: str, limit: tuple[str, Param, float] | None = None
+    code: str,
+    *,
+    kind: str | tuple[str, ...],
+    doc: str,
+    limit: tuple[str, Param, float] | None = None,
 ) -> Callable[[Callable[[Any, float], Iterable[Finding]]], Callable[..., Iterable[Finding]]]:
-    """Return a decorator that registers a function as a check (see `Check`).
+    """Return a decorator that registers a function as a check of one or more kinds (see `Check`).
 
     Raises
     ------
     ValueError
-        If the code is taken.
+        If a kind has the code already.
     """
 
     def register(
         run: Callable[[Any, float], Iterable[Finding]],
     ) -> Callable[..., Iterable[Finding]]:
-        if code in CHECKS:
-            raise ValueError(f"check {code!r} is registered twice")
-        CHECKS[code] = Check(code=code, kind=kind, doc=doc, limit=limit, run=run)
+        for one in (kind,) if isinstance(kind, str) else kind:
+            if (one, code) in CHECKS:
+                raise ValueError(f"check {code!r} is registered twice")
+            CHECKS[one, code] = Check(code=code, kind=one, doc=doc, limit=limit, run=run)
         return run
 
     return register
@@ -109,7 +115,7 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
     Parameters
     ----------
     kind : str
-        Such as ``gear-pair``.
+        Such as ``gear-pair``: which checks.
     subject : object
         What the checks look at.
     limits : mapping of str to float

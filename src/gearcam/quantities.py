@@ -35,6 +35,10 @@ NUMBER: Final = Quantity("", 1.0, "")
 COUNT: Final = Quantity("", 1.0, "")
 TEXT: Final = Quantity("", 1.0, "")
 DENSITY: Final = Quantity("_kg_m3", 1.0, "kg/m3")
+LENGTH_PER_RAD: Final = Quantity("_mm_per_rad", 1.0, "mm/rad")
+LENGTH_PER_RAD2: Final = Quantity("_mm_per_rad2", 1.0, "mm/rad2")
+ANGLE_PER_RAD: Final = Quantity("_deg_per_rad", math.pi / 180.0, "deg/rad")
+ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ from helpers_contour import (
     line,
     square_contour,
 )
+from helpers_distance import distances
 from helpers_pairs import profile
 
 TOLERANCE = 1e-3
@@ -103,7 +104,7 @@ def demand_true(made: Contour, allowed: float | None = None) -> None:
     """Runs join, tangents are those of the curve, the polygon is within its tolerance."""
     gaps, _ = joins(made)
     assert gaps.max() < (made.tolerance / 10 if allowed is None else allowed)
-    off = shapely.distance(made.polygon.boundary, shapely.points(as_pairs(dense(made))))
+    off = distances(as_pairs(dense(made)), made.polygon.boundary)
     assert off.max() <= made.tolerance
     for run in made.runs:
         points, units = run.points @ [1, 1j], run.tangents @ [1, 1j]
@@ -347,8 +348,7 @@ def test_any_distance_gives_the_points_at_that_distance(by: float) -> None:
     assume(abs(by) > 1e-6)
     contour = gear()
     made = moved(contour, by)
-    ring = contour.polygon.boundary
-    off = np.asarray(shapely.distance(ring, shapely.points(as_pairs(dense(made)))))
+    off = distances(as_pairs(dense(made)), contour.polygon.boundary)
     assert off == pytest.approx(np.full(len(off), abs(by)), abs=2 * TOLERANCE)
     wanted = buffered(contour, by)
     assert made.area == pytest.approx(wanted.area, abs=1.5 * TOLERANCE * wanted.length)

@@ -10,7 +10,7 @@ import pytest
 import shapely
 
 from gearcam.errors import InfeasibleError
-from gearcam.jobs import GearPairJob
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.phases import Phases

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -50,31 +51,46 @@ def test_contracts_hold() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize(
-    ("room", "line", "contract"),
-    [
-        ("errors", "from gearcam import findings", "One way through the house"),
-        ("design", "from gearcam import export", "One way through the house"),
-        ("numeric", "import shapely", "Mathematics needs numpy and nothing else"),
-        ("export", "from gearcam import laws", "Exporters see parts"),
-        ("parts", "import manifold3d", "manifold3d only in solids"),
-        ("solids", "import trimesh", "trimesh (and what it needs) only in export.mesh"),
-        ("jobs", "import ezdxf", "ezdxf only where DXF is written and read"),
-        ("jobs", "import shapely", "shapely only where regions are cut"),
-        ("jobs", "import scipy.optimize", "pydantic only in design"),
-    ],
-)
-def test_a_wrong_import_is_caught(tmp_path: Path, room: str, line: str, contract: str) -> None:
-    copy = tmp_path / "src" / "gearcam"
+WRONG = [
+    ("errors", "from gearcam import findings", "One way through the house"),
+    ("design", "from gearcam import export", "One way through the house"),
+    ("numeric", "import shapely", "Mathematics needs numpy and nothing else"),
+    ("export", "from gearcam import laws", "Exporters see parts"),
+    ("parts", "import manifold3d", "manifold3d only in solids"),
+    ("solids", "import trimesh", "trimesh (and what it needs) only in export.mesh"),
+    ("jobs", "import ezdxf", "ezdxf only where DXF is written and read"),
+    ("jobs", "import shapely", "shapely only where regions are cut"),
+    ("jobs", "import scipy.optimize", "pydantic only in design"),
+]
+"""A room, an import planted there, and the contract that it breaks."""
+
+
+@pytest.fixture(scope="module")
+def broken(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """What is said of each broken contract of a copy with all wrong imports."""
+    root = tmp_path_factory.mktemp("planted")
+    copy = root / "src" / "gearcam"
     shutil.copytree(rules.SOURCE, copy)
-    place = copy / room / "planted.py" if (copy / room).is_dir() else copy / f"{room}.py"
-    assert place.exists() or place.name == "planted.py"
-    with place.open("a", encoding="utf-8") as file:
-        file.write(f"\n\ndef planted():\n    {line}\n")
-    done = _contracts(tmp_path)
-    broken = [text for text in done.stdout.splitlines() if " BROKEN" in text]
+    for room, line, _ in WRONG:
+        place = copy / room / "planted.py" if (copy / room).is_dir() else copy / f"{room}.py"
+        assert place.exists() or place.name == "planted.py"
+        with place.open("a", encoding="utf-8") as file:
+            file.write(f"\n\ndef planted():\n    {line}\n")
+    done = _contracts(root)
     assert done.returncode != 0
-    assert any(contract in text for text in broken), done.stdout + done.stderr
+    _, _, told = done.stdout.partition("Broken contracts")
+    parts = re.split(r"^(\S.*)\n-{5,}\n", told, flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2], strict=True))
+
+
+@pytest.mark.parametrize(("room", "line", "contract"), WRONG)
+def test_a_wrong_import_is_caught(
+    broken: dict[str, str], room: str, line: str, contract: str
+) -> None:
+    (told,) = (text for name, text in broken.items() if contract in name)
+    guilty = room if (rules.SOURCE / f"{room}.py").exists() else f"{room}.planted"
+    what = line.split()[-1] if line.startswith("import") else f"gearcam.{line.split()[-1]}"
+    assert re.search(rf"gearcam\.{guilty} -> {what.partition('.optimize')[0]}\b", told), told
 
 
 def test_slow_libraries_are_imported_where_they_are_needed() -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
 
-import mpmath
 import numpy as np
 import pytest
 
@@ -43,6 +41,18 @@ NAMES = {
 
 def built(claim: Claim) -> RatioLaw:
     return claim.parameters.build(claim.lobes, DEFAULT)
+
+
+def tanh_sinh(breaks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Places and weights between breaks: x = tanh(pi/2*sinh(t)), t in equal steps.
+
+    The weights beyond |t| = 3.25 are below rounding.
+    """
+    t = np.arange(-104, 105) / 32.0
+    half, middle = 0.5 * np.diff(breaks)[:, None], 0.5 * (breaks[:-1] + breaks[1:])[:, None]
+    x = 0.5 * np.pi * np.sinh(t)
+    weights = 0.5 * np.pi * np.cosh(t) / np.cosh(x) ** 2 / 32.0
+    return middle + half * np.tanh(x), half * weights
 
 
 def test_the_registry_holds_exactly_the_laws_that_are_documented() -> None:
@@ -96,16 +106,17 @@ def test_derivatives_are_those_of_high_precision_differences(claim: Claim) -> No
 
 @pytest.mark.parametrize("claim", CLAIMS)
 def test_the_driven_angle_is_the_integral_of_the_ratio(claim: Claim) -> None:
-    """An adaptive high-order quadrature that knows only the ratio."""
+    """A quadrature of another kind than the law's own, that knows only the ratio.
+
+    With half its places it gives the same: what it misses is less than what is demanded.
+    """
     law = built(claim)
-
-    def ratio(x: Any) -> float:
-        return float(law.derivatives(np.array([float(x)]), 0)[0][0])
-
     for phi in (0.3 * law.lobes.period, 0.9 * law.lobes.period):
-        inner = np.append(np.linspace(0.0, phi, 9), [k for k in law.knots if k < phi])
-        breaks = sorted(set(inner.tolist()))
-        integral = float(mpmath.quad(ratio, breaks))  # pyright: ignore[reportArgumentType]
+        breaks = np.unique(np.append(np.linspace(0.0, phi, 9), law.knots[law.knots < phi]))
+        places, weights = tanh_sinh(breaks)
+        values = law.derivatives(places.ravel(), 0)[0].reshape(places.shape) * weights
+        integral = float(values.sum())
+        assert 2.0 * float(values[:, ::2].sum()) == pytest.approx(integral, abs=1e-13)
         assert float(law.phi2(phi)) == pytest.approx(integral, abs=1e-13)
 
 

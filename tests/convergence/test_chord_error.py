@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
-import shapely
+from shapely import LinearRing
 
 from gearcam.gears.outline import Outline
 from gearcam.gears.rolling import Wheel
@@ -21,6 +21,7 @@ from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.numeric.contour import polygon_area
+from helpers_distance import distances
 from helpers_pairs import job, profile
 
 FINE = 1e-6
@@ -64,15 +65,6 @@ def module(outline: Outline) -> float:
     return outline.toothing.pitch / np.pi
 
 
-def distances(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
-    """Distance of each point from a closed polygon, mm."""
-    ends = np.concatenate([polygon, polygon[:1]])
-    chords: Any = shapely.linestrings(np.stack([ends[:-1], ends[1:]], axis=1))
-    places = shapely.points(points)
-    _, nearest = shapely.STRtree(chords).query_nearest(places, all_matches=False)
-    return shapely.distance(places, chords[nearest])
-
-
 class Demand(NamedTuple):
     """What a curve asks for."""
 
@@ -99,11 +91,11 @@ def demand(name: str, wheel: Wheel) -> Demand:
 def test_vertices_lie_on_the_true_curve(name: str, wheel: Wheel) -> None:
     fine = finest(name, wheel)
     m = module(fine)
-    vertices = at(fine, m / 1000).points
-    assert distances(vertices, fine.points).max() <= 1.01 * FINE * m
+    vertices, ring = at(fine, m / 1000).points, LinearRing(fine.points)
+    assert distances(vertices, ring).max() <= 1.01 * FINE * m
     off = vertices.copy()
     off[7] *= 1 + 1e-6
-    assert distances(off, fine.points)[7] > 2 * FINE * m
+    assert distances(off, ring)[7] > 2 * FINE * m
 
 
 @both
@@ -130,7 +122,7 @@ def test_no_chord_is_farther_off_than_the_tolerance(name: str, wheel: Wheel, par
 def test_the_finest_outline_lies_within_the_tolerance(name: str, wheel: Wheel, part: float) -> None:
     fine = finest(name, wheel)
     tolerance = part * module(fine)
-    worst = distances(fine.points, at(fine, tolerance).points).max()
+    worst = distances(fine.points, LinearRing(at(fine, tolerance).points)).max()
     assert 0.5 * tolerance <= worst <= tolerance
 
 

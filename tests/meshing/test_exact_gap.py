@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 from gearcam.gears.pair import Gear
-from gearcam.jobs import GearPairJob
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.contact import (
     COAST,
@@ -24,17 +25,19 @@ from gearcam.meshing.gap import touches
 from helpers_pairs import job, profile
 
 
-def samples() -> list[GearPairJob]:
-    return [
+@cache
+def samples() -> tuple[GearPairJob, ...]:
+    return (
         profile("nail_machine_two_phase"),
         profile("nail_machine_three_phase"),
         job(Ellipse(eccentricity=0.3), (24, 24), module=2.0),
-    ]
+    )
 
 
 NAMES = ["two phases", "three phases", "ellipse"]
 
 
+@cache
 def dense(gear: Gear, tooth: int, sigma: int, points: int) -> np.ndarray:
     """Points of one flank, root first, as complex numbers in the wheel's frame."""
     flanks, toothing = gear.profile.flanks, gear.toothing

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
 import shapely
 from numpy.typing import NDArray
 
-from gearcam.jobs import GearPairJob
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.ellipse import Ellipse
-from gearcam.meshing.halves import halve
+from gearcam.meshing.halves import Halves, halve
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.staircase import Facing
 from helpers_pairs import job, profile
@@ -22,8 +23,13 @@ ADVANCE = math.radians(0.005)
 TURN = np.radians(np.arange(360.0))
 
 
+@cache
+def halves_of(made: GearPairJob) -> tuple[Halves, Halves]:
+    return halve(made.gear1.profile), halve(made.gear2.profile)
+
+
 def turning_of(made: GearPairJob, shift: float = 0.0) -> Turning:
-    first, second = (halve(gear.profile) for gear in made.gears)
+    first, second = halves_of(made)
     distance = made.pair.center_distance + shift
     return Turning(rolling=made.pair.rolling, driver=first, driven=second, distance=distance)
 
@@ -50,11 +56,16 @@ OVERLAPPING = {
 }
 
 
+@cache
+def overlapping(name: str) -> GearPairJob:
+    return OVERLAPPING[name]()
+
+
 @pytest.mark.parametrize("name", OVERLAPPING)
 @pytest.mark.parametrize("shift", [0.0, 0.03, -0.03, 0.4])
 def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float) -> None:
     """In its place, mounted close and wide (in modules), and turned by up to half a tooth."""
-    made = OVERLAPPING[name]()
+    made = overlapping(name)
     module = made.pair.module
     turning = turning_of(made, shift * module)
     angles = np.radians(np.linspace(0.0, 360.0, 9) + 0.3)
@@ -82,7 +93,7 @@ def test_polygons_are_asked_where_a_graph_cannot_tell(lead: float, share: float)
 )
 def test_graphs_and_polygons_find_the_same_pieces(name: str, shift: float, lead: float) -> None:
     """Shift and lead in modules: tips in roots, and flanks through flanks."""
-    made = OVERLAPPING[name]()
+    made = overlapping(name)
     turning = turning_of(made, shift * made.pair.module)
     angle = lead * made.pair.module / turning.distance
     angles = TURN[::5]

@@ -15,11 +15,9 @@ from typing import Any
 import mpmath as mp
 import pytest
 
-import gearcam
 from gearcam.errors import GearcamError
 from helpers_gallery import NUMBERS, Number
-
-PROFILES = Path(__file__).parent.parent.parent / "profiles"
+from helpers_pairs import PROFILES, profile
 
 
 def formula_distance() -> float:
@@ -141,8 +139,7 @@ def test_numbers_without_their_file_fail() -> None:
 
 @pytest.mark.parametrize("name", sorted(EXPECTED))
 def test_a_file_shows_its_numbers(name: str) -> None:
-    made = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
-    summary = made.summary()
+    summary = profile(name).summary()
     assert summary["name"] == name
     assert list(misses(summary, EXPECTED[name])) == []
     assert [gear["undercut_teeth"] for gear in summary["gears"]] == UNDERCUT[name]
@@ -150,7 +147,7 @@ def test_a_file_shows_its_numbers(name: str) -> None:
 
 
 def test_a_wrong_number_is_seen() -> None:
-    summary = gearcam.build(gearcam.load(PROFILES / "ellipse.toml")).summary()
+    summary = profile("ellipse").summary()
     off = {"pair.center_distance_mm": (41.9606757804 + 2e-10, 1e-10)}
     assert len(list(misses(summary, off))) == 1
 
@@ -165,11 +162,11 @@ def kind_of(file: str) -> str:
 
 @pytest.mark.parametrize("name", sorted(EXPECTED))
 def test_a_file_writes_what_it_lists(name: str, tmp_path: Path) -> None:
-    design = gearcam.load(PROFILES / f"{name}.toml")
+    made = profile(name)
     try:
-        written = gearcam.build(design).write(tmp_path)
+        written = made.write(tmp_path)
     except GearcamError as error:  # pragma: no cover
         pytest.fail(str(error))
     kinds = {kind_of(file) for file in written.files} - {"json"}
-    assert kinds == set(design.output.files)
+    assert kinds == set(made.design.output.files)
     assert {path.name for path in (tmp_path / name).iterdir()} == set(written.files)

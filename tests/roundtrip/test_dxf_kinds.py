@@ -21,6 +21,7 @@ from gearcam.parts import Circle, Loop, Opening, Part
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.openings import bore as bore_of
 from helpers_contour import bore, gear_contour
+from helpers_distance import distances
 
 TOLERANCE = 1e-3
 
@@ -70,7 +71,7 @@ def de_boor(poles: np.ndarray, knots: np.ndarray, count: int) -> np.ndarray:
 
 
 def test_splines_stay_within_the_tolerance() -> None:
-    from shapely import LinearRing, points
+    from shapely import LinearRing
 
     part = wheel()
     data = dxf_bytes(wheel_drawing(part), DxfStyle(tolerance=TOLERANCE, curves="splines"))
@@ -78,8 +79,7 @@ def test_splines_stay_within_the_tolerance() -> None:
     found = spline_points(data)
     assert len(found) == len(part.contour.runs)
     dense = np.vstack([run.points[:-1] for run in part.contour.runs])
-    ring = LinearRing(dense)
-    away = np.asarray(ring.distance(points(np.vstack(found))))
+    away = distances(np.vstack(found), LinearRing(dense))
     assert 0.2 * TOLERANCE < away.max() <= TOLERANCE
     for one, two in zip(found, [*found[1:], found[0]], strict=True):
         assert one[-1] == pytest.approx(two[0], abs=1e-14)

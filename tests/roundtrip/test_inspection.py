@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from gearcam.design import OutputSpec
-from gearcam.jobs import GearPairJob
 from gearcam.jobs.files import export
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.parts import Blank
 from helpers_pairs import profile
 

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from gearcam.design import OutputSpec
-from gearcam.jobs import GearPairJob
 from gearcam.jobs.files import export, poses
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.parts import Blank, mass_properties
 from helpers_pairs import profile
 

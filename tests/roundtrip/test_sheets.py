@@ -9,6 +9,7 @@ import sys
 import xml.etree.ElementTree as ET
 from collections import Counter
 from dataclasses import replace
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -54,6 +55,7 @@ def keyed(bore: float = 40.0) -> Part:
     return replace(made, openings=(*made.openings, *more))
 
 
+@cache
 def plain() -> Part:
     blank = WheelBlank(bore_diameter=20.0, timing_marks=False)
     contour = gear_contour(24, 2.0, squash=(1.0, 1.0))
@@ -139,13 +141,29 @@ def pair(phi: float = 0.3) -> Drawing:
 
 
 @pytest.fixture(scope="module")
+def data(wheel: tuple[Part, list[float], Sheet]) -> bytes:
+    return sheet_dxf(wheel[2], STYLE)
+
+
+@cache
+def pair_page() -> Sheet:
+    return pair_sheet(pair(), 47.8, FACTS, TITLE, pitch_radius=23.9)
+
+
+@cache
+def pair_file() -> bytes:
+    return sheet_dxf(pair_page(), STYLE)
+
+
+@pytest.fixture(scope="module")
 def sheets(wheel: tuple[Part, list[float], Sheet]) -> list[Sheet]:
-    return [wheel[2], pair_sheet(pair(), 47.8, FACTS, TITLE, pitch_radius=23.9)]
+    return [wheel[2], pair_page()]
 
 
-def test_every_dimension_is_the_parts_own(wheel: tuple[Part, list[float], Sheet]) -> None:
+def test_every_dimension_is_the_parts_own(
+    wheel: tuple[Part, list[float], Sheet], data: bytes
+) -> None:
     part, sizes, sheet = wheel
-    data = sheet_dxf(sheet, STYLE)
     assert faults(data, sizes, told(sheet)) == []
     assert measure_dxf(data, part.contours) <= 1e-3
 
@@ -171,10 +189,10 @@ def test_the_pair_tells_its_centre_distance_in_any_pose() -> None:
 
 
 def test_the_texts_of_dimensions_are_what_they_measure(
-    wheel: tuple[Part, list[float], Sheet],
+    wheel: tuple[Part, list[float], Sheet], data: bytes
 ) -> None:
     """In the file as in the sheet: at most three decimals, no idle zeros."""
-    document, shown = read_dxf(sheet_dxf(wheel[2], STYLE)), []
+    document, shown = read_dxf(data), []
     for one in document.modelspace():
         block = one.get_geometry_block() if isinstance(one, Dimension) else None
         found = [text for text in block or () if text.dxftype() == "MTEXT"]
@@ -184,9 +202,9 @@ def test_the_texts_of_dimensions_are_what_they_measure(
         assert not re.search(r"\d\.\d{4}|\.\d*0\b|\.$", text)
 
 
-def test_the_dxf_has_its_layers_and_styles(sheets: list[Sheet]) -> None:
-    for sheet in sheets:
-        document = read_dxf(sheet_dxf(sheet, STYLE))
+def test_the_dxf_has_its_layers_and_styles(sheets: list[Sheet], data: bytes) -> None:
+    for sheet, file in zip(sheets, (data, pair_file()), strict=True):
+        document = read_dxf(file)
         used = {entity.dxf.layer for entity in document.modelspace()}
         assert {"DIMENSION", "TEXT", "CENTERLINE", "FRAME"} <= used
         assert all(layer in document.layers for layer in used)
@@ -296,10 +314,9 @@ def test_the_rows_of_the_table_line_up(sheets: list[Sheet]) -> None:
         assert -np.diff(labels[:, 1]) == pytest.approx(5.0)
 
 
-def test_special_letters_survive(wheel: tuple[Part, list[float], Sheet]) -> None:
-    sheet = wheel[2]
-    assert TITLE in [words for words, _ in boxes(root_of(sheet))]
-    texts = [one.plain_text() for one in read_dxf(sheet_dxf(sheet, STYLE)).query("TEXT")]  # type: ignore[attr-defined]
+def test_special_letters_survive(wheel: tuple[Part, list[float], Sheet], data: bytes) -> None:
+    assert TITLE in [words for words, _ in boxes(root_of(wheel[2]))]
+    texts = [one.plain_text() for one in read_dxf(data).query("TEXT")]  # type: ignore[attr-defined]
     assert TITLE in texts
     assert "7850 kg/m^3" in texts
 

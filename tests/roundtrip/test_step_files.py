@@ -9,8 +9,8 @@ import pytest
 
 from gearcam.design import OutputSpec
 from gearcam.export.step import read_step
-from gearcam.jobs import GearPairJob
 from gearcam.jobs.files import export
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.parts import Blank
 from helpers_pairs import profile
 
@@ -54,11 +54,18 @@ def test_the_pair_stands_assembled(job: GearPairJob, files: dict[str, bytes]) ->
     assert one.bounds[1][0] <= reach + 1e-3
 
 
-def test_a_non_circular_wheel_keeps_its_volume() -> None:
+@pytest.mark.parametrize(
+    ("name", "bore"),
+    [
+        ("formula", 8.0),
+        pytest.param("nail_machine_two_phase", 40.0, marks=pytest.mark.slow),
+    ],
+)
+def test_a_non_circular_wheel_keeps_its_volume(name: str, bore: float) -> None:
     design = replace(
-        profile("nail_machine_two_phase").design,
+        profile(name).design,
         output=OutputSpec(files=("step",)),
-        blank=Blank(bore_diameter=(40.0, 0.0), tip_rounding=(0.3, 0.0)),
+        blank=Blank(bore_diameter=(bore, 0.0), tip_rounding=(0.3, 0.0)),
     )
     job = GearPairJob(design)
     made = export(job, "step", {})

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from gearcam.design import loads
+from gearcam.design import GearPairDesign, loads
 from gearcam.errors import DesignError, Problem
 
 GOOD = """\
@@ -24,6 +24,12 @@ files = ["csv"]
 """
 
 
+def read(blank: str) -> GearPairDesign:
+    design = loads(GOOD + blank)
+    assert isinstance(design, GearPairDesign)
+    return design
+
+
 def problems(blank: str) -> list[Problem]:
     with pytest.raises(DesignError) as caught:
         loads(GOOD + blank)
@@ -33,11 +39,11 @@ def problems(blank: str) -> list[Problem]:
 def test_one_value_holds_for_both_wheels() -> None:
     keyway = "keyway_angle_deg = 90\nkeyway_depth_mm = 2\nkeyway_width_mm = 5\n"
     bolts = "bolts = 3\nbolt_circle_mm = 40\nbolt_diameter_mm = 5\n"
-    one = loads(GOOD + "bore_diameter_mm = 20\n" + keyway + bolts).blank
+    one = read("bore_diameter_mm = 20\n" + keyway + bolts).blank
     assert one.bore_diameter == (20.0, 20.0)
     assert one.keyway_angle == pytest.approx((math.pi / 2, math.pi / 2))
     assert one.bolts == (3, 3)
-    two = loads(GOOD + "bore_diameter_mm = [20, 0]\ndensity_kg_m3 = [7850, 1200]").blank
+    two = read("bore_diameter_mm = [20, 0]\ndensity_kg_m3 = [7850, 1200]").blank
     assert two.wheel(1).bore == 20.0
     assert two.wheel(2).bore == 0.0
     assert two.wheel(2).density == 1200.0
@@ -115,7 +121,7 @@ def test_a_blank_made_in_python_meets_the_same_rules(change: dict[str, Any], goo
 
     from gearcam.parts import Blank
 
-    design = loads(GOOD)
+    design = read("")
     if good:
         made = replace(design, blank=Blank(**change))
         assert made.blank.wheel(2).bore == 20.0

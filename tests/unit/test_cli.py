@@ -14,7 +14,8 @@ from typing import Any, ClassVar
 import pytest
 
 from gearcam.cli import main
-from gearcam.design import FORMATS, GearPairDesign, load
+from gearcam.design import KINDS, GearPairDesign, load
+from gearcam.design.motion import rises
 from gearcam.errors import InfeasibleError, WriteError
 from gearcam.findings import Finding
 from gearcam.laws.base import LAWS
@@ -103,7 +104,7 @@ class Job:
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     module = types.ModuleType("gearcam.jobs")
-    module.GearPairJob = Job  # type: ignore[attr-defined]
+    module.make_job = Job  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "gearcam.jobs", module)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("GEARCAM_DEBUG", raising=False)
@@ -265,7 +266,7 @@ def test_progress_is_drawn_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> Non
 
 @pytest.mark.parametrize(
     "arguments",
-    [["build"], ["bild"], ["build", "--no-such"], ["new"], ["new", "cam"], ["new", "x"], []],
+    [["build"], ["bild"], ["build", "--no-such"], ["new"], ["new", "x"], []],
 )
 def test_wrong_usage_is_code_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(arguments) == 2
@@ -277,7 +278,9 @@ def test_wrong_usage_is_code_2(arguments: list[str], capsys: pytest.CaptureFixtu
 def test_help_and_version_are_good(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     assert main(["build", "--help"]) == 0
-    assert capsys.readouterr().out.isascii()
+    out = capsys.readouterr().out
+    assert out.isascii()
+    assert all(name in "".join(out.split()) for kind in KINDS.values() for name in kind.formats)
 
 
 def test_new_writes_a_design_that_reads_and_overwrites_nothing(
@@ -314,9 +317,11 @@ def test_the_new_design_builds_and_only_a_note_is_found(
         assert name in out
 
 
-def test_new_tells_what_comes_later_and_what_was_meant(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["new", "cam"]) == 2
-    assert "cams are not built by this version yet" in capsys.readouterr().err
+@pytest.mark.usefixtures("desk")
+def test_new_knows_every_kind_and_what_was_meant(capsys: pytest.CaptureFixture[str]) -> None:
+    for kind in KINDS:
+        assert main(["new", kind, f"{kind}.toml"]) == 0
+        assert load(f"{kind}.toml").kind == kind
     assert main(["new", "gearpair"]) == 2
     assert "did you mean gear-pair?" in capsys.readouterr().err
 
@@ -333,6 +338,9 @@ def test_laws_shows_every_law_with_keys_continuity_and_source(
         assert " ".join(law.source.split()) in flat
     assert "knots_deg" in out
     assert "from 0 to below 1" in flat
+    for name, rise in rises().items():
+        assert f'    law = "{name}"\n' in out.partition("Laws of cams")[2]
+        assert " ".join(rise.source.split()) in flat
 
 
 def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
@@ -341,7 +349,9 @@ def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert out.isascii()
     made = json.loads(out)
     assert made["$schema"].endswith("2020-12/schema")
-    assert made["$defs"]["output"]["properties"]["files"]["items"]["enum"] == list(FORMATS)
+    for name, kind in KINDS.items():
+        files = made["$defs"][f"{name}-output"]["properties"]["files"]
+        assert files["items"]["enum"] == list(kind.formats)
 
 
 def _run(*arguments: str, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:

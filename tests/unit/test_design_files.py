@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from gearcam.design import OutputSpec, load, loads
+from gearcam.design import GearPairDesign, OutputSpec, load, loads
 from gearcam.design.template import template
 from gearcam.errors import DesignError, Problem
 from gearcam.gears.spec import Rack
@@ -32,6 +32,12 @@ teeth = [36, 36]
 [output]
 files = ["csv"]
 """
+
+
+def read(text: str, file: str = "") -> GearPairDesign:
+    design = loads(text, file=file)
+    assert isinstance(design, GearPairDesign)
+    return design
 
 
 def problems(text: str, file: str = "design.toml") -> list[Problem]:
@@ -59,7 +65,7 @@ def test_every_profile_is_read(path: Path) -> None:
 
 
 def test_angles_become_radians_and_lengths_stay_millimetres() -> None:
-    design = loads(changed('files = ["csv"]', 'files = ["csv"]\nchord_tolerance_mm = 0.002'))
+    design = read(changed('files = ["csv"]', 'files = ["csv"]\nchord_tolerance_mm = 0.002'))
     assert design.law.knots == pytest.approx((0.0, math.radians(160), 2 * math.pi), abs=0)
     assert design.law.ratios == (1.6, 0.4, 1.6)
     assert isinstance(design.pair.center_distance, float)
@@ -70,7 +76,7 @@ def test_angles_become_radians_and_lengths_stay_millimetres() -> None:
 
 
 def test_what_is_left_out_takes_its_default() -> None:
-    design = loads(GOOD.replace('[output]\nfiles = ["csv"]\n', ""))
+    design = read(GOOD.replace('[output]\nfiles = ["csv"]\n', ""))
     assert design.output.files == OutputSpec().files
     assert design.rack == Rack()
     assert design.blank == Blank()
@@ -270,7 +276,6 @@ def test_what_is_missing_names_its_table() -> None:
         "law",
         "pair",
     }
-    assert {problem.key for problem in problems("")} == {"kind", "law", "pair"}
     assert only(changed('kind = "gear-pair"\n', "")).key == "kind"
 
 
@@ -297,9 +302,26 @@ def test_only_an_open_pair_solves_a_knot() -> None:
     loads(opened)
 
 
-def test_cams_wait_for_a_later_version_and_nothing_else_is_said() -> None:
-    problem = only('kind = "cam"\n[follower]\ntype = "roller"\n')
-    assert "cams are not built by this version yet" in problem.message
+def test_tables_of_another_kind_are_named_as_such() -> None:
+    (problem,) = problems(GOOD + '\n[follower]\ntype = "roller"\n')
+    assert problem.message == "unknown table"
+    assert problem.hint == 'this table belongs to kind = "cam"'
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("", {"kind", "law", "pair"}),
+        ("[pair]\nteeth = [20, 20]\nmodule_mm = 2\n", {"kind", "law"}),
+        ('kind = "cams"', {"kind", "motion", "follower", "cam"}),
+        ("[cam]\nprime_radius_mm = 2\n", {"kind", "motion", "follower"}),
+    ],
+)
+def test_without_a_kind_the_likeliest_one_is_judged(text: str, wrong: set[str]) -> None:
+    found = problems(text)
+    assert {problem.key for problem in found} == wrong
+    (kind,) = [problem for problem in found if problem.key == "kind"]
+    assert kind.allowed == '"gear-pair" or "cam"'
 
 
 def test_splines_are_refused_in_r12_only() -> None:
@@ -342,8 +364,8 @@ def test_limits_are_those_of_the_checks() -> None:
 
 
 def test_the_template_reads_and_shows_every_key() -> None:
-    text = template("my_pair")
-    assert loads(text).name == "my_pair"
+    text = template("gear-pair", "my_pair")
+    assert read(text).name == "my_pair"
     for words in (
         *("phases", "ellipse", "formula", "constant", "knots_deg", "eccentricity", "phi2", "r1"),
         *("module_mm", "face_width_mm", "pressure_angle_deg", "bore_diameter_mm", "dxf_curves"),

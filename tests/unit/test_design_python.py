@@ -36,6 +36,7 @@ files = ["csv"]
 
 def test_a_design_made_in_python_equals_the_one_read() -> None:
     read = loads(GOOD)
+    assert isinstance(read, GearPairDesign)
     made = GearPairDesign(
         name="good",
         law_type="phases",

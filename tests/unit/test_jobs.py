@@ -14,7 +14,7 @@ import pytest
 from gearcam.errors import InfeasibleError
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.spec import Rack
-from gearcam.jobs import GearPairJob
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula

@@ -11,7 +11,7 @@ import pytest
 
 import gearcam
 from gearcam.cli import main
-from gearcam.design import loads, with_meshing
+from gearcam.design import GearPairDesign, loads, with_meshing
 from gearcam.errors import DesignError
 from gearcam.jobs import gear_pair
 from gearcam.meshing import study as room
@@ -71,7 +71,9 @@ def test_options_stand_before_the_file(design: str) -> None:
 
 
 def test_a_close_mounting_ends_with_an_error(design: str) -> None:
-    pair = gearcam.build(gearcam.load(design)).pair
+    loaded = gearcam.load(design)
+    assert isinstance(loaded, GearPairDesign)
+    pair = gearcam.build(loaded).pair
     code, folder = run(design, "--center", f"{pair.center_distance - 0.05}")
     assert code == 1
     findings = summary(folder)["findings"]

@@ -17,6 +17,7 @@ from gearcam.parts import Mark, Opening, Part, Place, WheelBlank, make_part, tim
 from gearcam.parts.openings import bore, openings
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import disc_contour, gear_contour
+from helpers_distance import distances
 from helpers_pairs import profile
 
 FINE = 1e-6
@@ -103,7 +104,7 @@ def roots_away() -> tuple[np.ndarray, np.ndarray]:
     axis = np.linspace(-36.0, 36.0, 241)
     grid = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
     polygon = toothed().polygon
-    away = shapely.distance(polygon.boundary, shapely.points(grid))
+    away = distances(grid, polygon.boundary)
     return grid, np.where(shapely.contains_xy(polygon, *grid.T), away, -away)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from gearcam.findings import Finding
 from gearcam.gears.pair import contact_arcs
-from gearcam.jobs import GearPairJob
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.jobs.ordered import kept_reach
 from gearcam.parts import Blank
 from helpers_pairs import profile

@@ -16,15 +16,19 @@ import pytest
 
 import gearcam
 from gearcam.cli import main
-from gearcam.design import FORMATS, loads
-from gearcam.design.tables import TABLES, law_table, register_checks, table
+from gearcam.design import KINDS, GearPairDesign, document_of, loads
+from gearcam.design.gear_pair import law_table
+from gearcam.design.motion import phase_table, rise_table, rises
 from gearcam.findings import CHECKS
 from gearcam.laws.base import LAWS
+from gearcam.laws.phases_of_lift import PHASES
 from gearcam.parts import mass_properties
+from gearcam.quantities import Param
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 CONVENTIONS = (ROOT / "docs" / "conventions.md").read_text(encoding="utf-8")
+CAMS = ROOT / "docs" / "cams.md"
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
 PROFILE = ROOT / "profiles" / "nail_machine_two_phase.toml"
 PICTURE = ROOT / "docs" / "nail_machine_two_phase.svg"
@@ -110,10 +114,17 @@ def test_the_design_file_shown_is_the_profile() -> None:
     assert loads(block("toml")).name == "nail_machine_two_phase"
 
 
+def test_the_cam_shown_is_the_profile() -> None:
+    profile = gearcam.load(ROOT / "profiles" / "plate_cam_offset_roller.toml")
+    assert document_of(loads(block("toml", 1))) == document_of(profile)
+
+
 def test_the_blank_shown_is_one_that_can_be_made() -> None:
-    text = block("toml").replace("[blank]\nbore_diameter_mm = [40, 40]\n", block("toml", 1))
+    text = block("toml").replace("[blank]\nbore_diameter_mm = [40, 40]\n", block("toml", 2))
     assert text != block("toml")
-    job = gearcam.build(loads(text))
+    design = loads(text)
+    assert isinstance(design, GearPairDesign)
+    job = gearcam.build(design)
     heavy, light = (mass_properties(part, 7850.0).mass for part in job.parts)
     assert 0.0 < heavy < light  # the driver has holes
     assert not [finding for finding in job.findings if finding.severity == "error"]
@@ -151,18 +162,39 @@ def test_the_laws_are_those_of_the_registry() -> None:
     assert status[1] == "works"
 
 
-def test_the_checks_are_those_of_the_registry() -> None:
-    register_checks()
-    shown = {quoted(row[0])[0]: row for row in rows(section("Checks"))}
-    assert set(shown) == set(CHECKS)
-    for code, check in CHECKS.items():
-        limit = shown[code][2]
-        if check.limit is None:
-            assert limit == "none"
-            continue
-        name, made, default = check.limit
-        key, value = re.fullmatch(r"`(\w+)` = ([\d.e-]+)(?: \w+)?", limit).groups()  # type: ignore[union-attr]
-        assert key == made.key(name)
+def test_the_rises_are_those_of_the_registry() -> None:
+    shown = {name: row for row in rows(section("Cams")) for name in quoted(row[0])}
+    assert set(shown) == set(rises())
+    for name, row in shown.items():
+        assert set(rise_table(name).entries) <= set(quoted(row[1])), name
+
+
+@pytest.mark.parametrize("name", list(KINDS))
+def test_the_checks_are_those_of_the_registry(name: str) -> None:
+    KINDS[name].load_checks()
+    checks = {check.code: check for check in CHECKS.values() if check.kind in KINDS[name].checks}
+    pairs, _, cams = section("Checks").partition("\nAnd of cams:\n")
+    told = {"gear-pair": pairs, "cam": cams}[name]
+    shown = {code: row[2] for row in rows(told) for code in quoted(row[0])}
+    assert set(shown) == set(checks)
+    for code, check in checks.items():
+        if shown[code] == "as above":
+            above = [other.limit for (_, known), other in CHECKS.items() if known == code]
+            assert above == [check.limit] * 2
+        else:
+            assert_limit(shown[code], check.limit)
+
+
+def assert_limit(shown: str, limit: tuple[str, Param, float] | None) -> None:
+    if limit is None:
+        assert shown == "none"
+        return
+    name, made, default = limit
+    key, value = re.fullmatch(r"`(\w+)` = ([\d.e-]+)(?: .+)?", shown).groups()  # type: ignore[union-attr]
+    assert key == made.key(name)
+    if math.isnan(default):  # the design decides, and the check's own words say how
+        assert shown.partition(" = ")[2] in made.doc
+    else:
         assert float(value) * made.quantity.factor == pytest.approx(default, rel=1e-12)
 
 
@@ -175,7 +207,10 @@ def test_severities_are_as_they_come(example: Run) -> None:
 
 
 def test_every_kind_of_file_is_described() -> None:
-    assert {name for row in rows(section("Files")) for name in quoted(row[0])} == set(FORMATS)
+    shown = {name for row in rows(section("Files")) for name in quoted(row[0])}
+    assert shown == set(KINDS["gear-pair"].formats)
+    told = CAMS.read_text(encoding="utf-8").partition("\n## Files\n")[2]
+    assert [name for name in KINDS["cam"].formats if f"`{name}`" not in told] == []
 
 
 def test_every_command_and_option_is_named(capsys: pytest.CaptureFixture[str]) -> None:
@@ -228,10 +263,16 @@ def test_every_key_of_the_summary_is_described(example: Run, tmp_path: Path) -> 
     assert missing == []
 
 
-def test_every_key_of_design_files_is_described() -> None:
+@pytest.mark.parametrize("name", list(KINDS))
+def test_every_key_of_design_files_is_described(name: str) -> None:
     told = CONVENTIONS.partition("\n## Design files\n")[2].partition("\n## ")[0]
-    entries = [key for title in [*TABLES, "limits"] for key in table(title).entries]
-    entries += [key for law in LAWS for key in law_table(law).entries]
+    kind = KINDS[name]
+    entries = [key for title in [*kind.tables, "limits"] for key in kind.table(title).entries]
+    if kind.main == "law":
+        entries += [key for law in LAWS for key in law_table(law).entries]
+    else:  # what cams share with pairs is told there
+        told += CAMS.read_text(encoding="utf-8")
+        entries += [key for phase in PHASES for key in phase_table(phase).entries]
     assert len(entries) > 20
     assert [key for key in entries if f"`{key}`" not in told] == []
 

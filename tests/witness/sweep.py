@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from helpers_distance import distances
 from witness.kinematics import Basic, Frames, Rolling
 
 Array = NDArray[np.floating[Any]]
@@ -126,6 +127,4 @@ def inside(points: Array, rolling: Rolling, wheel: int, k: int, basic: Basic) ->
 
 def farthest(points: Array, region: Region) -> float:
     """Largest distance of points from the boundary of a region, mm."""
-    boundary = shapely.boundary(region)
-    shapely.prepare(boundary)
-    return float(shapely.distance(shapely.points(points), boundary).max())
+    return float(distances(points, shapely.boundary(region)).max())

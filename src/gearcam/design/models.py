@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 _TYPES: Final = {float: "float", int: "int", str: "str", bool: "bool"}
 
 
-def faults_of(table: Table, raw: Any, *, home: Callable[[str], str]) -> Iterator[Fault]:
+def faults_of(
+    table: Table, raw: Any, *, home: Callable[[str], str], at: Path = ()
+) -> Iterator[Fault]:
     """Yield everything that is wrong in a table by itself.
 
     Parameters
@@ -32,6 +34,8 @@ def faults_of(table: Table, raw: Any, *, home: Callable[[str], str]) -> Iterator
         What the file holds under the table's name.
     home : callable
         Gives the words that say where a key of another place belongs.
+    at : tuple
+        Where the table stands; under its title if left out.
 
     Yields
     ------
@@ -40,9 +44,10 @@ def faults_of(table: Table, raw: Any, *, home: Callable[[str], str]) -> Iterator
     """
     from pydantic_core import ValidationError
 
+    at = at or (table.title,)
     if not isinstance(raw, Mapping):
         rule = f"a table [{table.title}] with {', '.join(table.entries) or 'no keys'}"
-        yield Fault((table.title,), f"{show(raw)} is not a table", raw, rule)
+        yield Fault(at, f"{show(raw)} is not a table", raw, rule)
         return
     raw = {key: _listed(table, key, value) for key, value in raw.items()}
     try:
@@ -55,12 +60,12 @@ def faults_of(table: Table, raw: Any, *, home: Callable[[str], str]) -> Iterator
                 place = place[:1]
             if place not in seen:
                 seen.add(place)
-                yield _fault(table, raw, place, home)
+                yield _fault(table, raw, place, home, at)
     for key, entry in table.entries.items():
         value = raw.get(key)
         plain = isinstance(value, list) and not isinstance(value, _Single)
         if plain and not _count_fits(entry, len(value)):
-            yield value_fault((table.title, key), value, entry, item=False)
+            yield value_fault((*at, key), value, entry, item=False)
 
 
 class _Single(list[Any]):
@@ -84,9 +89,11 @@ def _place(loc: tuple[str | int, ...]) -> Path:
     return loc[:2] if len(loc) > 1 and isinstance(loc[1], int) else loc[:1]
 
 
-def _fault(table: Table, raw: Mapping[str, Any], place: Path, home: Callable[[str], str]) -> Fault:
+def _fault(
+    table: Table, raw: Mapping[str, Any], place: Path, home: Callable[[str], str], at: Path
+) -> Fault:
     key = str(place[0])
-    path = (table.title, *place)
+    path = (*at, *place)
     entry = table.entries.get(key)
     if entry is None:
         known = ", ".join(table.entries) or "no keys"

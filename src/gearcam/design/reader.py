@@ -8,11 +8,16 @@ import tomllib
 from pathlib import Path
 from typing import Any, Final
 
+from gearcam.design.cam import CamDesign
 from gearcam.design.examine import examine
+from gearcam.design.gear_pair import GearPairDesign
+from gearcam.design.kinds import KINDS
 from gearcam.design.locate import line_at, lines_of
-from gearcam.design.spec import GearPairDesign
 from gearcam.design.wording import MISSING, Fault, dotted
 from gearcam.errors import DesignError, Problem
+
+Design = GearPairDesign | CamDesign
+"""A design of any kind."""
 
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _PLAIN: Final = {
@@ -31,7 +36,7 @@ _PLAIN: Final = {
 }
 
 
-def load(path: str | os.PathLike[str]) -> GearPairDesign:
+def load(path: str | os.PathLike[str]) -> Design:
     """Read a design file.
 
     Parameters
@@ -41,8 +46,8 @@ def load(path: str | os.PathLike[str]) -> GearPairDesign:
 
     Returns
     -------
-    GearPairDesign
-        In mm and rad.
+    GearPairDesign or CamDesign
+        In mm and rad, as the file's kind says.
 
     Raises
     ------
@@ -69,7 +74,7 @@ def load(path: str | os.PathLike[str]) -> GearPairDesign:
     return loads(text, file=file)
 
 
-def loads(text: str, *, file: str = "") -> GearPairDesign:
+def loads(text: str, *, file: str = "") -> Design:
     """Read the text of a design file.
 
     Parameters
@@ -81,8 +86,8 @@ def loads(text: str, *, file: str = "") -> GearPairDesign:
 
     Returns
     -------
-    GearPairDesign
-        In mm and rad.
+    GearPairDesign or CamDesign
+        In mm and rad, as the file's kind says.
 
     Raises
     ------
@@ -90,18 +95,19 @@ def loads(text: str, *, file: str = "") -> GearPairDesign:
         For everything that is wrong in it, each with its line.
     """
     document = _document(text, file)
-    _find_table(document, file)
+    _find_tables(document, file)
     found = examine(document, stem=Path(file).stem)
     if found.faults:
         raise DesignError(_problems(found.faults, text, file))
-    return GearPairDesign(source=file, **found.parts)
+    return KINDS[document["kind"]].design(source=file, **found.parts)
 
 
-def _find_table(document: dict[str, Any], file: str) -> None:
-    """Look for a law's table beside the design file."""
-    law = document.get("law")
-    if isinstance(law, dict) and isinstance(law.get("file"), str) and law["file"]:
-        law["file"] = os.fspath(Path(file).parent / law["file"])
+def _find_tables(document: dict[str, Any], file: str) -> None:
+    """Look for the tables of laws beside the design file."""
+    motion = document.get("motion")
+    for law in (document.get("law"), *(motion if isinstance(motion, list) else ())):
+        if isinstance(law, dict) and isinstance(law.get("file"), str) and law["file"]:
+            law["file"] = os.fspath(Path(file).parent / law["file"])
 
 
 def _problems(faults: list[Fault], text: str, file: str) -> list[Problem]:

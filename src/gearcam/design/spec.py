@@ -1,163 +1,116 @@
-"""A design: everything that one build is asked for, in mm and rad."""
+"""What all designs have in common: a design made in Python meets the rules of a file."""
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Iterable, Mapping
+from typing import Any, Protocol
 
 from gearcam.design.examine import examine
-from gearcam.design.tables import KIND, TABLES, OutputSpec, limits_table, table, table_of
+from gearcam.design.kinds import KINDS
 from gearcam.design.wording import MISSING, dotted
 from gearcam.errors import DesignError, Problem
-from gearcam.gears.spec import HelixSpec, PairSpec, Rack
-from gearcam.laws.base import LAWS
-from gearcam.meshing.settings import MeshingSpec
-from gearcam.parts.blank import Blank
+
+Wanted = tuple[str, Any, tuple[type, ...]]
+"""Key of a part, the part, and of which types it may be."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class GearPairDesign:
-    """A pair of non-circular gears as it is asked for.
-
-    Parameters
-    ----------
-    name : str
-        Name of the design and of its folder: letters, digits, ``_ - .``
-    source : str
-        The file it came from, empty for a design made in Python.
-    law_type : str
-        Name of the law in the registry.
-    law : object
-        The law's parameters, an instance of ``LAWS[law_type].parameters``.
-    pair : PairSpec
-        Centre distance or module, tooth counts, width.
-    rack : Rack
-        The basic rack.
-    blank : Blank
-        Bores, hubs, holes, marks, edges, density.
-    helix : HelixSpec
-        Steps of stepped wheels.
-    limits : mapping of str to float
-        Limits of checks by name, in mm and rad; the others keep their defaults.
-    output : OutputSpec
-        Files and their tolerance.
-    meshing : MeshingSpec
-        Phases and mounting of a meshing study.
-
-    Raises
-    ------
-    DesignError
-        If a value is not what a design file may hold, all problems at once.
-    """
-
-    name: str
-    source: str = ""
-    law_type: str
-    law: Any
-    pair: PairSpec
-    rack: Rack = field(default_factory=Rack)
-    blank: Blank = field(default_factory=Blank)
-    helix: HelixSpec = field(default_factory=HelixSpec)
-    limits: Mapping[str, float] = field(default_factory=dict)
-    output: OutputSpec = field(default_factory=OutputSpec)
-    meshing: MeshingSpec = field(default_factory=MeshingSpec)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "limits", dict(self.limits))
-        _demand_types(self)
-        faults = examine(document_of(self)).faults
-        if faults:
-            raise DesignError(
-                Problem(
-                    message=fault.message,
-                    file=self.source,
-                    key=dotted(fault.path),
-                    value=None if fault.value is MISSING else fault.value,
-                    allowed=fault.allowed,
-                    hint=fault.hint,
-                )
-                for fault in faults
-            )
+class DesignLike(Protocol):
+    """What every design has; the fields of its tables are those of its kind."""
 
     @property
     def kind(self) -> str:
         """The kind of design, as in a file."""
-        return KIND
+        ...
+
+    @property
+    def name(self) -> str:
+        """Its name, and that of its folder."""
+        ...
+
+    @property
+    def source(self) -> str:
+        """The file it came from, empty for a design made in Python."""
+        ...
+
+    @property
+    def limits(self) -> Mapping[str, float]:
+        """Limits of checks by name, in mm and rad; the others keep their defaults."""
+        ...
 
 
-def _demand_types(design: GearPairDesign) -> None:
-    wanted = dict(TABLES)
-    if design.law_type in LAWS:
-        wanted["law"] = LAWS[design.law_type].parameters
+def settle(design: DesignLike, wanted: Iterable[Wanted]) -> None:
+    """Refuse a design that no file could hold.
+
+    Parameters
+    ----------
+    design : DesignLike
+        All its fields set.
+    wanted : iterable of Wanted
+        Of what types the parts are that follow a registry; those of tables are known.
+
+    Raises
+    ------
+    DesignError
+        With all problems at once.
+    """
+    _demand_types(design, wanted)
+    faults = examine(document_of(design)).faults
+    if faults:
+        raise DesignError(
+            Problem(
+                message=fault.message,
+                file=design.source,
+                key=dotted(fault.path),
+                value=None if fault.value is MISSING else fault.value,
+                allowed=fault.allowed,
+                hint=fault.hint,
+            )
+            for fault in faults
+        )
+
+
+def _demand_types(design: DesignLike, wanted: Iterable[Wanted]) -> None:
+    kind = KINDS[design.kind]
+    owners = ((title, kind.table(title).owner) for title in kind.tables)
+    tables = [(title, getattr(design, title), (owner,)) for title, owner in owners if owner]
     problems = [
         Problem(
-            f"is a {type(getattr(design, key)).__name__}",
+            f"is a {type(part).__name__}",
             file=design.source,
             key=key,
-            allowed=f"an instance of {owner.__name__}",
+            allowed=f"an instance of {' or '.join(owner.__name__ for owner in types)}",
         )
-        for key, owner in wanted.items()
-        if not isinstance(getattr(design, key), owner)
+        for key, part, types in (*tables, *wanted)
+        if not isinstance(part, types)
     ]
     if problems:
         raise DesignError(problems)
 
 
-def document_of(design: GearPairDesign) -> dict[str, Any]:
+def document_of(design: DesignLike) -> dict[str, Any]:
     """Return what a design file with this design would hold.
 
     Parameters
     ----------
-    design : GearPairDesign
-        The design.
+    design : DesignLike
+        A design of any kind.
 
     Returns
     -------
     dict
         Nested dictionaries with the keys and units of a file.
     """
-    law: dict[str, Any] = {"type": design.law_type}
-    if design.law_type in LAWS:
-        law |= table_of("law", type(design.law)).outward(_values(design.law))
-    document: dict[str, Any] = {"kind": design.kind, "name": design.name, "law": law}
-    for title in TABLES:
-        document[title] = table(title).outward(_values(getattr(design, title)))
+    kind = KINDS[design.kind]
+    document: dict[str, Any] = {"kind": kind.name, "name": design.name}
+    document[kind.main] = kind.main_of(design)
+    for title in kind.tables:
+        document[title] = kind.table(title).document(getattr(design, title))
     if design.limits:
-        known = limits_table().entries.values()
-        keys = {entry.name: entry for entry in known}
+        known = {entry.name: entry for entry in kind.table("limits").entries.values()}
         document["limits"] = {
-            keys[name].key if name in keys else name: keys[name].outward(value)
-            if name in keys
+            known[name].key if name in known else name: known[name].outward(value)
+            if name in known
             else value
             for name, value in design.limits.items()
         }
     return document
-
-
-def with_meshing(design: GearPairDesign, given: Mapping[str, Any]) -> GearPairDesign:
-    """Return a design with other settings of its meshing study.
-
-    Parameters
-    ----------
-    design : GearPairDesign
-        The design.
-    given : mapping of str to value
-        Keys of the table ``[meshing]`` and values, in the units of a file.
-
-    Returns
-    -------
-    GearPairDesign
-
-    Raises
-    ------
-    DesignError
-        If a value is not what the file may hold.
-    """
-    values = _values(design.meshing) | table("meshing").inward(given)
-    return dataclasses.replace(design, meshing=MeshingSpec(**values))
-
-
-def _values(owner: Any) -> dict[str, Any]:
-    return {entry.name: getattr(owner, entry.name) for entry in dataclasses.fields(owner)}

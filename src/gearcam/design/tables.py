@@ -7,70 +7,15 @@ Everything follows from parameter dataclasses (see `gearcam.quantities`): an *en
 from __future__ import annotations
 
 import dataclasses
-import importlib
 import math
 import types
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Final
+from typing import Any
 
-from gearcam.findings import CHECKS
-from gearcam.gears.spec import HelixSpec, PairSpec, Rack
-from gearcam.laws.base import LAWS
-from gearcam.meshing.settings import KIND as MESHING_KIND
-from gearcam.meshing.settings import MeshingSpec
-from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.parts.blank import Blank
-from gearcam.quantities import ANGLE, COUNT, LENGTH, REQUIRED, TEXT, Param, param, params_of
-
-KIND: Final = "gear-pair"
-"""The kind of design that this version builds."""
-
-FORMATS: Final = (
-    "dxf", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg", "inspection",
-)  # fmt: skip
-"""What ``output.files`` may list."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class OutputSpec:
-    """Which files are wanted, and how exact."""
-
-    files: tuple[str, ...] = param(
-        TEXT, default=("csv",), choices=FORMATS, doc="the files to write; summary.json always is"
-    )
-    chord_tolerance: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        doc="largest distance of an outline's chords from the true curve; "
-        "the smaller of 0.001 mm and module/1000 when left out, never coarser than module/50",
-    )
-    dxf_curves: str = param(
-        TEXT,
-        default="arcs",
-        choices=("arcs", "splines", "lines"),
-        doc="how dxf outlines are drawn",
-    )
-    dxf_version: str | None = param(
-        TEXT,
-        default=None,
-        choices=("R2010", "R12"),
-        doc="version of dxf files; R12, for old machines, with lines, R2010 else, when left out",
-    )
-    pose: float = param(
-        ANGLE,
-        default=0.0,
-        ge=-36000,
-        le=36000,
-        word="phi1",
-        doc="driver angle at which the assembled pair is drawn",
-    )
-    inspection_points: int = param(
-        COUNT, default=9, ge=2, le=1000, doc="points on each flank in inspection.csv"
-    )
+from gearcam.quantities import REQUIRED, Param, params_of
 
 
 @dataclass(frozen=True)
@@ -92,7 +37,8 @@ class Entry:
     solve : bool
         Whether the word ``"solve"`` may stand for a value.
     default : object
-        In inner units; `REQUIRED` where the file must give the key.
+        In inner units; `REQUIRED` where the file must give the key, None where the program finds a
+        value by itself.
     """
 
     name: str
@@ -147,7 +93,7 @@ class Table:
     title : str
         Its name in the file.
     owner : type or None
-        The parameter dataclass; None for the limits, which belong to checks.
+        What is made from it, a dataclass; None for limits, which belong to checks.
     entries : mapping of str to Entry
         By key.
     """
@@ -170,8 +116,14 @@ class Table:
             if values.get(entry.name) is not None
         }
 
+    def document(self, made: Any) -> dict[str, Any]:
+        """Return what a file would hold of an instance of the owner."""
+        return self.outward(
+            {item.name: getattr(made, item.name) for item in dataclasses.fields(made)}
+        )
 
-@lru_cache(maxsize=64)
+
+@lru_cache(maxsize=128)
 def table_of(title: str, owner: type) -> Table:
     """Return the table of a parameter dataclass.
 
@@ -214,43 +166,3 @@ def _split(hint: Any) -> tuple[Any, bool]:
     rest = [part for part in typing.get_args(hint) if part is not types.NoneType]
     plain = [part for part in rest if typing.get_origin(part) is not typing.Literal]
     return plain[0], len(plain) < len(rest)
-
-
-def law_table(law_type: str) -> Table:
-    """Return the table of a law's parameters, without the key ``type``."""
-    return table_of("law", LAWS[law_type].parameters)
-
-
-def limits_table() -> Table:
-    """Return the table of the limits that checks of gear pairs have."""
-    register_checks()
-    entries = {}
-    for check in CHECKS.values():
-        if check.kind in (KIND, MESHING_KIND, PARTS_KIND) and check.limit is not None:
-            name, made_of, default = check.limit
-            key = made_of.key(name)
-            entries[key] = Entry(name, key, made_of, float, None, False, default)
-    return Table("limits", None, entries)
-
-
-def register_checks() -> None:
-    """Load the rooms whose checks register themselves."""
-    # only here, as a file without limits does not need them
-    for room in ("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"):
-        importlib.import_module(room)
-
-
-TABLES: Final[dict[str, type]] = {
-    "pair": PairSpec,
-    "rack": Rack,
-    "blank": Blank,
-    "helix": HelixSpec,
-    "output": OutputSpec,
-    "meshing": MeshingSpec,
-}
-"""The tables with fixed keys, by their name in a file; ``law`` and ``limits`` follow registries."""
-
-
-def table(title: str) -> Table:
-    """Return a table by its name: one of `TABLES`, or ``limits``."""
-    return limits_table() if title == "limits" else table_of(title, TABLES[title])

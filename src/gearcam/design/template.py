@@ -2,79 +2,129 @@
 
 from __future__ import annotations
 
-import dataclasses
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
+from gearcam.design.examine import name_fault
+from gearcam.design.gear_pair import law_table
+from gearcam.design.kinds import KINDS, Kind
 from gearcam.design.models import description
-from gearcam.design.tables import KIND, REQUIRED, TABLES, Entry, Table, law_table, table
+from gearcam.design.motion import phase_table, rise_table, rises, summary
+from gearcam.design.tables import Entry, Table
 from gearcam.design.wording import show
 from gearcam.laws.base import LAWS
+from gearcam.laws.phases_of_lift import PHASES
 
 _COLUMN: Final = 36
 _WIDTH: Final = 96
-_LAW: Final = "phases"
-_GIVEN: Final[Mapping[str, Mapping[str, Any]]] = {
-    "law": {"shape": "cosine", "knots_deg": [0, 160, 360], "ratios": [1.25, 0.75, 1.25]},
-    "pair": {"center_distance_mm": 120, "teeth": [48, 48], "face_width_mm": 10},
-    "blank": {"bore_diameter_mm": [16, 16]},
-    "output": {"files": ["dxf", "csv"]},
-}
-"""An example that builds without a warning; everything else is shown as a comment."""
-
-_NOTES: Final = {"pair": "exactly one of center_distance_mm and module_mm; the other is solved"}
 
 _EXAMPLES: Final = {
     "module_mm": 2.5,
     "chord_tolerance_mm": 0.001,
     "teeth": [1, 27],
     "center_distance_mm": 120.1,
+    "density_kg_m3": 7850,
+    "rim_mm": 10,
+    "web_mm": 6,
+    "angle_deg": 60,
+    "lift_mm": 10,
+    "lift_deg": 20,
+    "to_mm": 4,
+    "to_deg": 8,
+    "dome_radius_mm": 60,
+    "arm_mm": 90,
+    "pivot_distance_mm": 100,
+    "base_radius_mm": 32,
+    "tool_radius_mm": 8,
 }
 """Values for comments where a key has no default."""
 
 
-def template(name: str = "my_gear_pair") -> str:
+def template(kind: str, name: str = "") -> str:
     """Return the text of a commented design file that builds as it is.
 
     Parameters
     ----------
+    kind : str
+        The kind of design.
     name : str
-        The design's name.
+        The design's name; ``my_`` and its kind where this cannot name one.
 
     Returns
     -------
     str
         TOML.
     """
-    return "\n".join(_lines(name)) + "\n"
+    name = "my_" + kind.replace("-", "_") if name_fault(name) else name
+    return "\n".join(_lines(KINDS[kind], name)) + "\n"
 
 
-def _lines(name: str) -> Iterator[str]:
-    yield "# A pair of non-circular gears. Build it with: gearcam build FILE"
+def _lines(kind: Kind, name: str) -> Iterator[str]:
+    yield f"# {kind.doc[0].upper()}{kind.doc[1:]}. Build it with: gearcam build FILE"
     yield "# Lengths are in mm and angles in degrees, as the keys say. What stands behind # is a"
     yield "# comment: keys shown so may be left out; their defaults are given."
-    yield f'kind = "{KIND}"'
+    yield f'kind = "{kind.name}"'
     yield _line("name", name, "names the folder of the files")
     yield ""
-    yield _beside("[law]", "the ratio i21 = dphi2/dphi1 over the driver's angle")
-    yield _line("type", _LAW, LAWS[_LAW].doc)
-    yield from _entries(law_table(_LAW), _GIVEN["law"])
+    yield from _MAIN[kind.main](kind)
+    for title in (*kind.tables, "limits"):
+        given = kind.example.get(title, {})
+        yield from _table(title, kind.table(title), given, kind.notes.get(title, ""))
+
+
+def _law_lines(kind: Kind) -> Iterator[str]:
+    example = kind.example["law"]
+    yield _beside("[law]", kind.notes["law"])
+    yield _line("type", example["type"], LAWS[example["type"]].doc)
+    yield from _entries(law_table(example["type"]), example)
     yield ""
     yield "# Other laws, to stand in place of the table above:"
-    for law_type in LAWS:
-        if law_type != _LAW:
-            yield from _law_comment(law_type)
-    for title in TABLES:
-        yield from _table(title, table(title), _GIVEN.get(title, {}))
-    yield from _table("limits", table("limits"), {})
+    for name, entry in LAWS.items():
+        if name != example["type"]:
+            yield from _law_comment("type", name, entry, law_table(name))
 
 
-def _table(title: str, known: Table, given: Mapping[str, Any]) -> Iterator[str]:
+def _motion_lines(kind: Kind) -> Iterator[str]:
+    example = kind.example["motion"]
+    yield f"# {kind.notes['motion']}"
+    for phase in example:
+        yield from _phase(phase)
+        yield ""
+    yield "# Other phases, to stand among those above:"
+    for name in PHASES:
+        if name not in (phase["type"] for phase in example):
+            yield "#"
+            yield from _phase({"type": name}, "# ")
+    yield ""
+    yield "# Other laws of rises and returns:"
+    used = {phase["law"] for phase in example if "law" in phase}
+    for name, entry in rises().items():
+        if name not in used:
+            yield from _law_comment("law", name, entry, rise_table(name))
+
+
+def _phase(given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
+    """Show a phase, or tell of one in comments where a mark stands before its lines."""
+    law = given.get("law", "")
+    column = _COLUMN - len(mark)
+    yield f"{mark}[[motion]]"
+    yield mark + _line("type", given["type"], summary(PHASES[given["type"]]), column)
+    if law:
+        yield mark + _line("law", law, rises()[law].doc, column)
+    yield from _entries(phase_table(given["type"], law), given)
+
+
+_MAIN: Final[Mapping[str, Callable[[Kind], Iterator[str]]]] = {
+    "law": _law_lines,
+    "motion": _motion_lines,
+}
+
+
+def _table(title: str, known: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:
     if known.entries:
         yield ""
         head = f"[{title}]"
-        note = _NOTES.get(title, "")
         yield (_beside(head, note) if note else head) if given else f"# {head}"
         yield from _entries(known, given)
 
@@ -83,24 +133,25 @@ def _entries(known: Table, given: Mapping[str, Any]) -> Iterator[str]:
     for key, entry in known.entries.items():
         if key in given:
             yield _line(key, given[key], description(entry))
+        elif known.title == "limits" and entry.default is None:  # the design decides
+            yield "# " + _beside(key, description(entry), _COLUMN - 2)
         else:
             yield "# " + _line(key, _example(entry), description(entry), _COLUMN - 2)
 
 
 def _example(entry: Entry) -> Any:
-    if entry.default is REQUIRED or entry.default is None:
-        return _EXAMPLES.get(entry.key, entry.param.ge or entry.param.gt or 1)
+    if entry.required or entry.default is None:
+        made = entry.param
+        usual = made.choices[0] if made.choices else made.ge or made.gt or 1
+        return _EXAMPLES.get(entry.key, usual)
     return entry.outward(entry.default)
 
 
-def _law_comment(law_type: str) -> Iterable[str]:
-    entry = LAWS[law_type]
-    example: Any = entry.claims()[0].parameters
-    values = {item.name: getattr(example, item.name) for item in dataclasses.fields(example)}
-    known = law_table(law_type)
-    given = known.outward(values)
+def _law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
+    """Show a law of a registry by its first example."""
+    given = known.document(entry.claims()[0].parameters)
     yield "#"
-    yield "# " + _line("type", law_type, entry.doc, _COLUMN - 2)
+    yield "# " + _line(key, name, entry.doc, _COLUMN - 2)
     for key, item in known.entries.items():
         if key in given:
             yield "# " + _line(key, given[key], description(item), _COLUMN - 2)
@@ -113,10 +164,12 @@ def _line(key: str, value: Any, words: str, column: int = _COLUMN) -> str:
 
 
 def _short(value: Any) -> Any:
-    """Write 20.0 as 20 where nothing is lost."""
+    """Write 20.0 as 20, and six digits where there are more."""
     if isinstance(value, list):
         return [_short(item) for item in value]
-    return int(value) if isinstance(value, float) and value.is_integer() else value
+    if isinstance(value, float):
+        return int(value) if value.is_integer() else float(f"{value:.6g}")
+    return value
 
 
 def _beside(text: str, words: str, column: int = _COLUMN) -> str:

@@ -25,16 +25,22 @@ from gearcam.drawings import (
     BORE,
     CENTER,
     CENTRODE,
+    FOLLOWER,
     HOLE,
     MARK,
     OUTLINE,
+    PITCH,
+    PRIME,
+    PROFILE,
     SLOT,
+    TOOL,
     Circle,
     Cross,
     Drawing,
     Loop,
     Path,
     Shape,
+    reach,
 )
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
@@ -56,10 +62,23 @@ CURVE_PART: Final = 0.96
 """Part of the tolerance that arcs and splines may take; the rest covers the chord error of the
 dense points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
 
-COLORS: Final = {OUTLINE: 7, BORE: 5, HOLE: 4, SLOT: 6, MARK: 1, CENTRODE: 3, CENTER: 8}
-"""Colour numbers: black or white, blue, cyan, magenta, red, green, grey."""
+COLORS: Final = {
+    OUTLINE: 7,
+    BORE: 5,
+    HOLE: 4,
+    SLOT: 6,
+    MARK: 1,
+    CENTRODE: 3,
+    CENTER: 8,
+    PROFILE: 7,
+    PITCH: 3,
+    PRIME: 8,
+    FOLLOWER: 8,
+    TOOL: 1,
+}
+"""Colour numbers: 7 black or white, blue, cyan, magenta, red, green, 8 grey."""
 
-DASHED: Final = (CENTRODE,)
+DASHED: Final = (CENTRODE, PITCH, PRIME)
 """Kinds that are drawn dashed."""
 
 MILLIMETRES: Final = 4
@@ -218,14 +237,8 @@ def _outline(contour: Contour, style: DxfStyle) -> tuple[Array, Array]:
 
 def _bounds(drawing: Drawing) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the lower left and upper right corner of a drawing, for viewers."""
-    corners = []
-    for feature in drawing.features:
-        match feature.shape:
-            case Contour(vertices=points) | Path(points=points) | Loop(vertices=points):
-                corners += [points.min(axis=0), points.max(axis=0)]
-            case Circle(center=center, diameter=size) | Cross(center=center, size=size):
-                corners += [center - 0.5 * size, center + 0.5 * size]
-    low, high = np.min(corners, axis=0).tolist(), np.max(corners, axis=0).tolist()
+    corners = np.vstack([reach(feature.shape) for feature in drawing.features])
+    low, high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     return (low[0], low[1]), (high[0], high[1])
 
 

@@ -9,13 +9,13 @@ Depends on drawings and numeric; ezdxf only inside the functions.
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import OUTLINE
+from gearcam.drawings import CLOSED, OUTLINE, PROFILE
 from gearcam.errors import GearcamError
 from gearcam.export.dxf import MILLIMETRES
 from gearcam.numeric.bulges import as_complex, deviation
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
 Array = NDArray[np.float64]
+
+_Outline = tuple[Array, Array, bool]
+"""Vertices, bulges, and whether it is closed."""
 
 _R12: Final = "AC1009"
 """The version that knows no units and no light polylines."""
@@ -45,7 +48,7 @@ def measure_dxf(data: bytes, contours: Sequence[Contour]) -> float:
     data : bytes
         The file.
     contours : sequence of Contour
-        The true outlines, placed as in the drawing, in its order.
+        The true outlines (and a cam's pitch curve), placed as in the drawing, in its order.
 
     Returns
     -------
@@ -72,16 +75,38 @@ def measure_dxf(data: bytes, contours: Sequence[Contour]) -> float:
     )
 
 
-def _outlines(document: Document, contours: Sequence[Contour]) -> list[tuple[Array, Array, bool]]:
-    """Vertices, bulges and closedness of each outline; chains of splines become chords."""
+def _outlines(document: Document, contours: Sequence[Contour]) -> list[_Outline]:
+    """Return the outlines of a drawing; its splines are chained as its contours have runs."""
+    found, splines = _curves(document, lambda layer: layer.endswith(CLOSED))
+    start = 0
+    for contour in contours if splines else ():
+        chain = splines[start : start + len(contour.runs)]
+        start += len(contour.runs)
+        found += [_chain(chain)] if chain else []
+    if start < len(splines):
+        points, bulges = splines[-1]
+        found.append((points[:-1], bulges, False))
+    return found
+
+
+def _chains(document: Document, layer: str) -> list[_Outline]:
+    """Return the outlines on a layer; its splines are one chain."""
+    found, splines = _curves(document, lambda name: name == layer)
+    return [*found, _chain(splines)] if splines else found
+
+
+def _curves(
+    document: Document, wanted: Callable[[str], bool]
+) -> tuple[list[_Outline], list[tuple[Array, Array]]]:
+    """Return polylines, and splines as vertices and bulges, on the layers that are wanted."""
     from ezdxf.entities.lwpolyline import LWPolyline
     from ezdxf.entities.polyline import Polyline
     from ezdxf.entities.spline import Spline
 
-    found: list[tuple[Array, Array, bool]] = []
+    found: list[_Outline] = []
     splines: list[tuple[Array, Array]] = []
     for entity in document.modelspace():
-        if not entity.dxf.layer.endswith(OUTLINE):
+        if not wanted(entity.dxf.layer):
             continue
         if isinstance(entity, LWPolyline):
             rows = np.array(entity.get_points(format="xyb"), dtype=np.float64)
@@ -93,21 +118,52 @@ def _outlines(document: Document, contours: Sequence[Contour]) -> list[tuple[Arr
             found.append((rows[:, :2], rows[:, 2], bool(entity.is_closed)))
         elif isinstance(entity, Spline):
             splines.append(_arcs(entity))
-    start = 0
-    for contour in contours if splines else ():
-        chain = splines[start : start + len(contour.runs)]
-        start += len(contour.runs)
-        if chain:
-            joined = all(
-                bool((a[-1] == b[0]).all())
-                for (a, _), (b, _) in zip(chain, [*chain[1:], chain[0]], strict=True)
-            )
-            vertices = np.vstack([points[:-1] for points, _ in chain])
-            found.append((vertices, np.concatenate([bulges for _, bulges in chain]), joined))
-    if start < len(splines):
-        points, bulges = splines[-1]
-        found.append((points[:-1], bulges, False))
-    return found
+    return found, splines
+
+
+def _chain(splines: Sequence[tuple[Array, Array]]) -> _Outline:
+    """Join splines, each of which begins where the one before ends if they are closed."""
+    joined = all(
+        bool((a[-1] == b[0]).all())
+        for (a, _), (b, _) in zip(splines, [*splines[1:], splines[0]], strict=True)
+    )
+    vertices = np.vstack([points[:-1] for points, _ in splines])
+    return vertices, np.concatenate([bulges for _, bulges in splines]), joined
+
+
+def read_outline(data: bytes) -> tuple[Array, Array]:
+    """Return the one closed outline of a DXF file.
+
+    Parameters
+    ----------
+    data : bytes
+        The file. Where it holds several outlines, that on the layer PROFILE or OUTLINE counts.
+
+    Returns
+    -------
+    vertices : (n, 2) array, mm
+        First not repeated.
+    bulges : (n,) array
+        Of the pieces between them; splines become arcs through their points.
+
+    Raises
+    ------
+    DxfError
+        If the file is damaged, or does not hold one closed outline.
+    """
+    document = read_dxf(data)
+    layers = dict.fromkeys(entity.dxf.layer for entity in document.modelspace())
+    for wanted in (PROFILE, OUTLINE, ""):
+        found = [
+            (vertices, bulges)
+            for layer in layers
+            if layer.upper().endswith(wanted)
+            for vertices, bulges, closed in _chains(document, layer)
+            if closed
+        ]
+        if len(found) == 1:
+            return found[0]
+    raise DxfError(f"it should hold one closed outline, and holds {len(found)}")
 
 
 def _arcs(entity: Any) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""SVG: the assembled pair as a picture for a page.
+"""SVG: the assembled pair, or a cam with its follower, as a picture for a page.
 
 Millimetres in the view box, y upwards turned into y downwards, strokes scaled to the picture, white
 ground, and a caption below the wheels. The picture is thinned to 0.005 mm: it is for looking at,
@@ -16,7 +16,20 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import CENTRODE, MARK, Circle, Cross, Drawing, Feature, Loop, Path
+from gearcam.drawings import (
+    CENTRODE,
+    FOLLOWER,
+    MARK,
+    PITCH,
+    PRIME,
+    Circle,
+    Cross,
+    Drawing,
+    Feature,
+    Loop,
+    Path,
+    reach,
+)
 from gearcam.numeric.contour import Contour
 
 Array = NDArray[np.float64]
@@ -65,7 +78,7 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     """
     if not drawing.contours:
         raise ValueError(f"{drawing.name}: nothing to draw")
-    corners = np.vstack([shape.vertices for shape in drawing.contours])
+    corners = np.vstack([reach(feature.shape) for feature in drawing.features])
     low, high = corners.min(axis=0), corners.max(axis=0)
     width = float(high[0] - low[0])
     margin, pixel = MARGIN * width, width / PIXELS
@@ -116,26 +129,27 @@ def _caption(lines: Sequence[str], left: float, base: float, size: float) -> lis
 def _element(feature: Feature, pixel: float) -> list[str]:
     """Return the SVG elements of one feature; the class is its layer."""
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
-    wheel = 1 if feature.layer.startswith("GEAR2") else 0
+    wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
+    dash = f'stroke-dasharray="{_number(7 * pixel)} {_number(4 * pixel)}"'
     match shape:
+        case Contour(vertices=points) if feature.kind == PITCH:
+            style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
+            return [f'<path class={name} {style} d="{_data(points, True)}"/>']
         case Contour(vertices=points):
             style = f'fill="{fill}" stroke="{ink}"'
             return [f'<path class={name} {style} d="{_data(points, True)}"/>']
         case Path(points=points, closed=closed):
-            dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
-            colour = CENTRODE_INK if feature.kind == CENTRODE else ink
-            style = f'fill="none" stroke="{colour}" stroke-dasharray="{dash}"'
+            style = f'fill="none" stroke="{ink}"'
+            if feature.kind == CENTRODE:
+                style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
             return [f'<path class={name} {style} d="{_data(points, closed)}"/>']
         case Circle(center=center, diameter=diameter):
-            inside = ink if feature.kind == MARK else "#ffffff"
+            inside = {MARK: ink, PRIME: "none", FOLLOWER: fill}.get(feature.kind, "#ffffff")
+            line = f'{CENTRODE_INK}" {dash}' if feature.kind == PRIME else f'{ink}"'
             place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'
-            return [
-                (
-                    f'<circle class={name} {place} r="{_number(0.5 * diameter)}" fill="{inside}"'
-                    f' stroke="{ink}"/>'
-                )
-            ]
+            size = f'r="{_number(0.5 * diameter)}"'
+            return [f'<circle class={name} {place} {size} fill="{inside}" stroke="{line}/>']
         case Loop():
             return [f'<path class={name} fill="#ffffff" stroke="{ink}" d="{_arcs(shape)}"/>']
         case Cross(center=center, size=size):

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Kind, Rows, Toothing
-from gearcam.gears.sampling import as_pairs
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import TipEnds
+from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
 
 Array = NDArray[np.float64]

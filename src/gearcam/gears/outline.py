@@ -12,7 +12,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Kind, Rows, Toothing
-from gearcam.gears.sampling import Sampler, as_pairs
+from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
     Crossing,
@@ -25,7 +25,9 @@ from gearcam.gears.spaces import (
 )
 from gearcam.gears.tips import TipEnds, feet, find_tips
 from gearcam.gears.undercut import Undercut, find_cusps
+from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
+from gearcam.numeric.sampling import Sampler
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -93,8 +95,7 @@ class Outline:
     def sampler(self) -> Sampler:
         """The curves with the density of points that the tolerance asks for."""
         return Sampler(
-            toothing=self.toothing,
-            rows=self.rows,
+            curves=WheelCurves(toothing=self.toothing, rows=self.rows),
             tolerance=self.tolerance,
             closed=self.toothing.closed,
         )

@@ -19,10 +19,10 @@ from gearcam.gears.demands import demand_rack, demand_shift
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, Wheel, roll
-from gearcam.gears.sampling import as_pairs
 from gearcam.gears.spec import PairSpec, Rack
 from gearcam.laws.base import RatioLaw
 from gearcam.laws.span import Lobes
+from gearcam.numeric.bulges import as_pairs
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]

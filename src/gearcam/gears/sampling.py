@@ -1,56 +1,23 @@
-"""From curves to contours: as few points as the tolerance allows, with the error measured.
-
-A chord of a curve of curvature kappa and length l is off by ``kappa*l^2/8``. The points are
-therefore spread evenly over ``J = integral of sqrt(kappa/(8*tolerance)) ds``, which is the least
-number of chords, rounded up for each stretch between corners. Where the curvature jumps inside a
-chord the error is measured, and the chord is halved if it is too large.
-"""
+"""A wheel's curves as what vertices are spread over: over driver angles, with the law's knots."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.flank import Rows, Toothing, trace
 from gearcam.gears.rolling import Plane
-from gearcam.numeric.contour import Run
 
 Array = NDArray[np.float64]
-
-_PROBES = 24
-"""Intervals per row on which the density of points is found."""
-
-_EIGHTHS = np.arange(1, 8) / 8.0
-_AROUND = np.array([-3, -2, -1, 1, 2, 3]) / 32.0
-"""Places inside a chord at which its error is measured: where the curve bends like a corner, the
-largest distance is a peak."""
-
-_FILL = 0.955
-"""Share of the tolerance's chord that is used: the density is known to a few percent only."""
-
-_UNEVEN = 0.05
-"""Change of curvature along a chord above which its error is measured."""
-
-_MARGIN = 0.97
-"""Share of the tolerance that a measured error may take: between its places it may be larger."""
-
-_FEW = 0.08
-"""Share of chords that may be halved; with more of them the vertices are spread anew."""
-
-_GRAIN = 1e-3
-"""Distance in tolerances below which two points of a dense run are one."""
-
-_ROUNDS = 12
-"""Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
+Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sampler:
-    """The rows of a wheel with the density of points that a tolerance asks for.
+class WheelCurves:
+    """The rows of a wheel, as `gearcam.numeric.sampling.Curves` over the driver angle, rad.
 
     Parameters
     ----------
@@ -58,230 +25,35 @@ class Sampler:
         The wheel.
     rows : Rows
         Its curves, in order.
-    tolerance : float, mm
-        Largest chord error.
-    closed : bool
-        Whether the last curve ends where the first begins.
     """
 
     toothing: Toothing
     rows: Rows
-    tolerance: float
-    closed: bool = True
-
-    @cached_property
-    def density(self) -> Array:
-        """J from the start at ``_PROBES`` places a row, rising; one more for the end."""
-        count = len(self.rows.kind)
-        place = np.arange(count)[:, None] + np.linspace(0.0, 1.0, _PROBES + 1)
-        index = np.repeat(np.arange(count), _PROBES + 1)
-        phi = self._angles(index, np.tile(np.linspace(0.0, 1.0, _PROBES + 1), count))
-        points, tangents = (v.reshape(place.shape) for v in self._trace(index, phi))
-        turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
-        chords = np.abs(np.diff(points, axis=1))
-        steps = np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
-        steps += 1e-9 * max(1.0, float(steps.max()))
-        return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
-    def least(self) -> float:
-        """The number of chords that the curvature asks for: integral of sqrt(kappa/(8 tol)) ds."""
-        return float(self.density[-1])
+    def start(self) -> Array:
+        """Driver angle at which each row begins, (n,), rad."""
+        return self.rows.start
 
-    def _angles(self, index: NDArray[np.int64], fraction: Array) -> Array:
-        start, end = self.rows.start[index], self.rows.end[index]
-        return start + fraction * (end - start)
+    @property
+    def end(self) -> Array:
+        """Driver angle at which each row ends, (n,), rad."""
+        return self.rows.end
 
-    def _trace(self, index: NDArray[np.int64], phi: Array) -> tuple[Plane, Plane]:
-        return trace(self.toothing, self.rows, index, phi)
+    @property
+    def corner(self) -> Mask:
+        """Whether a corner precedes each row, (n,)."""
+        return self.rows.corner
 
-    def row_of(self, j: Array) -> NDArray[np.int64]:
-        """Return the rows of places given by their J."""
-        place = np.interp(j, self.density, np.arange(len(self.density)) / _PROBES)
-        return np.minimum(place.astype(np.int64), len(self.rows.kind) - 1)
-
-    def at(self, j: Array) -> tuple[Plane, Plane]:
-        """Return points and forward unit tangents at places given by their J (after a corner)."""
-        place = np.interp(j, self.density, np.arange(len(self.density)) / _PROBES)
-        index = np.minimum(place.astype(np.int64), len(self.rows.kind) - 1)
-        return self._trace(index, self._angles(index, place - index))
-
-    @cached_property
-    def corners(self) -> Array:
-        """J at the corners; the first is the start."""
-        return self.density[:-1][::_PROBES][self.rows.corner]
-
-    @cached_property
-    def chords(self) -> tuple[Array, Plane, float]:
-        """Vertices of the polygon: their J (start and end), points, and the measured error."""
-        vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
-        ends = self._ends(vertices)
-        errors = self._errors(vertices, ends)
-        for _ in range(_ROUNDS):
-            if np.mean(errors > _MARGIN * self.tolerance) <= _FEW:
-                break
-            # The error that a chord has, not the one that its J promised, says how long it may be.
-            effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + 1e-9)])
-            at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
-            vertices = self._spread(at_corners, effort, vertices)
-            ends = self._ends(vertices)
-            errors = self._errors(vertices, ends)
-        for _ in range(_ROUNDS):
-            bad = np.flatnonzero(errors > _MARGIN * self.tolerance)
-            if bad.size == 0:
-                break
-            middle = 0.5 * (vertices[bad] + vertices[bad + 1])
-            vertices = np.insert(vertices, bad + 1, middle)
-            ends = np.insert(ends, bad + 1, np.stack(self.at(middle)), axis=1)
-            errors = np.insert(errors, bad + 1, 0.0)
-            new = bad + 1 + np.arange(bad.size)
-            halves = np.concatenate([new - 1, new])
-            errors[halves] = self._measure(vertices, ends[0], halves)
-        points = ends[0, :-1] if self.closed else ends[0]
-        return vertices, points, float(errors.max())
-
-    def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
-        """Spread vertices evenly over `effort` (known at `places`) between `ends`: their J."""
-        counts = np.maximum(np.ceil(np.diff(ends) / _FILL).astype(int), 1)
-        first = np.repeat(ends[:-1], counts)
-        step = np.repeat(np.diff(ends) / counts, counts)
-        number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-        vertices = np.interp(np.append(first + number * step, ends[-1]), effort, places)
-        vertices[np.cumsum(counts)[:-1]] = self.corners[1:]
-        return vertices
-
-    def _ends(self, vertices: Array) -> Plane:
-        """Points and tangents, (2, n), at the vertices; of a closed polygon the first repeated."""
-        if not self.closed:
-            return np.stack(self.at(vertices))
-        ends = np.stack(self.at(vertices[:-1]))
-        return np.append(ends, ends[:, :1], axis=1)
-
-    def _errors(self, vertices: Array, ends: Plane) -> Array:
-        """Distance of the curve from all chords.
-
-        Where the curvature hardly changes it is the middle of the cubic with the end tangents.
-        Elsewhere, and across the ends of rows and the knots of the law, it is measured.
-        """
-        chord = np.diff(ends[0])
-        rise, fall = chord * np.conj(ends[1, :-1]), ends[1, 1:] * np.conj(chord)
-        rise, fall = rise.imag / rise.real, fall.imag / fall.real
-        length, bend = np.abs(chord), rise + fall
-        errors = length * np.abs(bend) / 8.0
-        # Within a chord the ends' angles differ, along the curve the chords' curvatures.
-        rough = self._rough(vertices) | (np.abs(rise - fall) > _UNEVEN * np.abs(bend))
-        errors[rough] = self._measure(vertices, ends[0], np.flatnonzero(rough))
-        curvature = bend / length
-        jump = np.abs(np.diff(curvature)) > 2.0 * _UNEVEN * np.abs(curvature[1:])
-        beside = (np.append(jump, False) | np.append(False, jump)) & ~rough
-        errors[beside] = self._measure(vertices, ends[0], np.flatnonzero(beside), around=False)
-        return errors
-
-    def _measure(
-        self, vertices: Array, points: Plane, chords: NDArray[np.int64], *, around: bool = True
-    ) -> Array:
-        """Distance of the curve from some chords: at quarters, or at eighths and `around` the best.
-
-        A chord that only has uneven neighbours is smooth: its distance is flat near its largest.
-        """
-        start, chord = points[chords], points[chords + 1] - points[chords]
-        low, span = vertices[chords], vertices[chords + 1] - vertices[chords]
-
-        def off(share: Array) -> Array:
-            curve = self.at((low + span * share).ravel())[0].reshape(share.shape)
-            return np.abs(np.imag(np.conj(chord) * (curve - start)))
-
-        places = _EIGHTHS if around else _EIGHTHS[1::2]
-        found = off(np.broadcast_to(places[:, None], (len(places), len(chords))))
-        largest = found.max(axis=0, initial=0.0)
-        if around:
-            second = off(places[found.argmax(axis=0)] + _AROUND[:, None])
-            largest = np.maximum(largest, second.max(axis=0))
-        return largest / np.maximum(np.abs(chord), np.finfo(float).tiny)
-
-    def _rough(self, vertices: Array) -> NDArray[np.bool_]:
-        """Whether chords hold a break inside."""
-        chord = np.searchsorted(vertices, self._breaks, side="right") - 1
-        inside = (chord < len(vertices) - 1) & (self._breaks > vertices[chord])
-        rough = np.zeros(len(vertices) - 1, dtype=bool)
-        rough[chord[inside]] = True
-        return rough
-
-    @cached_property
-    def _breaks(self) -> Array:
-        """J where the curvature jumps: at the ends of rows, and at the law's knots inside them."""
+    @property
+    def breaks(self) -> tuple[Index, Array]:
+        """Rows and driver angles, rad, of the law's knots inside rows."""
         law, rows = self.toothing.rolling.law, self.rows
         low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
         phi = law.knots_near(0.5 * (low + high))
         row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]))
-        share = (phi[row, knot] - rows.start[row]) / (rows.end - rows.start)[row]
-        steps = np.arange(len(self.density)) / _PROBES
-        return np.append(self.density[::_PROBES], np.interp(row + share, steps, self.density))
+        return row, phi[row, knot]
 
-    def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
-        """Return the dense runs between corners.
-
-        Parameters
-        ----------
-        oversampling : int
-            Points per chord of the polygon.
-        reverse : bool
-            Whether the rows run clockwise and the runs are to be turned round.
-
-        Returns
-        -------
-        tuple of Run
-            Counter-clockwise; the vertices of the polygon and the ends of the rows, their joints,
-            are among their points.
-        """
-        vertices = self.chords[0]
-        steps = np.arange(oversampling) / oversampling
-        j = (vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel()
-        smooth = self.density[:-1:_PROBES][~self.rows.corner]
-        fixed = np.append(self.corners, self.least)
-        groups = (fixed, smooth, j)
-        rank = np.repeat(range(len(groups)), [len(group) for group in groups])
-        j = np.concatenate(groups)
-        order = np.lexsort((rank, j))
-        j, rank = j[order], rank[order]
-        points, tangents = self.at(j)
-        kept = _told_apart(points, rank, _GRAIN * self.tolerance)
-        j, points, tangents = j[kept], points[kept], tangents[kept]
-        cuts = np.flatnonzero(rank[kept] == 0)
-        joints = np.flatnonzero(rank[kept] == 1)
-        runs = []
-        for start, end in pairwise(cuts.tolist()):
-            before_corner = self._left_end(float(j[end]))
-            p = np.append(points[start:end], before_corner[0])
-            t = np.append(tangents[start:end], before_corner[1])
-            inside = joints[(joints > start) & (joints < end)] - start
-            run = Run(points=as_pairs(p), tangents=as_pairs(t), joints=tuple(inside.tolist()))
-            runs.append(run.reversed if reverse else run)
-        return tuple(runs[::-1] if reverse else runs)
-
-    def _left_end(self, j: float) -> tuple[Plane, Plane]:
-        """Point and tangent at the end of the row that ends at a corner."""
-        row = int(np.searchsorted(self.density[::_PROBES], j)) - 1
-        return self._trace(np.array([row]), self.rows.end[row : row + 1])
-
-
-def _told_apart(points: Plane, rank: NDArray[np.int64], grain: float) -> NDArray[np.bool_]:
-    """Choose points in order so that no two are nearer than a grain; the lowest rank stays.
-
-    Points of rank 0, the corners, all stay.
-    """
-    kept = np.ones(len(points), dtype=bool)
-    while True:
-        index = np.flatnonzero(kept)
-        near = np.flatnonzero(np.abs(np.diff(points[index])) <= grain)
-        one, two = index[near], index[near + 1]
-        drop = np.where(rank[one] > rank[two], one, two)
-        drop = drop[rank[drop] > 0]
-        if drop.size == 0:
-            return kept
-        kept[drop] = False
-
-
-def as_pairs(points: Plane) -> Array:
-    """Return complex points as an (n, 2) array."""
-    return np.stack([points.real, points.imag], axis=1)
+    def at(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
+        """Return points, mm, and forward unit tangents of rows at driver angles, rad."""
+        return trace(self.toothing, self.rows, index, parameter)

@@ -1,10 +1,44 @@
 """Jobs: what one kind of design computes, stage by stage, on demand.
 
-`gear_pair` holds the stages of a gear pair, `files` turns a job into the contents of its files,
-`summary` into the document that says what was made and how exact it is.
+`job` holds what all jobs have in common, `gear_pair` the stages of a gear pair, `cam` those of a
+cam; `files` and `cam_files` turn a job into the contents of its files, `summary` and `cam_summary`
+into the document that says what was made and how exact it is. Only the job of the design's kind is
+loaded.
 """
 
-from gearcam.jobs.gear_pair import GearPairJob
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gearcam.jobs.job import Job
 from gearcam.jobs.written import Written
 
-__all__ = ["GearPairJob", "Written"]
+if TYPE_CHECKING:
+    from gearcam.design import CamDesign, GearPairDesign
+    from gearcam.jobs.cam import CamJob
+    from gearcam.jobs.gear_pair import GearPairJob
+
+__all__ = ["Job", "Written", "make_job"]
+
+
+def make_job(design: GearPairDesign | CamDesign) -> GearPairJob | CamJob:
+    """Return the job of a design; nothing is computed until it is asked for.
+
+    Parameters
+    ----------
+    design : GearPairDesign or CamDesign
+        What is asked for.
+
+    Returns
+    -------
+    GearPairJob or CamJob
+    """
+    from gearcam.design import GearPairDesign
+
+    if isinstance(design, GearPairDesign):
+        from gearcam.jobs.gear_pair import GearPairJob
+
+        return GearPairJob(design)
+    from gearcam.jobs.cam import CamJob
+
+    return CamJob(design)

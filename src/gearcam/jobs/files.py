@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearcam.jobs.exports import STEP_PART, drawn, dxf_style, mesh_bytes, meshes
 from gearcam.jobs.sheet_files import sheet_files
 
 if TYPE_CHECKING:
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
 PAIR = "pair"
 """Stem of the files of the assembled pair."""
 
-STEP_PART = 2e-3
-"""Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
-
 
 def export(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
     """Make the files of one kind.
@@ -29,7 +27,7 @@ def export(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, byt
     job : GearPairJob
         The design, computed as far as the kind needs.
     kind : str
-        One of `gearcam.design.tables.FORMATS`.
+        One of the formats of a gear pair.
     extras : dict
         What is measured on the files is written in here, for the summary.
 
@@ -105,31 +103,16 @@ def poses(job: GearPairJob) -> tuple[Pose, Pose]:
 
 
 def _style(job: GearPairJob) -> DxfStyle:
-    from gearcam.export.dxf import DxfStyle
-
-    asked = job.design.output
-    version = asked.dxf_version or ("R12" if asked.dxf_curves == "lines" else "R2010")
-    tolerance = job.gear1.profile.tolerance
-    return DxfStyle(tolerance=tolerance, curves=asked.dxf_curves, version=version)
+    return dxf_style(job.design.output, job.gear1.profile.tolerance)
 
 
 def _drawings(job: GearPairJob, extras: dict[str, Any]) -> dict[str, bytes]:
     from gearcam.drawings import wheel_drawing
-    from gearcam.export.dxf import dxf_bytes
-    from gearcam.export.dxf_read import measure_dxf
 
-    style = _style(job)
     drawings = [
         wheel_drawing(part, step) for part in job.parts for step in range(len(part.contours))
     ]
-    files: dict[str, bytes] = {}
-    errors: dict[str, float] = {}
-    for drawing in (*drawings, _pair_drawing(job)):
-        name = f"{drawing.name}.dxf"
-        files[name] = dxf_bytes(drawing, style)
-        errors[name] = measure_dxf(files[name], drawing.contours)
-    extras["dxf"] = {"curves": style.curves, "version": style.version, "error_mm": errors}
-    return files
+    return drawn([*drawings, _pair_drawing(job)], _style(job), extras)
 
 
 def _picture(job: GearPairJob) -> dict[str, bytes]:
@@ -163,22 +146,12 @@ def _steps(job: GearPairJob) -> dict[str, bytes]:
 
 
 def _meshes(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
-    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
-    from gearcam.solids import solid, volume_error
-
-    write = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
-    solids = extras.setdefault("_solids", {})
-    for part in job.parts:
-        if part.name not in solids:
-            solids[part.name] = solid(part)
-            extras.setdefault("solids", {})[part.name] = {
-                "volume_mm3": solids[part.name].volume,
-                "volume_error_mm3": volume_error(part),
-                "triangles": len(solids[part.name].triangles),
-            }
-    files = {f"{name}.{kind}": write({name: mesh}, name) for name, mesh in solids.items()}
+    solids = meshes(job.parts, extras)
+    files = {
+        f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
+    }
     placed = {
         name: mesh.placed(*pose)
         for (name, mesh), pose in zip(solids.items(), poses(job), strict=True)
     }
-    return files | {f"{PAIR}.{kind}": write(placed, PAIR)}
+    return files | {f"{PAIR}.{kind}": mesh_bytes(placed, kind, PAIR)}

@@ -7,12 +7,12 @@ each file. Every stage is timed once. Nothing is imported that the asked-for fil
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,18 +25,15 @@ from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.helix import leads, stepped
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
 from gearcam.gears.rolling import Wheel
+from gearcam.jobs.job import Job, Progress
 from gearcam.jobs.written import Written, finish
 from gearcam.laws.base import RatioLaw
-from gearcam.numeric.memory import keep_freed_memory
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
-from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
     from gearcam.parts import Part
     from gearcam.parts.checks import PartsSubject
-
-Progress = Callable[[str, int, int], None]
 
 MESHING = "meshing.csv"
 """The rows of a meshing study."""
@@ -48,7 +45,7 @@ CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
 
 
-class GearPairJob:
+class GearPairJob(Job):
     """A gear pair, computed on demand.
 
     Parameters
@@ -59,20 +56,18 @@ class GearPairJob:
         Inner accuracy.
     """
 
+    design: GearPairDesign
+    stages = MappingProxyType(
+        {
+            "law": "law",
+            "centrodes": "pair",
+            "gear 1": "gear1",
+            "gear 2": "gear2",
+            "checks": "findings",
+        }
+    )
     _advises = True
     """Whether a refusal comes with what would work; attempts at that do not."""
-
-    def __init__(self, design: GearPairDesign, tolerances: Tolerances = DEFAULT) -> None:
-        self.design = design
-        self.tolerances = tolerances
-        self.timings: dict[str, float] = {}
-        keep_freed_memory()
-
-    @contextmanager
-    def _stage(self, name: str) -> Iterator[None]:
-        start = time.perf_counter()
-        yield
-        self.timings[name] = self.timings.get(name, 0.0) + time.perf_counter() - start
 
     @contextmanager
     def _advised(self) -> Iterator[None]:
@@ -219,42 +214,15 @@ class GearPairJob:
     def summary(
         self, files: Sequence[str] = (), extras: dict[str, Any] | None = None
     ) -> dict[str, Any]:
-        """Return the summary of the build, for JSON: what does not exist is left out.
-
-        Parameters
-        ----------
-        files : sequence of str
-            Names of the files written beside it.
-        extras : dict, optional
-            What the exporters measured.
-
-        Returns
-        -------
-        dict
-            As described in docs/conventions.md.
-        """
+        """Return the summary of the build (see `Job.summary`): `files`, `extras`."""
         from gearcam.jobs.summary import summarize
 
         return summarize(self, files, extras or {})
 
-    def check(self, directory: str | Path = "output") -> Written:
-        """Run the checks and write the summary only; files of an earlier build stay listed in it.
+    def _export(self, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
+        from gearcam.jobs.files import export
 
-        Parameters
-        ----------
-        directory : path
-            Parent folder.
-
-        Returns
-        -------
-        Written
-            With the summary as its only file.
-        """
-        from gearcam.export.write import previous_files
-
-        folder = Path(directory) / self.design.name
-        summary = self.summary(previous_files(folder))
-        return finish(folder, {}, summary, self.findings, keep=True)
+        return export(self, kind, extras)
 
     def mesh(self, directory: str | Path = "output", progress: Progress | None = None) -> Written:
         """Turn the pair step by step and write what is found; files of a build stay.
@@ -304,62 +272,3 @@ class GearPairJob:
         summary["findings"] = [finding.as_dict() for finding in findings]
         written = finish(folder, contents, summary, findings, keep=True)
         return replace(written, complete=meshing.complete)
-
-    def write(
-        self,
-        directory: str | Path = "output",
-        files: Sequence[str] | None = None,
-        progress: Progress | None = None,
-    ) -> Written:
-        """Write the files of the design into ``directory/<name>/``, all or none.
-
-        Parameters
-        ----------
-        directory : path
-            Parent folder.
-        files : sequence of str, optional
-            Kinds of files, instead of those the design lists.
-        progress : callable, optional
-            Called with a stage's name, the stages done and their number.
-
-        Returns
-        -------
-        Written
-            With the files written and the stale ones removed.
-
-        Raises
-        ------
-        InfeasibleError
-            If the design cannot be made; nothing is written or removed then.
-        WriteError
-            If the disk refuses.
-        """
-        from gearcam.jobs.files import export
-
-        kinds = tuple(self.design.output.files if files is None else files)
-        stages = {
-            "law": "law",
-            "centrodes": "pair",
-            "gear 1": "gear1",
-            "gear 2": "gear2",
-            "checks": "findings",
-        }
-        steps = [*stages, *kinds, "writing"]
-
-        def tell(step: str) -> None:
-            if progress is not None:
-                progress(step, steps.index(step), len(steps))
-
-        for step, attribute in stages.items():
-            tell(step)
-            getattr(self, attribute)
-        contents: dict[str, bytes] = {}
-        extras: dict[str, Any] = {}
-        for kind in kinds:
-            tell(kind)
-            with self._stage(kind):
-                contents |= export(self, kind, extras)
-        tell("writing")
-        folder = Path(directory) / self.design.name
-        summary = self.summary(tuple(contents), extras)
-        return finish(folder, contents, summary, self.findings)

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from gearcam.drawings import Drawing
     from gearcam.export.dxf import DxfStyle
     from gearcam.jobs.gear_pair import GearPairJob
+    from gearcam.parts import Part, WheelBlank
 
 
 def sheet_files(job: GearPairJob, pair: Drawing, style: DxfStyle, ending: str) -> dict[str, bytes]:
@@ -71,8 +72,6 @@ def _common(job: GearPairJob) -> dict[str, str]:
 
 def wheel_facts(job: GearPairJob, gear: Gear) -> dict[str, str]:
     """Return the rows of a wheel's table: `job`, `gear`."""
-    from gearcam.parts import mass_properties
-
     blank, toothing = job.design.blank.wheel(gear.wheel), gear.toothing
     facts = {"teeth": f"{toothing.teeth}", **_common(job)}
     shift = job.design.pair.x if gear.wheel == 1 else -job.design.pair.x
@@ -84,13 +83,22 @@ def wheel_facts(job: GearPairJob, gear: Gear) -> dict[str, str]:
         facts["offset"] = f"{blank.offset:+.6g} mm"
     if blank.tip_rounding:
         facts["tip rounding"] = f"R{blank.tip_rounding:.6g}"
-    if blank.density is not None:
-        found = mass_properties(job.parts[gear.wheel - 1], blank.density)
-        facts["density"] = f"{blank.density:.6g} kg/m3"
-        facts["mass"] = f"{found.mass:.4g} kg"
-        facts["centroid X, Y"] = f"{found.centroid[0]:.3f}, {found.centroid[1]:.3f}"
-        facts["unbalance"] = f"{found.unbalance:.5g} g mm"
-    return facts
+    return facts | weight_facts(job.parts[gear.wheel - 1], blank)
+
+
+def weight_facts(part: Part, blank: WheelBlank) -> dict[str, str]:
+    """Return the rows of a `part`'s table on its mass, if its `blank` has a density."""
+    from gearcam.parts import mass_properties
+
+    if blank.density is None:
+        return {}
+    found = mass_properties(part, blank.density)
+    return {
+        "density": f"{blank.density:.6g} kg/m3",
+        "mass": f"{found.mass:.4g} kg",
+        "centroid X, Y": f"{found.centroid[0]:.3f}, {found.centroid[1]:.3f}",
+        "unbalance": f"{found.unbalance:.5g} g mm",
+    }
 
 
 def pair_facts(job: GearPairJob) -> dict[str, str]:

@@ -73,7 +73,7 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
         **_helix(job),
         **{name: extras[name] for name in ("solids", "meshing") if name in extras},
         "timings_s": {name: round(value, 6) for name, value in job.timings.items()},
-        "versions": _versions(),
+        "versions": versions(),
     }
 
 
@@ -155,8 +155,8 @@ def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
     return {**values, "how": how}
 
 
-def _versions() -> dict[str, str]:
-    """Versions of what made the numbers: the program, Python, and the libraries loaded so far."""
+def versions() -> dict[str, str]:
+    """Return versions of what made the numbers: the program, Python, libraries loaded so far."""
     found = {"gearcam": __version__, "python": platform.python_version()}
     for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
         module = sys.modules.get(name)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -14,6 +12,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, driven_way
 from gearcam.numeric.jets import Jet, polynomial
@@ -29,10 +28,6 @@ _VALUES: Final = ("ratio", "phi2_deg", "r1")
 _INLINE: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
 _FEWEST: Final = 6
 _MOST: Final = 20000
-
-
-class TableError(ValueError):
-    """A file that is no such table; the message says where and why."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +66,7 @@ class Table:
                 return
             try:
                 read_table(self.file)
-            except TableError as error:
+            except ColumnsError as error:
                 columns = f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES)}"
                 yield "file", None, str(error), columns
         elif self.phi1 is None or len(inline) != 1:
@@ -100,7 +95,7 @@ class Table:
         else:
             try:
                 kind, angles, values = read_table(self.file)
-            except TableError as error:
+            except ColumnsError as error:
                 raise InfeasibleError(str(error), where="law.file") from error
         return law_of_points(kind, angles, values, lobes, self.driven_travel, tolerances)
 
@@ -122,45 +117,23 @@ def read_table(file: str) -> tuple[str, Array, Array]:
 
     Raises
     ------
-    TableError
+    ColumnsError
         With the line that is wrong.
     """
-    try:
-        lines = Path(file).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is not a text file in UTF-8"
-        raise TableError(f"cannot be read: {reason}") from error
-    rows = [(k, row) for k, row in enumerate(lines, start=1) if row.strip() and row[0] != "#"]
-    if not rows:
-        raise TableError("is empty")
-    head = [name.strip() for name in next(csv.reader([rows[0][1]]))]
-    kinds = [name for name in _VALUES if name in head]
-    if _ANGLE not in head or len(kinds) != 1 or len(set(head)) < len(head):
-        raise TableError(f"line {rows[0][0]}: the columns are {', '.join(head)}")
-    places = head.index(_ANGLE), head.index(kinds[0])
-    points = [_numbers(row, places, line) for line, row in rows[1:]]
+    kinds: list[str] = []
+
+    def choose(head: list[str]) -> list[str]:
+        kinds[:] = [name for name in _VALUES if name in head]
+        return [_ANGLE, *kinds] if len(kinds) == 1 else []
+
+    points, lines = read_columns(file, choose)
     if not _FEWEST <= len(points) <= _MOST:
-        raise TableError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
-    columns = np.array(points)
-    falling = np.flatnonzero(np.diff(columns[:, 0]) <= 0.0)
+        raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
+    falling = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
     if falling.size:
-        raise TableError(f"line {rows[int(falling[0]) + 2][0]}: {_ANGLE} does not rise")
+        raise ColumnsError(f"line {lines[int(falling[0]) + 1]}: {_ANGLE} does not rise")
     factor = math.pi / 180.0 if kinds[0] == "phi2_deg" else 1.0
-    return kinds[0], np.radians(columns[:, 0]), columns[:, 1] * factor
-
-
-def _numbers(row: str, places: tuple[int, int], line: int) -> tuple[float, float]:
-    cells = next(csv.reader([row]))
-    found = []
-    for place in places:
-        text = cells[place].strip() if place < len(cells) else ""
-        try:
-            found.append(float(text))
-        except ValueError:
-            raise TableError(f"line {line}: {text!r} is not a number") from None
-        if not math.isfinite(found[-1]):
-            raise TableError(f"line {line}: {text!r} is not finite")
-    return found[0], found[1]
+    return kinds[0], np.radians(points[:, 0]), points[:, 1] * factor
 
 
 def law_of_points(

@@ -200,7 +200,7 @@ def _flanks(outline: Outline) -> Ints:
     A space begins with the + flank of its tooth and ends with the - flank of the next one.
     """
     rows, z = outline.rows, outline.toothing.teeth
-    row = outline.sampler.row_of(outline.sampler.chords[0][:-1])
+    row = outline.sampler.curve_of(outline.sampler.chords[0][:-1])
     flank = np.flatnonzero(rows.kind == Kind.FLANK)
     space = np.where(rows.sigma[flank] > 0.0, rows.tooth[flank], rows.tooth[flank] - 1) % z
     ends = np.zeros((2, 2, z), dtype=np.int64)

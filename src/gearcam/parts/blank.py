@@ -20,7 +20,10 @@ from typing import Any, Final
 from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, Quantity, param
 
 KIND: Final = "gear-pair-parts"
-"""The kind of design that the checks of parts belong to."""
+"""The kind of the checks of a pair's parts."""
+
+CAM_KIND: Final = "cam-parts"
+"""The kind of the checks of a cam as a part."""
 
 Problem = tuple[str, int | None, str, str]
 """Field, number of the wheel's value, what is wrong, what is allowed."""
@@ -110,8 +113,7 @@ class Blank:
     def problems(self) -> Iterator[Problem]:
         """Yield what is wrong by reading: field, wheel, message, allowed."""
         for number in (1, 2):
-            one = self.wheel(number)
-            for name, message, rule in (*_bore_problems(one), *_other_problems(one)):
+            for name, _, message, rule in self.wheel(number).problems():
                 yield name, number - 1, message, rule
 
 
@@ -171,6 +173,11 @@ class WheelBlank:
             return 0.5 * self.bore
         floor = 0.5 * self.bore + self.keyway_depth
         return float((floor**2 + 0.25 * self.keyway_width**2) ** 0.5)
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, None, message, allowed."""
+        for name, message, rule in (*_bore_problems(self), *_other_problems(self)):
+            yield name, None, message, rule
 
 
 _Told = tuple[str, str, str]

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Final
 
 from gearcam.findings import Finding, check
-from gearcam.parts.blank import KIND
+from gearcam.parts.blank import CAM_KIND, KIND
 from gearcam.parts.part import Part
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
@@ -49,35 +49,37 @@ class LostFlank:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PartsSubject:
-    """The parts of a pair, for checks.
+    """The parts of a pair, or a cam, for checks.
 
     Parameters
     ----------
-    parts : (Part, Part)
+    parts : tuple of Part
         As made.
+    names : tuple of str
+        What a person calls them.
     lost : tuple of LostFlank or None
         What each wheel's flanks lose; None where edges are neither moved nor rounded.
     """
 
-    parts: tuple[Part, Part]
-    lost: tuple[LostFlank | None, LostFlank | None]
+    parts: tuple[Part, ...]
+    names: tuple[str, ...] = ("wheel 1", "wheel 2")
+    lost: tuple[LostFlank | None, ...] = (None, None)
 
     @cached_property
-    def tools(self) -> tuple[ToolLimits, ToolLimits]:
-        """The largest tools for both outlines; of stepped parts for their lowest."""
-        first, second = (tool_limits(part.contour) for part in self.parts)
-        return first, second
+    def tools(self) -> tuple[ToolLimits, ...]:
+        """The largest tools for the outlines; of stepped parts for their lowest."""
+        return tuple(tool_limits(part.contour) for part in self.parts)
 
 
 @check(
     "thin-wall",
-    kind=KIND,
+    kind=(KIND, CAM_KIND),
     doc="walls between openings, and between openings and the outline or the hub's edge",
     limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0),
 )
 def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Finding]:
     """Warn of thin walls."""
-    for number, part in enumerate(subject.parts, start=1):
+    for name, part in zip(subject.names, subject.parts, strict=True):
         walls = list(_walls(part))
         if not walls:
             continue
@@ -90,7 +92,7 @@ def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Finding]:
                 value=width,
                 limit=limit,
                 unit="mm",
-                where=f"wheel {number}",
+                where=name,
             )
 
 
@@ -118,7 +120,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
 )
 def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
     """Warn where more flank is lost than a moved tip takes, an error where too little drives."""
-    for number, lost in enumerate(subject.lost, start=1):
+    for name, lost in zip(subject.names, subject.lost, strict=True):
         if lost is None or lost.harmless(limit):
             continue
         whole, left = lost.contact_ratio
@@ -130,19 +132,19 @@ def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
             value=lost.height,
             limit=lost.expected,
             unit="mm",
-            where=f"wheel {number}, {lost.teeth}",
+            where=f"{name}, {lost.teeth}",
         )
 
 
 @check(
     "large-tool",
-    kind=KIND,
+    kind=(KIND, CAM_KIND),
     doc="the largest round tool or wire that reaches every place of an outline",
     limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
 )
 def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
     """Warn that the tool at hand (a wire of 0.25 mm with its gap by default) is too large."""
-    for number, tools in enumerate(subject.tools, start=1):
+    for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
             continue
         narrow = tools.slot < 2.0 * tools.inner_radius
@@ -157,5 +159,5 @@ def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
             value=tools.diameter,
             limit=limit,
             unit="mm",
-            where=f"wheel {number}",
+            where=name,
         )

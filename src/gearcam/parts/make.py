@@ -90,7 +90,7 @@ def _demand_within(hub: Hub, contours: Sequence[Contour], place: Place) -> None:
     if hub.diameter >= room:
         raise InfeasibleError(
             "the hub reaches the roots of the teeth",
-            where=f"wheel {place.wheel}, blank.hub_diameter_mm",
+            where=f"{place.name}, blank.hub_diameter_mm",
             value=hub.diameter,
             limit=room,
             unit="mm",
@@ -137,7 +137,7 @@ def _moved_slot(shape: Loop, opening: Opening, by: float, place: Place) -> Loop:
 def _closed(opening: Opening, by: float, limit: float, place: Place) -> InfeasibleError:
     return InfeasibleError(
         f"the offset closes the {opening.name}",
-        where=f"wheel {place.wheel}, blank.offset_mm",
+        where=f"{place.name}, blank.offset_mm",
         value=by,
         limit=limit,
         unit="mm",
@@ -158,7 +158,7 @@ def _demand_marks(part: Part, place: Place) -> None:
         if room < radius:
             raise InfeasibleError(
                 "the timing mark meets an opening, the hub or the outline",
-                where=f"wheel {place.wheel}, [blank]",
+                where=f"{place.name}, [blank]",
                 value=mark.diameter,
                 limit=max(0.0, 2.0 * room),
                 unit="mm",

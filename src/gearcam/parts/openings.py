@@ -54,17 +54,22 @@ class Place:
 
     Parameters
     ----------
-    wheel : int
-        1 or 2, for messages.
+    wheel : int or None
+        1 or 2, for messages; None of a cam.
     module : float, mm
         Sizes that the design leaves open follow it.
     travel : float or None, rad
         How far an open wheel turns; None for a closed one.
     """
 
-    wheel: int
+    wheel: int | None
     module: float
     travel: float | None = None
+
+    @property
+    def name(self) -> str:
+        """What a person calls it."""
+        return "cam" if self.wheel is None else f"wheel {self.wheel}"
 
 
 def bore(blank: WheelBlank) -> Circle | Loop:
@@ -207,7 +212,7 @@ def _no_room(opening: Opening, solid: Polygon, what: str, place: Place) -> Infea
         )
     return InfeasibleError(
         f"the {opening.name} meets {what}",
-        where=f"wheel {place.wheel}, [blank]",
+        where=f"{place.name}, [blank]",
         value=value,
         limit=limit,
         unit="mm",
@@ -224,7 +229,7 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
     if place.travel is None:
         raise InfeasibleError(
             "a wheel that turns for ever has no stop",
-            where=f"wheel {place.wheel}, blank.stop_pin_mm",
+            where=f"{place.name}, blank.stop_pin_mm",
             value=blank.stop_pin,
             unit="mm",
             nearest="leave stop_pin_mm out, or give an open law (driven_travel_deg)",
@@ -235,7 +240,7 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
     if blank.stop_pin >= room:
         raise InfeasibleError(
             "no room for the slot of the stop pin between shaft and roots",
-            where=f"wheel {place.wheel}, blank.stop_pin_mm",
+            where=f"{place.name}, blank.stop_pin_mm",
             value=blank.stop_pin,
             limit=room,
             unit="mm",
@@ -331,7 +336,7 @@ def _no_lightening(number: int, solid: Polygon, core: float, place: Place) -> In
     least = solid.boundary.distance(Point(0.0, 0.0))
     return InfeasibleError(
         f"lightening hole {number} has no room between hub and rim",
-        where=f"wheel {place.wheel}, [blank]",
+        where=f"{place.name}, [blank]",
         value=least - core,
         unit="mm",
         nearest="this is what lies between hub or bore and the nearest root: take a smaller rim_mm "

@@ -296,8 +296,8 @@ def _segments(chain: _Chain, ring: Complex) -> Ints:
 def _stretches(pieces: list[Stretch | Complex], chain: _Chain, ring: Complex) -> Iterator[Stretch]:
     """Yield what the disc touches along the ring, stretch by stretch."""
     segment = _segments(chain, ring)
-    after = chain.piece[(segment + 1) % len(chain.piece)]
-    piece = np.where(chain.piece[segment] == after, after, -1)  # -1: between two pieces
+    inside = np.roll(chain.number, -1)[segment] > 0
+    piece = np.where(inside, chain.piece[segment], -1)  # -1: between two pieces
     ahead = np.roll(segment, -1)
     goes_on = (np.roll(piece, -1) == piece) & (ahead >= segment) & (ahead <= segment + 1)
     ends = np.flatnonzero(~goes_on)

@@ -166,7 +166,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     about = " R, X, Y and angles from the axis." if wheel.turns else ""
     notes = [
         f"Chord tolerance of the outline: {fine(part.tolerance)} mm.",
-        "Outline: the DXF file of this wheel.",
+        "Outline: the DXF file of this part.",
         f"Sizes as made.{about}",
     ]
     return finish(board, form, corner, name=part.name, title=title, facts=facts, notes=notes)

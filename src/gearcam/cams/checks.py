@@ -1,0 +1,166 @@
+"""The checks of cams: pressure angles, undercut, shocks, sharp profiles.
+
+Importing this room registers them. A check sees a `DiscCam` and yields findings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from gearcam.cams.disc import DiscCam
+from gearcam.cams.spec import KIND
+from gearcam.findings import Finding, check
+from gearcam.quantities import ANGLE, LENGTH, Param
+
+PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
+"""Largest pressure angle by custom, rad: of translating followers, whose guides jam, and of
+oscillating ones."""
+
+_TURN: Final = 2.0 * math.pi
+
+
+def _deg(theta: float) -> str:
+    return f"{math.degrees(theta):.6g} deg"
+
+
+@check(
+    "pressure-angle",
+    kind=KIND,
+    doc="the pressure angle: beyond its limit a translating follower jams in its guide",
+    limit=(
+        "pressure_angle",
+        Param(ANGLE, gt=0, lt=90, doc="largest pressure angle; 30 translating, 45 oscillating"),
+        math.nan,
+    ),
+)
+def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Finding]:
+    """Warn of large pressure angles on rises and returns."""
+    if math.isnan(limit):
+        limit = PRESSURE[cam.mechanism.oscillating]
+    for kind in ("rise", "return"):
+        found = cam.pressure(kind)
+        if found is None or found.largest <= limit:
+            continue
+        worst = max(found.low, found.high, key=lambda end: abs(end.value))
+        yield Finding(
+            code="pressure-angle",
+            severity="warning",
+            message=f"The pressure angle on the {kind} reaches {_deg(worst.value)}; a larger prime "
+            "radius, a longer phase or another offset makes it smaller.",
+            value=math.degrees(abs(worst.value)),
+            limit=math.degrees(limit),
+            unit="deg",
+            where=f"{kind}, at {_deg(worst.theta)}",
+        )
+
+
+@check(
+    "undercut",
+    kind=KIND,
+    doc="stretches on which the follower would cut away what it needs elsewhere; they are trimmed",
+    limit=("lost_lift", Param(LENGTH, ge=0, doc="lift that trimming may cost"), 0.01),
+)
+def undercut(cam: DiscCam, limit: float) -> Iterator[Finding]:
+    """Tell where a profile is undercut, and the lift that its trimming costs."""
+    left = list(cam.undercut)
+    lever = (cam.mechanism.arm or cam.mechanism.pivot) if cam.mechanism.oscillating else 1.0
+    for corner, loss in zip(cam.corners, cam.lost, strict=True):
+        low, high = corner.before, corner.after
+        inside = [pair for pair in left if _within(pair, low, high)]
+        left = [pair for pair in left if pair not in inside]
+        lost = loss.value * lever
+        angle = f" ({math.degrees(loss.value):.4g} deg)" if cam.mechanism.oscillating else ""
+        yield Finding(
+            code="undercut",
+            severity="error" if lost > limit else "warning",
+            message=f"The profile is {_stretches(inside)}. Trimmed, it has a corner on which the "
+            f"follower rests from {_deg(low)} to {_deg(high)}: it loses up to {lost:.4g} mm"
+            f"{angle} of lift.",
+            value=lost,
+            limit=limit,
+            unit="mm",
+            where=f"at {_deg(loss.theta)}",
+        )
+    for pair in left:
+        yield Finding(
+            code="undercut",
+            severity="warning",
+            message=f"The profile is {_stretches([pair])}, so little that trimming costs nothing.",
+            where=f"at {_deg(pair[0])}",
+        )
+
+
+def _within(pair: tuple[float, float], low: float, high: float) -> bool:
+    """Whether a stretch begins within a turn's part that may go over its end."""
+    return (pair[0] - low) % _TURN <= (high - low) % _TURN
+
+
+def _stretches(pairs: list[tuple[float, float]]) -> str:
+    if not pairs:
+        return "cut by the follower at another angle"
+    words = (
+        f"from {_deg(low)} to {_deg(high)}" if high > low else f"at {_deg(low)}"
+        for low, high in pairs
+    )
+    return "undercut " + " and ".join(words)
+
+
+def _shocks(cam: DiscCam, order: int) -> Iterator[tuple[str, float, str]]:
+    """Yield place, jump and unit of every knot whose derivative of this order jumps."""
+    swings = cam.mechanism.oscillating
+    unit = ("deg/rad" if swings else "mm/rad") + ("2" if order == 2 else "")
+    for jump in cam.program.jumps:
+        if jump.order == order:
+            by = jump.after - jump.before
+            yield f"at {_deg(jump.theta)}", math.degrees(by) if swings else by, unit
+
+
+@check("hard-shock", kind=KIND, doc="knots where the velocity jumps")
+def hard_shock(cam: DiscCam, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Warn of every knot where the velocity jumps."""
+    for where, by, unit in _shocks(cam, 1):
+        yield Finding(
+            code="hard-shock",
+            severity="warning",
+            message=f"The velocity jumps by {by:.6g} {unit}: the follower strikes or leaves the "
+            "cam, but at crawling speed.",
+            value=by,
+            unit=unit,
+            where=where,
+        )
+
+
+@check("soft-shock", kind=KIND, doc="knots where the acceleration jumps")
+def soft_shock(cam: DiscCam, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Note every knot where the acceleration jumps."""
+    for where, by, unit in _shocks(cam, 2):
+        yield Finding(
+            code="soft-shock",
+            severity="note",
+            message=f"The acceleration jumps by {by:.6g} {unit}: vibration at high speed.",
+            value=by,
+            unit=unit,
+            where=where,
+        )
+
+
+@check(
+    "sharp-profile",
+    kind=KIND,
+    doc="the smallest convex radius of an untrimmed profile: sharp ones wear and pit",
+    limit=("profile_radius", Param(LENGTH, ge=0, doc="least convex radius of the profile"), 1.0),
+)
+def sharp_profile(cam: DiscCam, limit: float) -> Iterator[Finding]:
+    """Warn of a sharp profile."""
+    convex, _ = cam.profile_radius
+    if not cam.corners and convex < limit:
+        yield Finding(
+            code="sharp-profile",
+            severity="warning",
+            message=f"The smallest convex radius of the profile is {convex:.4g} mm.",
+            value=convex,
+            limit=limit,
+            unit="mm",
+        )

@@ -1,0 +1,275 @@
+"""Pitch curve and profile of a cam before trimming: closed curves made of sweeps and jumps.
+
+A *sweep* lets theta run within one smooth piece of the lift. Where the velocity jumps, theta
+stands still and a *jump* lets the velocity run from its value before to that after: a roller
+then rolls about its own centre, a flat face is touched along a straight piece. With the jumps
+between its sweeps the profile is a closed curve with a continuous tangent, whatever the motion; it
+runs backwards where it is undercut.
+
+Curves are points of the complex plane, mm, in the cam's frame; a cam that turns clockwise has all
+of them mirrored at the y axis.
+
+Depends on contact, mechanism, laws and numeric; numpy only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.cams.contact import Contact, contact
+from gearcam.cams.mechanism import Mechanism
+from gearcam.laws.lift import Program
+from gearcam.numeric.jets import Jet
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Plane = NDArray[np.complex128]
+
+
+def unit(angle: Array) -> Plane:
+    """Return unit vectors at angles (n,), rad."""
+    return np.exp(1j * angle).astype(np.complex128, copy=False)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CamCurve:
+    """A cam's curve as its lift draws it.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    mechanism : Mechanism
+        The follower.
+    mirrored : bool
+        Whether the cam turns clockwise.
+    """
+
+    program: Program
+    mechanism: Mechanism
+    mirrored: bool = False
+
+    def lift(self, piece: Index, theta: Array, order: int) -> Array:
+        """Return the lift and its derivatives by given pieces, right at knots too.
+
+        Parameters
+        ----------
+        piece : (n,) array of int
+            Numbers of smooth pieces of the lift.
+        theta : (n,) array, rad
+            Cam angles in or at the ends of them.
+        order : int
+            Of the last derivative.
+
+        Returns
+        -------
+        (order + 1, n) array, mm or rad
+        """
+        lift = self.program.lift
+        result = np.empty((order + 1, theta.size))
+        for number in np.unique(piece).tolist():
+            here = np.flatnonzero(piece == number)
+            jet = lift.pieces[number](Jet.variable(theta[here], order)) + lift.offsets[number]
+            for k, values in enumerate(jet.derivatives()):
+                result[k, here] = values
+        return result
+
+    def contact(self, theta: Array, order: int = 1) -> Contact:
+        """Return the contact at cam angles.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Anywhere; at a knot the piece after it counts.
+        order : int
+            Of the jets, at most 2.
+        """
+        found = self.program.derivatives(theta, 2 + order)
+        factors = (1.0, 1.0, 0.5)[: order + 1]
+        s, ds, d2s = (Jet([f * found[k + j] for j, f in enumerate(factors)]) for k in range(3))
+        return contact(self.mechanism, s, ds, d2s)
+
+    def pitch(self, theta: Array, s: Array) -> Plane:
+        """Return centres of a round follower in the cam's frame, not mirrored: ``theta, s``."""
+        m = self.mechanism
+        position = m.start + s
+        if m.oscillating:
+            return m.pivot * unit(-theta) - m.arm * unit(-theta - position)
+        return (m.offset + 1j * position) * unit(-theta)
+
+    def trace(self, theta: Array, s: Array, ds: Array, inset: float) -> tuple[Plane, Plane]:
+        """Return points and unit tangents of the curve at a depth below a round follower's centre.
+
+        Parameters
+        ----------
+        theta, s, ds : (n,) arrays
+            Cam angles, rad, lift and velocity there.
+        inset : float, mm
+            0 for the pitch curve, the follower's radius for the profile; of no meaning for flat
+            faces, whose profile is the only curve.
+
+        Returns
+        -------
+        points, tangents : (n,) complex arrays, mm and 1
+            Clockwise, or mirrored.
+        """
+        m = self.mechanism
+        if m.flat:
+            points, tangents = self._flat(theta, s, ds)
+        else:
+            a, b, more = self.velocity(s, ds)
+            tangents = (a + 1j * b) / np.hypot(a, b) * unit(-theta - more)
+            points = self.pitch(theta, s) - 1j * inset * tangents
+        if self.mirrored:
+            return -np.conj(points), -np.conj(tangents)
+        return points, tangents
+
+    def velocity(self, s: Array, ds: Array) -> tuple[Array, Array, Array]:
+        """Return A, B and ``beta - theta`` of a round follower (see `gearcam.cams.contact`)."""
+        m = self.mechanism
+        position = m.start + s
+        if m.oscillating:
+            a = m.pivot * np.sin(position)
+            return a, m.arm * (1.0 + ds) - m.pivot * np.cos(position), position
+        return position, ds - m.offset, np.zeros_like(s)
+
+    def _flat(self, theta: Array, s: Array, ds: Array) -> tuple[Plane, Plane]:
+        m = self.mechanism
+        position = m.start + s
+        if m.oscillating:
+            height = m.pivot * np.sin(position) - m.face_offset
+            along, turn = m.pivot * np.cos(position) * ds / (1.0 + ds), theta + position
+        else:
+            height, along, turn = position, ds, theta
+        tangents = unit(-turn)
+        return (along + 1j * height) * tangents, tangents
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Strokes:
+    """Sweeps and jumps in order; fulfils `gearcam.numeric.sampling.Curves`.
+
+    Parameters
+    ----------
+    curve : CamCurve
+        What is drawn.
+    inset : float, mm
+        Depth below a round follower's centre.
+    piece : (n,) array of int
+        Smooth piece of the lift that a sweep belongs to, or that begins at a jump.
+    start, end : (n,) arrays
+        theta of a sweep, rad; velocity of a jump, mm or rad per rad.
+    jump : (n,) array of bool
+        Which are jumps.
+    corner : (n,) array of bool
+        Which begin at a corner.
+    """
+
+    curve: CamCurve
+    inset: float
+    piece: Index
+    start: Array
+    end: Array
+    jump: NDArray[np.bool_]
+    corner: NDArray[np.bool_]
+
+    @property
+    def breaks(self) -> tuple[Index, Array]:
+        """No curvature jumps inside a stroke."""
+        return np.zeros(0, dtype=np.int64), np.zeros(0)
+
+    def states(self, index: Index, parameter: Array) -> tuple[Array, Array, Array]:
+        """Return cam angle, lift and velocity.
+
+        Parameters
+        ----------
+        index : (n,) array of int
+            Numbers of the strokes.
+        parameter : (n,) array
+            theta or velocity, within them.
+        """
+        jump = self.jump[index]
+        theta = np.where(jump, self.curve.program.knots[self.piece[index]], parameter)
+        s, ds = self.curve.lift(self.piece[index], theta, 1)
+        return theta, s, np.where(jump, parameter, ds)
+
+    def at(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
+        """Return points and unit tangents in the direction of drawing; backwards where undercut.
+
+        Parameters
+        ----------
+        index : (n,) array of int
+            Numbers of the strokes.
+        parameter : (n,) array
+            theta or velocity, within them.
+        """
+        return self.curve.trace(*self.states(index, parameter), self.inset)
+
+    def speed(self, index: Index, parameter: Array) -> Array:
+        """Return how fast the curve is drawn, mm per unit of the parameter; negative backwards.
+
+        Parameters
+        ----------
+        index : (n,) array of int
+            Numbers of the strokes.
+        parameter : (n,) array
+            theta or velocity, within them.
+        """
+        theta, s, ds = self.states(index, parameter)
+        lift = self.curve.lift(self.piece[index], theta, 2)
+        found = contact(self.curve.mechanism, *(Jet([values]) for values in lift))
+        speed = found.speed if self.inset > 0.0 else found.pitch_speed
+        return np.where(self.jump[index], self._rolling(s, ds), speed.c[0])
+
+    def _rolling(self, s: Array, ds: Array) -> Array:
+        """Return how fast a jump draws: a roller about its centre, or along a flat face."""
+        m = self.curve.mechanism
+        position = m.start + s
+        if m.flat:
+            swings = m.pivot * np.cos(position) / (1.0 + ds) ** 2
+            return swings if m.oscillating else np.ones_like(s)
+        a, b, _ = self.curve.velocity(s, ds)
+        return self.inset * a * (m.arm or 1.0) / (a * a + b * b)
+
+
+def strokes(curve: CamCurve, inset: float) -> Strokes:
+    """Return the whole curve over a turn, in the order of drawing.
+
+    Parameters
+    ----------
+    curve : CamCurve
+        The cam.
+    inset : float, mm
+        Depth below a round follower's centre; 0 gives the pitch curve, with corners at jumps.
+
+    Returns
+    -------
+    Strokes
+    """
+    program = curve.program
+    knots, count = program.knots, len(program.knots) - 1
+    hard = {jump.theta: jump for jump in program.jumps if jump.order == 1}
+    drawn = curve.mechanism.flat or inset > 0.0
+    rows: list[tuple[int, float, float, bool, bool]] = []
+    for piece in range(count):
+        jump = hard.get(float(knots[piece]))
+        if jump is not None and drawn:
+            rows.append((piece, jump.before, jump.after, True, False))
+        corner = jump is not None and not drawn
+        rows.append((piece, float(knots[piece]), float(knots[piece + 1]), False, corner))
+    first = next((k for k, row in enumerate(rows) if row[4]), 0)
+    rows = rows[first:] + rows[:first]
+    rows[0] = (*rows[0][:4], True)  # a closed curve begins somewhere: at a corner if it has one
+    piece, start, end, jumps, corner = zip(*rows, strict=True)
+    return Strokes(
+        curve=curve,
+        inset=inset,
+        piece=np.array(piece),
+        start=np.array(start),
+        end=np.array(end),
+        jump=np.array(jumps),
+        corner=np.array(corner),
+    )

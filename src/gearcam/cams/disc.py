@@ -1,0 +1,323 @@
+"""A disc cam: its profile as the follower needs it, trimmed where the follower cuts it itself.
+
+Nothing is computed before it is asked for. Everything is computed for a cam that turns
+counter-clockwise; only contours and drawn curves are mirrored for the other direction.
+
+Refused: lifts that bring the follower onto the cam's axis or its arm over the line of centres,
+flat followers that swing down faster than the cam turns.
+
+Depends on curve, measures, trim, lost and numeric.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from gearcam.cams.curve import Array, CamCurve, Plane, Strokes, strokes
+from gearcam.cams.lost import lost_lift
+from gearcam.cams.measures import Extreme, Range, Size, range_of, size_of, turn, undercut
+from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.trim import Corner, star_shaped, trimmed
+from gearcam.errors import InfeasibleError
+from gearcam.laws.lift import Program
+from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.contour import Contour
+from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.sampling import Sampler
+
+CHORD_TOLERANCE = 1e-3
+"""Chord tolerance where the design gives none, mm."""
+
+_STANDSTILL = 1e-9
+"""A face that swings down within this of the cam's own speed touches one point for a while."""
+
+_OVERSAMPLING = 8
+"""Dense points per chord: their own chord error is 1/64 of the polygon's."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DiscCam:
+    """A disc cam.
+
+    Parameters
+    ----------
+    program : Program
+        The lift asked for.
+    mechanism : Mechanism
+        The follower.
+    clockwise : bool
+        Whether the cam turns clockwise.
+    tolerance : float, mm
+        Chord error of its contours.
+    """
+
+    program: Program
+    mechanism: Mechanism
+    clockwise: bool = False
+    tolerance: float = CHORD_TOLERANCE
+
+    @cached_property
+    def curve(self) -> CamCurve:
+        """The curves of the cam as it turns counter-clockwise."""
+        return CamCurve(program=self.program, mechanism=self.mechanism)
+
+    def pressure(self, kind: str) -> Range | None:
+        """Return the signed pressure angles, rad, over all phases of a `kind` (rise, return)."""
+        stretches = [(s.start, s.end) for s in self.program.stretches if s.kind == kind]
+        return range_of(self.curve, lambda contact: contact.pressure, stretches)
+
+    def pitch_curvature(self, kind: str = "") -> Range | None:
+        """Return the pitch curve's curvature, 1/mm, over a turn or all phases of a `kind`.
+
+        None of a flat follower, whose profile is its pitch curve (see `face_radius`), and where
+        there is no such phase.
+        """
+        if self.mechanism.flat:
+            return None
+        stretches = [(s.start, s.end) for s in self.program.stretches if s.kind == kind]
+        return range_of(
+            self.curve,
+            lambda contact: contact.turning / contact.pitch_speed,
+            stretches if kind else turn(self.curve),
+        )
+
+    @cached_property
+    def profile_radius(self) -> tuple[float, float]:
+        """Smallest convex and smallest concave radius of the profile, mm; a corner has radius 0.
+
+        Infinite where there is no convex or no concave part.
+        """
+        if self.face_radius is not None:
+            convex, concave = self.face_radius.low.value, math.inf
+        else:
+            found, radius = self.pitch_curvature(), self.mechanism.radius
+            low, high = (found.low.value, found.high.value) if found else (0.0, 0.0)
+            convex = 1.0 / high - radius if high > 0.0 else math.inf
+            concave = -1.0 / low + radius if low < 0.0 else math.inf
+            for jump in self.program.jumps:
+                if jump.order == 1 and jump.after > jump.before:  # it rolls about its own centre
+                    concave = min(concave, radius)
+                elif jump.order == 1:
+                    convex = 0.0
+        return (0.0 if self.corners else max(convex, 0.0)), concave
+
+    @cached_property
+    def face_radius(self) -> Range | None:
+        """Radius of curvature of a flat follower's profile, mm, negative where undercut."""
+        if not self.mechanism.flat:
+            return None
+        return range_of(
+            self.curve, lambda contact: contact.speed / contact.turning, turn(self.curve)
+        )
+
+    @cached_property
+    def contact_place(self) -> Range | None:
+        """Where a flat face is touched, mm (see `gearcam.cams.contact.Contact`)."""
+        if not self.mechanism.flat:
+            return None
+        return range_of(self.curve, lambda contact: contact.place, turn(self.curve))
+
+    @cached_property
+    def undercut(self) -> list[tuple[float, float]]:
+        """Cam angles, rad, between which the profile runs backwards."""
+        return undercut(self.curve)
+
+    @cached_property
+    def _kept(self) -> tuple[Strokes, tuple[Corner, ...]]:
+        whole = strokes(self.curve, self.mechanism.radius)
+        if not self.undercut and star_shaped(whole):
+            return whole, ()
+        return trimmed(whole, self.undercut, self.tolerance)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Where trimming has left corners, as the cam turns counter-clockwise."""
+        return self._kept[1]
+
+    @cached_property
+    def lost(self) -> tuple[Extreme, ...]:
+        """Largest lift, mm or rad, that each corner costs, with its cam angle, rad."""
+        return tuple(lost_lift(self.program, self.mechanism, corner) for corner in self.corners)
+
+    @cached_property
+    def shortfall(self) -> float:
+        """Largest lift that trimming costs, mm or rad."""
+        return max((loss.value for loss in self.lost), default=0.0)
+
+    @cached_property
+    def size(self) -> Size:
+        """Perimeter and area of the profile."""
+        return size_of(self._kept[0])
+
+    def _drawn(self, drawn: Strokes) -> Strokes:
+        return replace(drawn, curve=replace(self.curve, mirrored=self.clockwise))
+
+    @cached_property
+    def sampler(self) -> Sampler:
+        """The profile with the density of points that the tolerance asks for."""
+        return Sampler(curves=self._drawn(self._kept[0]), tolerance=self.tolerance)
+
+    @cached_property
+    def contour(self) -> Contour:
+        """The profile, counter-clockwise."""
+        return self._contour(self.sampler)
+
+    @cached_property
+    def pitch_contour(self) -> Contour:
+        """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
+        if self.mechanism.flat or self.mechanism.radius == 0.0:
+            return self.contour
+        drawn = self._drawn(strokes(self.curve, 0.0))
+        return self._contour(Sampler(curves=drawn, tolerance=self.tolerance))
+
+    def _contour(self, sampler: Sampler) -> Contour:
+        _, points, error = sampler.chords
+        clockwise = not self.clockwise  # theta draws against the cam's turning
+        return Contour(
+            runs=sampler.runs(_OVERSAMPLING, reverse=clockwise),
+            vertices=as_pairs(points[::-1] if clockwise else points),
+            tolerance=self.tolerance,
+            chord_error=error,
+        )
+
+    def places(self, count: int) -> tuple[Array, Plane, Plane]:
+        """Return points of the profile at even cam angles, where they are left by trimming.
+
+        Parameters
+        ----------
+        count : int
+            Cam angles of a turn.
+
+        Returns
+        -------
+        theta : (n,) array, rad
+            At most `count`.
+        points, normals : (n,) complex arrays, mm and 1
+            Touched at those angles, with the outward normals of the metal.
+        """
+        kept = self._drawn(self._kept[0])
+        theta = 2.0 * math.pi * np.arange(count) / count
+        sweeps = np.flatnonzero(~kept.jump)
+        inside = (kept.start[sweeps] <= theta[:, None]) & (theta[:, None] < kept.end[sweeps])
+        left = inside.any(axis=1)
+        index = sweeps[inside.argmax(axis=1)][left]
+        points, tangents = kept.at(index, theta[left])
+        # drawn against the cam's turning, the metal lies to the right, mirrored to the left
+        return theta[left], points, tangents * (-1j if self.clockwise else 1j)
+
+    def motion(self, theta: Array) -> dict[str, Array]:
+        """Return the motion and the contact at cam angles.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles; at a knot the values after it count.
+
+        Returns
+        -------
+        dict of str to (n,) array
+            ``s, ds, d2s, d3s`` in mm or rad, ``pressure`` in rad, ``rho_pitch`` and
+            ``rho_profile`` in mm, infinite where straight.
+        """
+        s, ds, d2s, d3s = self.program.derivatives(theta, 3)
+        found = self.curve.contact(theta, 0)
+        turning = found.turning.c[0] + np.zeros_like(s)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            pitch, profile = (
+                np.where(turning == 0.0, np.inf, values.c[0] / turning)
+                for values in (found.pitch_speed, found.speed)
+            )
+        return {
+            "s": s,
+            "ds": ds,
+            "d2s": d2s,
+            "d3s": d3s,
+            "pressure": found.pressure.c[0] + np.zeros_like(s),
+            "rho_pitch": pitch,
+            "rho_profile": profile,
+        }
+
+
+def make_cam(
+    program: Program,
+    mechanism: Mechanism,
+    *,
+    clockwise: bool = False,
+    tolerance: float = CHORD_TOLERANCE,
+) -> DiscCam:
+    """Return a cam after proving that its follower can stand wherever the lift puts it.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    mechanism : Mechanism
+        The follower.
+    clockwise : bool
+        Whether the cam turns clockwise.
+    tolerance : float, mm
+        Chord error of its contours.
+
+    Returns
+    -------
+    DiscCam
+
+    Raises
+    ------
+    InfeasibleError
+        If it cannot.
+    """
+    made = DiscCam(program=program, mechanism=mechanism, clockwise=clockwise, tolerance=tolerance)
+    low, high = program.range
+    if mechanism.oscillating:
+        _demand_swing(made, mechanism.start + low, mechanism.start + high)
+    least = replace(mechanism, start=mechanism.start + low).least
+    if not (least > mechanism.radius and (mechanism.oscillating or mechanism.start + low > 0.0)):
+        raise InfeasibleError(
+            "the lowest lift brings the follower onto the cam's axis",
+            where="motion",
+            value=low if not mechanism.oscillating else math.degrees(low),
+            unit="deg" if mechanism.oscillating else "mm",
+            nearest="a larger prime or base radius, or lifts that do not go below zero",
+        )
+    return made
+
+
+def _demand_swing(made: DiscCam, low: float, high: float) -> None:
+    """Refuse an arm that passes the line of centres, and a face that loses its contact."""
+    mechanism = made.mechanism
+    least, most = (-0.5 * math.pi, 0.5 * math.pi) if mechanism.flat else (0.0, math.pi)
+    if not (low > least and high < most):
+        what = "stands across the line of centres" if mechanism.flat else "passes that line"
+        raise InfeasibleError(
+            f"the arm swings too far: it {what}",
+            where="motion",
+            value=math.degrees((low if low <= least else high) - mechanism.start),
+            limit=math.degrees((least if low <= least else most) - mechanism.start),
+            unit="deg",
+            nearest="a lift within the limit",
+        )
+    slowest = _slowest(made.program)
+    if mechanism.flat and not slowest > -1.0 + _STANDSTILL:
+        raise InfeasibleError(
+            "the face swings down faster than the cam turns: no profile can carry it",
+            where="motion",
+            value=slowest,
+            limit=-1.0,
+            nearest="the limit is -1 rad of swing per rad of the cam: a longer return",
+        )
+
+
+def _slowest(program: Program) -> float:
+    """Return the smallest velocity of a program, per rad."""
+
+    def velocity(theta: Array) -> tuple[Array, Array]:
+        _, ds, d2s = program.lift.derivatives(theta, 2)
+        return ds[None], d2s[None]
+
+    ((_, values),) = extremes(velocity, program.knots)
+    return float(values.min())

@@ -1,0 +1,334 @@
+"""What lift a given profile gives: the follower is put on the points, no law is known.
+
+The follower comes down from outside until it rests: its position is the largest of those at which
+it touches a place of the profile. With the profile turned by theta, a place z = x + i*y touches at
+
+==================== ==================================================================
+translating round    height of the centre ``y + sqrt(r^2 - (x - e)^2)``
+translating flat     height of the face ``y``
+oscillating round    ``Psi = Psi_z + arccos((l^2 + D^2 - r^2)/(2*l*D))``
+oscillating flat     ``Psi = Psi_z + arcsin(f/D)``
+==================== ==================================================================
+
+where ``z = d - D*exp(-i*Psi_z)``. The same formulas with r, or the face, *grown* by g give the
+position on a disc of radius g around z, and so a bound for all places within: blocks of points
+that cannot be the highest are left out, and none that can.
+
+Refused: profiles that the follower misses at some angle, or that reach past its pivot.
+
+Source: derived anew; conventions as in `mechanism`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.profile_points import Pieces, ProfilePoints, profile_points
+from gearcam.errors import InfeasibleError
+from gearcam.numeric.bulges import Complex
+from gearcam.numeric.roots import bracketed_root
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_ROUNDING: Final = 1e-12
+"""Lengths over the profile's size that rounding may make different."""
+
+_NOISE: Final = 1e-14
+"""Rounding of a lift, in rad or over the size of profile and follower: the least error stated."""
+
+_TOGETHER: Final = 128
+"""Cam angles that are computed together."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Followed:
+    """How a follower moves on given points.
+
+    Parameters
+    ----------
+    theta : (m,) array, rad
+        Cam angles.
+    lift : (m,) array, mm or rad
+        Lift at them.
+    error : (m,) array, mm or rad
+        Estimated error of the lift, with points that are exact. Of a smooth profile the difference
+        of two degrees of its polynomials; of a polygon what a curve through the points may differ
+        from the chords (a corner between points, cut off by its chord, is not known to it).
+    contact : (m,) complex array, mm
+        Where the follower touches, in the cam's frame.
+    """
+
+    theta: Array
+    lift: Array
+    error: Array
+    contact: Complex
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Places:
+    """Places that may be touched: number of the angle, position, error and point of each."""
+
+    angle: Ints
+    position: Array
+    error: Array
+    point: Complex
+
+
+def follow(
+    points: Complex | Array, mechanism: Mechanism, theta: ArrayLike, *, smooth: bool
+) -> Followed:
+    """Return the lift that a profile gives.
+
+    Parameters
+    ----------
+    points : (n,) complex array or (n, 2) array, mm
+        A closed profile in the cam's frame, in order, either way around. For a polyline with
+        bulges those of `gearcam.numeric.bulges.flatten_bulges`; all of them lie on its arcs.
+    mechanism : Mechanism
+        The follower; the cam turns counter-clockwise by theta.
+    theta : (m,) array, rad
+        Cam angles.
+    smooth : bool
+        Whether the points lie on a curve that is smooth but for a few corners and jumps of its
+        curvature, unknown where, seven points and more apart. Otherwise the profile is the polygon
+        of the points, chords included.
+
+    Returns
+    -------
+    Followed
+
+    Raises
+    ------
+    InfeasibleError
+        If the points are no closed profile around the axis, or the follower cannot rest on it.
+    """
+    profile = profile_points(points)
+    _demand_clear_pivot(profile, mechanism)
+    angles = np.atleast_1d(np.asarray(theta, dtype=float))
+    noise = _NOISE * (1.0 if mechanism.oscillating else profile.size + mechanism.radius)
+    find = _on_curve if smooth else _on_chords
+    parts = []
+    for first in range(0, max(len(angles), 1), _TOGETHER):
+        some = angles[first : first + _TOGETHER]
+        places = find(profile, mechanism, np.exp(1j * some), _ROUNDING * profile.size)
+        parts.append(_highest(places, some))
+    position, error, contact = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return Followed(
+        theta=angles,
+        lift=position - mechanism.start,
+        error=np.maximum(error, noise),
+        contact=contact,
+    )
+
+
+def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
+    """Refuse a profile that a swinging follower cannot get over."""
+    if not mechanism.oscillating:
+        return
+    swing = -mechanism.face_offset if mechanism.flat else mechanism.arm - mechanism.radius
+    limit = mechanism.pivot + swing
+    if profile.size >= limit:
+        raise InfeasibleError(
+            "the profile reaches past the follower's pivot",
+            where="its largest radius",
+            value=profile.size,
+            limit=limit,
+            unit="mm",
+            nearest="a pivot farther from the cam",
+        )
+
+
+def _highest(places: _Places, angles: Array) -> tuple[Array, Array, Complex]:
+    """Return position, error and contact at each angle.
+
+    Raises
+    ------
+    InfeasibleError
+        If nothing is touched at one of them.
+    """
+    touched = np.isfinite(places.position)
+    number, position = places.angle[touched], places.position[touched]
+    order = np.lexsort((position, number))
+    last = np.searchsorted(number[order], np.arange(len(angles)), side="right")
+    missed = np.diff(last, prepend=0) == 0
+    if missed.any():
+        raise InfeasibleError(
+            "the follower meets no point of the profile",
+            where="cam angle",
+            value=math.degrees(float(angles[missed][0])),
+            unit="deg",
+        )
+    best = order[last - 1]
+    # a lower place may be the highest within its error
+    highest = position[best]
+    np.maximum.at(highest, number, position + places.error[touched])
+    return position[best], highest - position[best], places.point[touched][best]
+
+
+# --- one place ---------------------------------------------------------------------------------
+
+
+def _rest(mechanism: Mechanism, z: Complex, grow: Array | float = 0.0) -> tuple[Array, Array]:
+    """Return the position at which a follower touches discs, and the room within its reach.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The follower.
+    z : complex array, mm
+        Middles in the fixed frame.
+    grow : float or array, mm
+        Radii.
+
+    Returns
+    -------
+    position : array, mm or rad
+        Infinite where the follower always overlaps the disc. Out of reach it is that of the
+        nearest place, so that searches may pass there.
+    room : array
+        Negative out of reach; mm^2 for a round follower.
+    """
+    if not mechanism.oscillating:
+        if mechanism.flat:
+            return z.imag + grow, np.ones(z.shape)
+        aside, reach = z.real - mechanism.offset, mechanism.radius + grow
+        room = (reach - aside) * (reach + aside)
+        return z.imag + np.sqrt(np.maximum(room, 0.0)), room
+    toward = mechanism.pivot - z
+    own, far = -np.angle(toward), np.abs(toward)
+    if mechanism.flat:
+        face = mechanism.face_offset + grow
+        turn = np.arcsin(np.clip(face / far, -1.0, 1.0))
+        return np.where(face > far, np.inf, own + turn), far + face
+    arm, reach = mechanism.arm, mechanism.radius + grow
+    room = (reach - far + arm) * (reach + far - arm)
+    # half the angle from the three sides: exact for a small roller too
+    rest = np.maximum((far + arm - reach) * (far + arm + reach), 0.0)
+    turn = 2.0 * np.arctan2(np.sqrt(np.maximum(room, 0.0)), np.sqrt(rest))
+    return np.where(reach > far + arm, np.inf, own + turn), room
+
+
+def _reached(
+    mechanism: Mechanism, z: Complex, grow: Array | float = 0.0, tolerance: float = 0.0
+) -> Array:
+    """Return the positions of `_rest`, minus infinity out of reach by more than the tolerance."""
+    position, room = _rest(mechanism, z, grow)
+    return np.where(room >= -(tolerance**2), position, -np.inf)
+
+
+def _outward(mechanism: Mechanism, z: Complex) -> Complex:
+    """Return the direction from places to the follower that rests on them: the common normal."""
+    position = _rest(mechanism, z)[0]
+    if not mechanism.oscillating:
+        if mechanism.flat:
+            return np.full(z.shape, 1j)
+        return mechanism.offset + 1j * position - z
+    arm = np.exp(-1j * position)
+    return 1j * arm if mechanism.flat else mechanism.pivot - mechanism.arm * arm - z
+
+
+# --- one chord ---------------------------------------------------------------------------------
+
+
+def _on_chord(
+    mechanism: Mechanism, z: Complex, chord: Complex, grow: Array | float, tolerance: float
+) -> tuple[Array, Array]:
+    """Return the position on chords from `z`, and where it touches: 0 at the start, 1 at the end.
+
+    A flat face rests on the ends. A round one may touch between them: its centre is then where the
+    centre's path leaves the chord's parallel.
+    """
+    ends = [_reached(mechanism, place, grow, tolerance) for place in (z, z + chord)]
+    position, part = np.maximum(*ends), np.where(ends[0] >= ends[1], 0.0, 1.0)
+    if mechanism.flat:
+        return position, part
+    reach, length = mechanism.radius + grow, np.abs(chord)
+    unit = chord / length
+    if mechanism.oscillating:
+        from_pivot = (z - mechanism.pivot) * np.conj(unit)
+        beside = reach - from_pivot.imag
+        room = (mechanism.arm - beside) * (mechanism.arm + beside)
+        way = (np.sqrt(np.maximum(room, 0.0)) - from_pivot.real) / length
+        between = room >= 0.0
+    else:
+        between = unit.real < 0.0
+        aside = mechanism.offset - z.real - reach * unit.imag
+        way = np.divide(aside, chord.real, out=np.zeros_like(length), where=between)
+    between &= (way >= 0.0) & (way <= 1.0)
+    place = z[between] + way[between] * chord[between]
+    position[between] = _rest(mechanism, place, np.broadcast_to(grow, z.shape)[between])[0]
+    part[between] = way[between]
+    return position, part
+
+
+def _candidates(
+    profile: ProfilePoints, mechanism: Mechanism, turn: Complex, tolerance: float
+) -> tuple[Ints, Ints, Array]:
+    """Return the chords that may hold the contact: number of angle and chord, and upper bound.
+
+    `turn` holds exp(i*theta). Points lie on the curve, so that the highest of some is a lower
+    bound; what cannot reach it is left out, first by blocks, then by chords.
+    """
+    index, middle, radius = profile.blocks
+    upper = _reached(mechanism, turn[:, None] * middle, radius, tolerance)
+    top = index[np.argmax(upper, axis=1)]
+    lower = _reached(mechanism, turn[:, None] * profile.points[top], 0.0, tolerance).max(axis=1)
+    angle, block = np.nonzero((upper >= lower[:, None] - tolerance) & (upper > -np.inf))
+    angle, chord = np.repeat(angle, index.shape[1]), index[block].ravel()
+    z = turn[angle] * profile.points[chord]
+    np.maximum.at(lower, angle, _reached(mechanism, z, 0.0, tolerance))
+    height = 2.0 * profile.sagitta[chord]
+    upper = _on_chord(mechanism, z, turn[angle] * profile.chords[chord], height, tolerance)[0]
+    keep = (upper >= lower[angle] - tolerance) & (upper > -np.inf)
+    return angle[keep], chord[keep], upper[keep]
+
+
+# --- the two ways to read the points -------------------------------------------------------------
+
+
+def _on_chords(
+    profile: ProfilePoints, mechanism: Mechanism, turn: Complex, tolerance: float
+) -> _Places:
+    """Return the contacts with chords."""
+    angle, chord, upper = _candidates(profile, mechanism, turn, tolerance)
+    start, step = profile.points[chord], profile.chords[chord]
+    position, part = _on_chord(mechanism, turn[angle] * start, turn[angle] * step, 0.0, tolerance)
+    # half of what the bound leaves: it counts the heights of the curve twice
+    error = 0.5 * np.maximum(upper - position, 0.0)
+    return _Places(angle=angle, position=position, error=error, point=start + part * step)
+
+
+def _on_curve(
+    profile: ProfilePoints, mechanism: Mechanism, turn: Complex, tolerance: float
+) -> _Places:
+    """Return the contacts with the smooth curve over chords: one for each of its pieces."""
+    angle, chord, upper = _candidates(profile, mechanism, turn, tolerance)
+    pieces = profile.pieces(chord)
+    angle, upper = angle[pieces.owner], upper[pieces.owner]
+    turned = turn[angle]
+    # the far ends are the near ones of the next pieces
+    way = pieces.low.copy()
+    rises = _climb(mechanism, pieces, turned, pieces.low) > 0.0
+    peak = rises & (_climb(mechanism, pieces, turned, pieces.high) < 0.0)
+    part, turned_part = pieces.select(peak), turned[peak]
+    way[peak] = bracketed_root(
+        lambda at: _climb(mechanism, part, turned_part, at), part.low, part.high, 1e-3 * tolerance
+    )
+    point, rough = pieces.at(way)[0], pieces.at(way, low=True)[0]
+    position = _reached(mechanism, turned * point, 0.0, tolerance)
+    error = np.abs(_rest(mechanism, turned * rough)[0] - _rest(mechanism, turned * point)[0])
+    error[pieces.guessed] = (upper - position)[pieces.guessed]
+    return _Places(angle=angle, position=position, error=error, point=point)
+
+
+def _climb(mechanism: Mechanism, pieces: Pieces, turned: Complex, way: Array) -> Array:
+    """Return how the position rises along pieces, turned, at ways: its sign is exact."""
+    point, slope = pieces.at(way)
+    return (np.conj(_outward(mechanism, turned * point)) * turned * slope).real

@@ -1,0 +1,100 @@
+"""The lift that an undercut cam loses: what the follower does while it rests on a corner.
+
+Between the angles at which the two sides of a corner are drawn the follower touches nothing but
+corners; its lift there has a closed form, and the largest distance from the lift that was asked for
+is a root of a derivative.
+
+Depends on trim, mechanism, laws and numeric; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from gearcam.cams.curve import Array
+from gearcam.cams.measures import Extreme
+from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.trim import Corner
+from gearcam.laws.lift import Program
+from gearcam.numeric.jets import Jet, acos, asin, atan, cos, sin, sqrt
+from gearcam.numeric.piecewise import extremes
+
+_TURN = 2.0 * math.pi
+
+
+def resting(mechanism: Mechanism, point: complex) -> Callable[[Jet], Jet]:
+    """Return the lift of a follower that rests on a point of the cam.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The follower.
+    point : complex, mm
+        In the cam's frame, turning counter-clockwise.
+
+    Returns
+    -------
+    callable
+        ``lift(theta) -> Jet``, mm or rad; nan where the point cannot be touched.
+    """
+    m, radius, angle = mechanism, abs(point), math.atan2(point.imag, point.real)
+
+    def sliding(theta: Jet) -> Jet:
+        x, y = radius * cos(theta + angle), radius * sin(theta + angle)
+        if m.flat:
+            return y - m.start
+        aside = x - m.offset
+        return y + sqrt(m.radius**2 - aside * aside) - m.start
+
+    def swinging(theta: Jet) -> Jet:
+        x, y = radius * cos(theta + angle), radius * sin(theta + angle)
+        # the point seen from the pivot: its angle from the line to the axis, its distance
+        across = m.pivot - x
+        square = across * across + y * y
+        # an arctangent of two halves stays finite on the pivot's own height
+        seen = 2.0 * atan(y / (sqrt(square) + across))
+        if m.flat:
+            return seen + asin(m.face_offset / sqrt(square)) - m.start
+        reach = (square + (m.arm**2 - m.radius**2)) / (2.0 * m.arm * sqrt(square))
+        return seen + acos(reach) - m.start
+
+    return swinging if m.oscillating else sliding
+
+
+def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme:
+    """Return the largest lift that a corner costs, and where.
+
+    Parameters
+    ----------
+    program : Program
+        The lift asked for.
+    mechanism : Mechanism
+        The follower.
+    corner : Corner
+        Of the trimmed profile, turning counter-clockwise.
+
+    Returns
+    -------
+    Extreme
+        Cam angle, rad, and lift, mm or rad, never negative.
+    """
+    rest, start, end = resting(mechanism, corner.point), corner.before, corner.after
+    if end < start:
+        end += _TURN
+    if end == start:
+        return Extreme(theta=start, value=0.0)
+    inner = np.concatenate([program.knots, program.knots + _TURN])
+    knots = np.unique([start, *inner[(inner > start) & (inner < end)], end])
+
+    def missing(theta: Array) -> tuple[Array, Array]:
+        asked = program.derivatives(theta, 1)
+        with np.errstate(invalid="ignore"):
+            given = rest(Jet.variable(theta, 1)).derivatives()
+        return (asked[0] - given[0])[None], (asked[1] - given[1])[None]
+
+    ((places, values),) = extremes(missing, knots)
+    best = int(np.nanargmax(values))
+    return Extreme(theta=float(places[best]) % _TURN, value=max(0.0, float(values[best])))

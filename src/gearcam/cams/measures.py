@@ -1,0 +1,225 @@
+"""What is measured on a cam: pressure angles, radii of curvature, undercut stretches, size.
+
+Every extreme is a root of an exact derivative, or one of the two values at a knot; every end of an
+undercut stretch is a root of the contact's speed, bracketed by its extremes.
+
+Depends on curve, contact and numeric; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.cams.contact import Contact
+from gearcam.cams.curve import Array, CamCurve, Strokes
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.roots import bracketed_root
+
+_ROOT = 1e-15
+"""Width of a root's bracket, rad."""
+
+_CELLS_OF_SPEED = 192
+_FEWEST_CELLS = 48
+"""Cells of a turn, and of each piece at least, in which a speed is looked at."""
+
+_GAUSS = 16
+_CELLS = 4
+_MOST_CELLS = 1024
+_AGREED = 1e-14
+"""Gauss points in each cell of a stroke; the cells are halved until sums agree to this part."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extreme:
+    """A `value` and the cam angle `theta`, rad, at which it stands."""
+
+    theta: float
+    value: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """The smallest value of something, `low`, and the largest, `high`."""
+
+    low: Extreme
+    high: Extreme
+
+    @property
+    def largest(self) -> float:
+        """The largest absolute value."""
+        return max(abs(self.low.value), abs(self.high.value))
+
+
+def range_of(
+    curve: CamCurve, pick: Callable[[Contact], Jet], stretches: list[tuple[float, float]]
+) -> Range | None:
+    """Return the range of a quantity of the contact.
+
+    Parameters
+    ----------
+    curve : CamCurve
+        The cam.
+    pick : callable
+        ``pick(contact) -> Jet``.
+    stretches : list of (float, float)
+        Cam angles, rad, between which it counts.
+
+    Returns
+    -------
+    Range or None
+        None where there are no stretches.
+    """
+    places, values = [], []
+    for low, high in stretches:
+        inner = curve.program.knots
+        knots = np.array([low, *inner[(inner > low) & (inner < high)], high])
+
+        def function(theta: Array) -> tuple[Array, Array]:
+            value, slope = pick(curve.contact(theta)).derivatives()[:2]
+            return value[None], slope[None]
+
+        ((place, value),) = extremes(function, knots)
+        places.append(place)
+        values.append(value)
+    if not places:
+        return None
+    theta, value = np.concatenate(places), np.concatenate(values)
+    ends = (
+        Extreme(theta=float(theta[k]), value=float(value[k]))
+        for k in (int(np.argmin(value)), int(np.argmax(value)))
+    )
+    low, high = ends
+    return Range(low=low, high=high)
+
+
+def turn(curve: CamCurve) -> list[tuple[float, float]]:
+    """Return the whole turn as stretches."""
+    return [(0.0, float(curve.program.knots[-1]))]
+
+
+def undercut(curve: CamCurve) -> list[tuple[float, float]]:
+    """Return the stretches on which the profile runs backwards.
+
+    Parameters
+    ----------
+    curve : CamCurve
+        The cam.
+
+    Returns
+    -------
+    list of (float, float)
+        Cam angles, rad, in rising order; both are equal where only a jump runs backwards. One
+        that goes on over the end of the turn is cut there.
+    """
+    if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
+        return []
+    knots = curve.program.knots
+    back = [jump for jump in curve.program.jumps if jump.order == 1 and jump.after < jump.before]
+    found = [(jump.theta, jump.theta) for jump in back]
+
+    def both(theta: Array) -> tuple[Array, Array]:
+        value, slope = curve.contact(theta).speed.derivatives()[:2]
+        return value[None], slope[None]
+
+    if _stays_positive(both, knots):
+        return found
+    ((places, values),) = extremes(both, knots)
+    for k in range(len(places) - 1):
+        pair, sign = places[k : k + 2], values[k : k + 2] < 0.0
+        across = np.searchsorted(knots, pair[0], side="right") != np.searchsorted(
+            knots, pair[1], side="right"
+        )
+        if across or not sign.any():
+            continue  # both sides of a knot are places of their own
+        low, high = (float(place) for place in pair)
+        if not sign.all():
+            root = float(bracketed_root(lambda t: both(t)[0][0], pair[:1], pair[1:], _ROOT)[0])
+            low, high = (low, root) if sign[0] else (root, high)
+        found.append((low, high))
+    return _joined(sorted(found))
+
+
+def _stays_positive(both: Callable[[Array], tuple[Array, Array]], knots: Array) -> bool:
+    """Return whether no tangent to a function reaches zero within its cell of a fine grid.
+
+    Between two places a function lies above the lower of its tangents where it has a minimum, and
+    above its ends elsewhere.
+    """
+    width = np.diff(knots)
+    share = np.linspace(1e-12, 1.0 - 1e-12, max(_CELLS_OF_SPEED // len(width), _FEWEST_CELLS) + 1)
+    values, slopes = both((knots[:-1, None] + width[:, None] * share).ravel())
+    cell = np.repeat(width, len(share)) / (len(share) - 1)
+    return bool(np.all(values - np.abs(slopes) * cell > 0.0))
+
+
+def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Join stretches that touch, but for the width that extremes keep from knots."""
+    joined: list[tuple[float, float]] = []
+    for low, high in stretches:
+        if joined and low - joined[-1][1] <= 1e-11:
+            joined[-1] = (joined[-1][0], max(joined[-1][1], high))
+        else:
+            joined.append((low, high))
+    return joined
+
+
+@dataclass(frozen=True, kw_only=True)
+class Size:
+    """The size of a profile.
+
+    Parameters
+    ----------
+    perimeter, area : float, mm and mm^2
+        Of and inside it.
+    perimeter_error, area_error : float, mm and mm^2
+        Estimated errors.
+    """
+
+    perimeter: float
+    area: float
+    perimeter_error: float
+    area_error: float
+
+
+def size_of(strokes: Strokes) -> Size:
+    """Return perimeter and area of a closed curve, by Gauss-Legendre quadrature of every stroke.
+
+    Parameters
+    ----------
+    strokes : Strokes
+        Closed; mirrored or not.
+
+    Returns
+    -------
+    Size
+        The errors are differences to half the cells, and rounding.
+    """
+    cells, found = _CELLS, _integrals(strokes, _CELLS)
+    while True:
+        cells, before, found = 2 * cells, found, _integrals(strokes, 2 * cells)
+        changes = np.abs(found - before)
+        if np.all(changes <= _AGREED * found) or cells >= _MOST_CELLS:
+            break
+    perimeter, area = found.tolist()
+    errors = (changes + 16.0 * np.finfo(float).eps * found).tolist()
+    return Size(perimeter=perimeter, area=area, perimeter_error=errors[0], area_error=errors[1])
+
+
+def _integrals(strokes: Strokes, cells: int) -> Array:
+    """Return perimeter and area with as many cells for each stroke."""
+    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    share = ((np.arange(cells)[:, None] + 0.5 * (nodes + 1.0)) / cells).ravel()
+    weight = np.tile(0.5 * weights / cells, cells)
+    count = len(strokes.start)
+    index = np.repeat(np.arange(count), len(share))
+    run = (strokes.end - strokes.start)[index]
+    parameter = strokes.start[index] + np.tile(share, count) * run
+    points, tangents = strokes.at(index, parameter)
+    way = strokes.speed(index, parameter) * run * np.tile(weight, count)
+    swept = 0.5 * float((np.conj(points) * tangents).imag @ way)
+    return np.array([math.fsum(np.abs(way)), abs(swept)])

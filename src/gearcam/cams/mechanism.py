@@ -1,0 +1,155 @@
+"""The numbers of a follower on its cam: where it stands at zero lift, and what it can reach.
+
+Points of the plane are complex numbers, mm. Fixed frame: the cam's axis is the origin; a
+translating follower moves along ``+y``; the pivot of an oscillating one is at ``(d, 0)``, and
+``Psi``, the angle between its arm and the line from pivot to cam, grows with the lift (the arm
+turns clockwise). The *position* of a follower is what its lift is added to:
+
+==================== ==========================================================
+translating round    height of the centre, ``s0 = sqrt(prime^2 - e^2)``
+translating flat     height of the face, the base radius
+oscillating round    ``Psi0 = arccos((d^2 + l^2 - prime^2)/(2*d*l))``
+oscillating flat     ``Psi0 = arcsin((base + f)/d)``, the face f nearer the cam
+==================== ==========================================================
+
+Refused: followers that cannot touch the cam at zero lift.
+
+Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28); design.md section 2.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.errors import InfeasibleError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism:
+    """A follower and the cam's axis, turning counter-clockwise.
+
+    Parameters
+    ----------
+    flat, oscillating : bool
+        Its kind.
+    start : float, mm or rad
+        Position at zero lift.
+    radius : float, mm
+        Of a round face; 0 of a point or a flat one.
+    offset : float, mm
+        e, of a translating follower's axis.
+    arm, pivot : float, mm
+        l and d of an oscillating follower.
+    face_offset : float, mm
+        f of an oscillating flat follower.
+    """
+
+    flat: bool
+    oscillating: bool
+    start: float
+    radius: float = 0.0
+    offset: float = 0.0
+    arm: float = 0.0
+    pivot: float = 0.0
+    face_offset: float = 0.0
+
+    @property
+    def least(self) -> float:
+        """Distance from the axis to a round follower's centre or to a flat face, at zero lift."""
+        if not self.oscillating:
+            return self.start if self.flat else math.hypot(self.offset, self.start)
+        if self.flat:
+            return self.pivot * math.sin(self.start) - self.face_offset
+        span = self.pivot**2 + self.arm**2 - 2.0 * self.pivot * self.arm * math.cos(self.start)
+        return math.sqrt(span)
+
+
+def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
+    """Return the numbers of a follower on its cam.
+
+    Parameters
+    ----------
+    follower : FollowerSpec
+        The follower.
+    cam : CamSpec
+        The cam; prime or base radius as the follower asks.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    InfeasibleError
+        If the follower cannot touch the cam at zero lift.
+    """
+    kind = {"flat": follower.flat, "oscillating": follower.oscillating, "radius": follower.radius}
+    size = cam.prime_radius
+    if size is None:
+        size = _given(cam.base_radius, "a prime or base radius") + follower.radius
+    if not follower.oscillating:
+        if follower.flat:
+            return Mechanism(start=size, offset=follower.offset, **kind)
+        if not abs(follower.offset) < size:
+            raise InfeasibleError(
+                "the follower's axis passes the prime circle",
+                where="follower.offset_mm",
+                value=abs(follower.offset),
+                limit=size,
+                unit="mm",
+                nearest=f"an offset below {size:.6g} mm either way",
+            )
+        height = math.sqrt((size - follower.offset) * (size + follower.offset))
+        return Mechanism(start=height, offset=follower.offset, **kind)
+    pivot = _given(follower.pivot_distance, "a pivot distance")
+    if follower.flat:
+        return _swinging_face(follower, size, pivot)
+    arm = _given(follower.arm, "an arm")
+    if not abs(pivot - arm) < size < pivot + arm:
+        low, high = abs(pivot - arm), pivot + arm
+        raise InfeasibleError(
+            "the arm cannot reach the prime circle",
+            where="cam.prime_radius_mm",
+            value=size,
+            limit=low if size <= low else high,
+            unit="mm",
+            nearest=f"with this arm and pivot a prime radius between {low:.6g} and {high:.6g} mm",
+        )
+    # half the angle from the sides: exact where the triangle is nearly flat
+    half = math.atan2(
+        math.sqrt((size - pivot + arm) * (size + pivot - arm)),
+        math.sqrt((pivot + arm - size) * (pivot + arm + size)),
+    )
+    return Mechanism(start=2.0 * half, arm=arm, pivot=pivot, **kind)
+
+
+def _given(value: float | None, what: str) -> float:
+    if value is None:
+        raise ValueError(f"this follower needs {what}")
+    return value
+
+
+def _swinging_face(follower: FollowerSpec, size: float, pivot: float) -> Mechanism:
+    reach = size + follower.face_offset
+    if not abs(reach) < pivot:
+        low, high = -pivot - follower.face_offset, pivot - follower.face_offset
+        raise InfeasibleError(
+            "the face cannot touch the base circle",
+            where="cam.base_radius_mm",
+            value=size,
+            limit=low if size <= low else high,
+            unit="mm",
+            nearest="with this pivot and face offset a base radius between "
+            f"{max(low, 0.0):.6g} and {high:.6g} mm"
+            if high > 0.0
+            else f"a face offset below {pivot:.6g} mm",
+        )
+    return Mechanism(
+        flat=True,
+        oscillating=True,
+        start=math.asin(reach / pivot),
+        pivot=pivot,
+        face_offset=follower.face_offset,
+    )

@@ -1,0 +1,170 @@
+"""What a design says of a follower and its cam.
+
+A *roller* turns on a pin, a *domed* follower has a fixed round face, a *point* is a dome of radius
+zero: all three are *round*. A *flat* follower has a straight face. A *translating* follower moves
+along ``+y`` at ``x = offset``; an *oscillating* one swings about a pivot on the ``x`` axis, and its
+lift turns the arm away from the cam.
+
+Refused by reading: sizes that the kind of follower does not have, and missing ones.
+
+Depends on quantities only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from gearcam.quantities import LENGTH, TEXT, param
+
+KIND: Final = "cam"
+"""The kind of design, and that of its checks."""
+
+Problem = tuple[str, int | None, str, str]
+"""Field, number of an item, what is wrong, what is allowed."""
+
+_ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
+"""The sizes of round followers."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FollowerSpec:
+    """A follower: what touches the cam, and how it is guided."""
+
+    type: str = param(
+        TEXT, choices=("point", "roller", "flat", "domed"), doc="what touches the cam"
+    )
+    motion: str = param(
+        TEXT, default="translating", choices=("translating", "oscillating"), doc="how it moves"
+    )
+    roller_radius: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6, doc="radius of the roller"
+    )
+    dome_radius: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6, doc="radius of a domed face"
+    )
+    offset: float = param(
+        LENGTH,
+        default=0.0,
+        ge=-1e6,
+        le=1e6,
+        doc="of a translating follower's axis from the cam's; positive makes the rise easier",
+    )
+    arm: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6, doc="from the pivot to the roller's centre"
+    )
+    pivot_distance: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6, doc="from the cam's axis to the pivot"
+    )
+    face_offset: float = param(
+        LENGTH,
+        default=0.0,
+        ge=-1e6,
+        le=1e6,
+        doc="of an oscillating flat follower: how far its face stands off the pivot to the cam",
+    )
+
+    @property
+    def oscillating(self) -> bool:
+        """Whether it swings about a pivot; its lift is then an angle."""
+        return self.motion == "oscillating"
+
+    @property
+    def flat(self) -> bool:
+        """Whether its face is straight."""
+        return self.type == "flat"
+
+    @property
+    def radius(self) -> float:
+        """Radius of its round face, mm; 0 of a point."""
+        return self.roller_radius or self.dome_radius or 0.0
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        for kind, name in _ROUND.items():
+            given = getattr(self, name) is not None
+            if given and self.type != kind:
+                yield name, None, f"a {self.type} follower has none", f'with type = "{kind}"'
+            if not given and self.type == kind:
+                yield name, None, f"is missing for a {kind} follower", "a radius above 0"
+        swinging = {"pivot_distance": True, "arm": not self.flat}
+        for name, asked in swinging.items():
+            given = getattr(self, name) is not None
+            if given and not self.oscillating:
+                yield name, None, "a translating follower has none", 'with motion = "oscillating"'
+            elif given and not asked:
+                yield name, None, "a flat face has none", "leave it out"
+            elif self.oscillating and asked and not given:
+                yield name, None, "is missing for an oscillating follower", "a length above 0"
+        if self.offset and self.oscillating:
+            yield "offset", None, "an oscillating follower has none", "leave it out"
+        if self.face_offset and not (self.flat and self.oscillating):
+            rule = "with an oscillating flat follower"
+            yield "face_offset", None, "only an oscillating flat follower has one", rule
+
+
+@dataclass(frozen=True, kw_only=True)
+class CamSpec:
+    """A cam: its form, its size, its direction of turning."""
+
+    form: str = param(TEXT, default="disc", choices=("disc",), doc="the form of the cam")
+    prime_radius: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e6,
+        doc="from the cam's axis to the centre of a round follower at zero lift",
+    )
+    base_radius: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e6,
+        doc="from the cam's axis to a flat face at zero lift; of round followers the prime "
+        "radius less the roller's",
+    )
+    thickness: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="of the plate")
+    rotation: str = param(
+        TEXT,
+        default="ccw",
+        choices=("ccw", "cw"),
+        doc="direction in which the cam turns; cw gives the mirror image of ccw",
+    )
+
+    @property
+    def clockwise(self) -> bool:
+        """Whether it turns clockwise: everything is then mirrored at the y axis."""
+        return self.rotation == "cw"
+
+
+def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
+    """Yield what is wrong with a cam's size for its follower.
+
+    Parameters
+    ----------
+    follower : FollowerSpec
+        The follower.
+    cam : CamSpec
+        The cam.
+
+    Yields
+    ------
+    tuple
+        Field of `cam`, None, message, allowed.
+    """
+    prime, base = cam.prime_radius, cam.base_radius
+    if follower.flat:
+        if prime is not None:
+            yield "prime_radius", None, "a flat follower has no centre", "base_radius_mm instead"
+        elif base is None:
+            yield "base_radius", None, "is missing for a flat follower", "a radius above 0"
+    elif prime is None and base is None:
+        rule = "prime_radius_mm or base_radius_mm"
+        yield "prime_radius", None, "is missing", rule
+    elif prime is not None and base is not None:
+        rule = "one of prime_radius_mm and base_radius_mm"
+        yield "base_radius", None, "prime_radius_mm is given too", rule
+    elif prime is not None and prime <= follower.radius:
+        rule = f"above the follower's radius of {follower.radius:.6g} mm"
+        yield "prime_radius", None, "leaves no cam below the follower", rule

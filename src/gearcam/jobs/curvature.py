@@ -1,0 +1,67 @@
+"""The study of curvature from three neighbouring points, on a cam's own curve."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.cams.disc import DiscCam
+from gearcam.cams.three_points import curvature_study
+from gearcam.errors import InfeasibleError
+
+Array = NDArray[np.float64]
+
+
+def curvature_columns(
+    cam: DiscCam, counts: Sequence[int]
+) -> tuple[dict[str, Array], dict[str, Any]]:
+    """Return the error of three-point curvature against the spacing of the points.
+
+    Parameters
+    ----------
+    cam : DiscCam
+        Its pitch curve is studied, of a flat follower its profile.
+    counts : sequence of int
+        Numbers of points, at even cam angles.
+
+    Returns
+    -------
+    columns : dict of str to (n,) array
+        For ``curvature.csv``.
+    facts : dict
+        For the summary: the order at which the mean error falls.
+
+    Raises
+    ------
+    InfeasibleError
+        If the profile has cusps, where there is no curvature.
+    """
+    curve, flat = cam.curve, cam.mechanism.flat
+    if flat and cam.undercut:
+        raise InfeasibleError(
+            "the undercut profile has cusps: their curvature cannot be studied",
+            where="output.files",
+            nearest="a larger base radius, or no curvature study",
+        )
+
+    def points(theta: Array) -> NDArray[np.complex128]:
+        s, ds = cam.program.derivatives(theta, 1)
+        return np.conj(curve.trace(theta, s, ds, 0.0)[0])  # mirrored: counter-clockwise
+
+    def exact(theta: Array) -> Array:
+        found = curve.contact(theta, 0)
+        return np.asarray(found.turning.c[0] / found.pitch_speed.c[0])
+
+    study = curvature_study(points, exact, counts)
+    columns = {
+        "points": study.count.astype(np.float64),
+        "spacing_mm": study.spacing,
+        "largest_error_per_mm": study.largest,
+        "rms_error_per_mm": study.rms,
+    }
+    with np.errstate(divide="ignore"):
+        order = np.polyfit(np.log(study.spacing), np.log(study.rms), 1)[0]
+    return columns, {"points": list(counts), "order_of_rms": float(order)}

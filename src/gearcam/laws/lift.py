@@ -1,0 +1,302 @@
+"""Lift programs: the motion of a follower over a turn of the cam, as a piecewise analytic function.
+
+A program is made from phases. Every phase is scaled from the unit square; a segment is the quintic
+that leaves with the state in which the phase before it ends. The program repeats every turn, and
+says at which knots its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps.
+
+Source: 000 section 3.3, eqs. (3.3)-(3.5).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.phases_of_lift import (
+    DwellPhase,
+    Phase,
+    ReturnPhase,
+    RisePhase,
+    SegmentPhase,
+    levels,
+    program_problems,
+)
+from gearcam.laws.rises import Rise
+from gearcam.numeric.jets import Jet, polynomial
+from gearcam.numeric.piecewise import Piecewise, extremes
+from gearcam.tolerances import Tolerances
+
+Array = NDArray[np.float64]
+
+_JUMP = 1e-9
+"""Jump of a derivative that counts, in its largest value: far above rounding."""
+
+_PROBES = 9
+"""Places between knots at which the size of derivatives is known well enough for that."""
+
+_TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stretch:
+    """A phase in its place: its `kind` (rise, return or dwell), `start` and `end` in rad."""
+
+    kind: str
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Jump:
+    """A place where a derivative jumps.
+
+    Parameters
+    ----------
+    theta : float, rad
+        Where.
+    order : int
+        Of the derivative: 1 velocity, 2 acceleration, 3 jerk.
+    before, after : float
+        Its values on both sides, per rad^order.
+    """
+
+    theta: float
+    order: int
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Program:
+    """The lift over a turn, repeated.
+
+    Parameters
+    ----------
+    lift : Piecewise
+        s over ``[0, 2*pi]``, mm or rad.
+    stretches : tuple of Stretch
+        Its phases; a segment counts as a rise or return by its direction.
+    """
+
+    lift: Piecewise
+    stretches: tuple[Stretch, ...]
+
+    @property
+    def knots(self) -> Array:
+        """Knots of the lift over a turn, rad, both ends included."""
+        return self.lift.knots
+
+    def derivatives(self, theta: ArrayLike, order: int) -> list[Array]:
+        """Return ``[s, s', ..., s^(order)]`` at any cam angles `theta`, rad."""
+        theta = np.asarray(theta, dtype=float)
+        return self.lift.derivatives(theta - _TURN * np.floor(theta / _TURN), order)
+
+    @cached_property
+    def peaks(self) -> tuple[float, float, float]:
+        """Largest absolute velocity, acceleration and jerk between knots, per rad, rad^2, rad^3."""
+
+        def values(theta: Array) -> tuple[Array, Array]:
+            found = np.array(self.lift.derivatives(theta, 4))
+            return found[1:4], found[2:5]
+
+        at_knots = np.abs(self._sides).max(axis=(0, 1))[1:]
+        first, second, third = (
+            float(max(np.abs(found).max(), knots))
+            for (_, found), knots in zip(extremes(values, self.knots), at_knots, strict=True)
+        )
+        return first, second, third
+
+    @cached_property
+    def _sides(self) -> list[tuple[list[float], list[float]]]:
+        """Lift and derivatives to the third, before and after each knot but the last."""
+        last = len(self.knots) - 1
+        return [
+            (self.lift.side(right or last, -1, 3), self.lift.side(right, 1, 3))
+            for right in range(last)
+        ]
+
+    @cached_property
+    def range(self) -> tuple[float, float]:
+        """Smallest and largest lift, mm or rad."""
+        (_, low), (_, high) = self.lift.extremes
+        return low, high
+
+    @cached_property
+    def jumps(self) -> tuple[Jump, ...]:
+        """The lowest derivative that jumps at each knot, the turn's ends counting as one."""
+        steps = np.diff(self.knots) * np.linspace(0.0, 1.0, _PROBES)[1:-1, None]
+        inside = np.abs(self.lift.derivatives((self.knots[:-1] + steps).ravel(), 3))
+        scales = np.maximum(inside.max(axis=1), np.abs(self._sides).max(axis=(0, 1)))
+        found = []
+        for right, (before, after) in enumerate(self._sides):
+            for order, scale in enumerate(scales[1:].tolist(), start=1):
+                if abs(after[order] - before[order]) > _JUMP * scale:
+                    place = float(self.knots[right])
+                    found.append(
+                        Jump(theta=place, order=order, before=before[order], after=after[order])
+                    )
+                    break
+        return tuple(found)
+
+    @property
+    def continuity(self) -> int:
+        """Order of continuity over the turn: 0 to 3, where 3 means at least 3."""
+        return min((jump.order for jump in self.jumps), default=4) - 1
+
+
+def make_program(
+    phases: Sequence[Phase], tolerances: Tolerances, *, oscillating: bool = False
+) -> Program:
+    """Make a program from its phases.
+
+    Parameters
+    ----------
+    phases : sequence of Phase
+        Of a turn, in order.
+    tolerances : Tolerances
+        Accuracy of laws that are expanded.
+    oscillating : bool
+        Whether lifts are angles.
+
+    Returns
+    -------
+    Program
+        Knots at the ends of phases and inside laws; the first is 0, the last exactly 2*pi.
+
+    Raises
+    ------
+    InfeasibleError
+        If the program does not close, or a law has no value.
+    """
+    for number, _, message, rule in program_problems(phases, oscillating=oscillating):
+        where = "motion" if number is None else f"motion[{number}]"
+        raise InfeasibleError(message, where=where, nearest=rule)
+    share = _TURN / sum(phase.angle for phase in phases)
+    angles = np.concatenate([[0.0], np.cumsum([phase.angle * share for phase in phases])])
+    angles[-1] = _TURN
+    heights = levels(phases)
+    heights[-1] = 0.0
+    shapes: list[Any] = [
+        phase.shape.build(tolerances) if isinstance(phase, RisePhase) else None for phase in phases
+    ]
+    builder = _Builder(angles=angles, heights=heights)
+    stretches = []
+    for number, (phase, shape) in enumerate(zip(phases, shapes, strict=True)):
+        start, end = float(angles[number]), float(angles[number + 1])
+        match phase:
+            case DwellPhase():
+                kind = "dwell"
+                builder.add(number, lambda t: 0.0 * t, (0.0, 1.0), 0.0)
+            case SegmentPhase():
+                kind = "rise" if heights[number + 1] >= heights[number] else "return"
+                before = (number - 1) % len(phases)
+                state = _end_state(phases[before], shapes[before], builder, before)
+                builder.add_segment(number, state, phase.end[1:])
+            case RisePhase():
+                kind = "return" if isinstance(phase, ReturnPhase) else "rise"
+                builder.add_law(number, shape)
+        stretches.append(Stretch(kind=kind, start=start, end=end))
+    return Program(lift=builder.made, stretches=tuple(stretches))
+
+
+def _end_state(
+    phase: Phase, shape: Rise | None, builder: _Builder, number: int
+) -> tuple[float, float]:
+    """Return velocity and acceleration at the end of a phase: its laws are fixed by themselves."""
+    if isinstance(phase, SegmentPhase):
+        return phase.end[1:]
+    if shape is None:
+        return 0.0, 0.0
+    rise, width = builder.rise(number), builder.width(number)
+    if shape.mirrored and rise < 0.0:
+        velocity, acceleration, _ = shape.start
+        return rise * velocity / width, -rise * acceleration / width**2
+    velocity, acceleration, _ = shape.end
+    return rise * velocity / width, rise * acceleration / width**2
+
+
+@dataclass(eq=False)
+class _Builder:
+    """Pieces of a lift, put together phase by phase.
+
+    Parameters
+    ----------
+    angles, heights
+        Ends of the phases, rad, and lifts there.
+    """
+
+    angles: Array
+    heights: list[float]
+
+    def __post_init__(self) -> None:
+        self.knots: list[float] = [0.0]
+        self.pieces: list[Callable[[Jet], Jet]] = []
+
+    def width(self, number: int) -> float:
+        return float(self.angles[number + 1] - self.angles[number])
+
+    def rise(self, number: int) -> float:
+        return self.heights[number + 1] - self.heights[number]
+
+    def add(
+        self, number: int, shape: Callable[[Jet], Jet], part: tuple[float, float], scale: float
+    ) -> None:
+        """Add a piece of a phase: `part` of its width, lift above its start over `scale`."""
+        start, width, base = float(self.angles[number]), self.width(number), self.heights[number]
+
+        def piece(theta: Jet) -> Jet:
+            return scale * shape((theta - start) * (1.0 / width)) + base
+
+        self.pieces.append(piece)
+        last = part[1] >= 1.0
+        self.knots.append(float(self.angles[number + 1]) if last else start + part[1] * width)
+
+    def add_law(self, number: int, shape: Rise) -> None:
+        """Add a law; a mirrored one comes down by running backwards."""
+        function, rise = shape.function, self.rise(number)
+        pieces = list(zip(function.pieces, function.offsets.tolist(), strict=True))
+        knots = function.knots
+        backwards = shape.mirrored and rise < 0.0
+        if backwards:
+            pieces, knots = pieces[::-1], 1.0 - knots[::-1]
+        for k, (piece, offset) in enumerate(pieces):
+
+            def forward(t: Jet, piece: Callable[[Jet], Jet] = piece, c: float = offset) -> Jet:
+                return piece(t) + c
+
+            def backward(t: Jet, piece: Callable[[Jet], Jet] = piece, c: float = offset) -> Jet:
+                return 1.0 - (piece(1.0 - t) + c)
+
+            part = float(knots[k]), float(knots[k + 1])
+            self.add(number, backward if backwards else forward, part, rise)
+
+    def add_segment(
+        self, number: int, start: tuple[float, float], end: tuple[float, float]
+    ) -> None:
+        """Add the quintic from the state before to the state at the end of a phase."""
+        width, rise = self.width(number), self.rise(number)
+        v0, a0, v1, a1 = start[0] * width, start[1] * width**2, end[0] * width, end[1] * width**2
+        # what is left at the end after the start's own parabola
+        p, v, a = rise - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
+        cubic, quartic, quintic = (
+            10 * p - 4 * v + 0.5 * a,
+            -15 * p + 7 * v - a,
+            6 * p - 3 * v + 0.5 * a,
+        )
+        shape = polynomial([0.0, v0, 0.5 * a0, cubic, quartic, quintic])
+        self.add(number, shape, (0.0, 1.0), 1.0)
+
+    @property
+    def made(self) -> Piecewise:
+        return Piecewise(
+            knots=np.array(self.knots),
+            pieces=tuple(self.pieces),
+            offsets=np.zeros(len(self.pieces)),
+        )

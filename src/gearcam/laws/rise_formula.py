@@ -1,0 +1,150 @@
+"""Rises by formula."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.formula import compiled, formula_problems
+from gearcam.laws.rises import Rise, RiseClaim, RiseEntry, register_rise
+from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import Piece, piecewise
+from gearcam.quantities import TEXT, param
+from gearcam.tolerances import Tolerances
+
+Array = NDArray[np.float64]
+
+_TYPED: Final = 1e-9
+"""Miss of S at either end that is taken out: typed digits."""
+
+_ODD_PLACE: Final = 0.3819660112501052
+"""Where the search for corners is cut first: a corner at a round place then lies inside a part."""
+
+_VARIABLE: Final = "x"
+_WHERE: Final = "motion.formula"
+_NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''")
+
+
+@dataclass(frozen=True, kw_only=True)
+class FormulaRise:
+    """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic."""
+
+    formula: str = param(TEXT, doc="S over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)")
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        yield from formula_problems("formula", self.formula, _VARIABLE)
+
+    def build(self, tolerances: Tolerances) -> Rise:
+        """Return the rise, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            Where the formula is not finite or not smooth, or does not go from 0 to 1.
+        """
+        shape = compiled(self.formula, _VARIABLE)
+        cuts = _demand_smooth(shape, tolerances)
+        start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
+        for place, value in ((0.0, start), (1.0, end)):
+            if not abs(value - place) <= _TYPED:
+                raise InfeasibleError(
+                    f"the formula must give {place:g} at x = {place:g}",
+                    where=_WHERE,
+                    value=value,
+                    limit=place,
+                    nearest=_from_corner_to_corner(self.formula, start, end),
+                )
+        scale = 1.0 / (end - start)
+        piece = Piece(lambda x: (shape(x) - start) * scale)
+        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts)
+
+
+def _from_corner_to_corner(formula: str, start: float, end: float) -> str:
+    if not abs(end - start) > _TYPED:
+        return "it is the same at both ends"
+    top = f"({formula})" if start == 0.0 else f"(({formula}) - ({start:.17g}))"
+    return f"this one does: {top}/({end - start:.17g})"
+
+
+def _demand_smooth(shape: Callable[[Jet], Jet], tolerances: Tolerances) -> Array:
+    """Refuse a formula that has no jerk, or a rough one; return the places that show its peaks."""
+    *_, cuts = [_cuts(shape, order, tolerances) for order in range(len(_NAMES))]
+    ends = np.array(shape(Jet.variable([0.0, 1.0], len(_NAMES))).derivatives())
+    for place, found in zip((0.0, 1.0), ends.T, strict=True):
+        if not np.isfinite(found).all():
+            order = int(np.argmin(np.isfinite(found)))
+            raise InfeasibleError(
+                f"{(*_NAMES, 'the derivative of its jerk')[order]} cannot be computed",
+                where=f"{_WHERE}, x = {place:g}",
+                nearest="roots of zero and powers of zero that are not whole have no derivatives",
+            )
+    return cuts
+
+
+def _cuts(shape: Callable[[Jet], Jet], order: int, tolerances: Tolerances) -> Array:
+    """Return the knots that an expansion of a derivative needs."""
+
+    def values(x: Array) -> Array:
+        # with 1 added, the rounding of a derivative that is zero does not count as rough
+        return 1.0 + shape(Jet.variable(x, order)).derivatives()[order]
+
+    try:
+        return expand(values, [0.0, _ODD_PLACE, 1.0], tolerances.expansion).knots
+    except NotSmoothError as error:
+        state = "smooth" if error.finite else "finite"
+        place = f"{_WHERE}, x = {round(error.place, 5):g}"
+        raise InfeasibleError(f"{_NAMES[order]} is not {state}", where=place) from error
+
+
+def _claims() -> tuple[RiseClaim, ...]:
+    quarter = 0.25 - 0.5 / math.pi
+    swing = math.tanh(2.0)
+    return (
+        RiseClaim(
+            parameters=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),
+            values={0.25: quarter, 0.5: 0.5, 0.75: 1.0 - quarter},
+            velocities={0.25: 1.0, 0.5: 2.0},
+            peak_velocity=2.0,
+            peak_acceleration=2 * math.pi,
+            peak_jerk=4 * math.pi**2,
+            continuity=2,
+        ),
+        RiseClaim(
+            parameters=FormulaRise(formula="x**3*(10 - 15*x + 6*x**2)"),
+            values={0.25: 53 / 512, 0.75: 459 / 512},
+            velocities={0.25: 270 / 256, 0.5: 1.875},
+            peak_velocity=1.875,
+            peak_acceleration=10 / math.sqrt(3),
+            peak_jerk=60.0,
+            continuity=2,
+        ),
+        RiseClaim(
+            parameters=FormulaRise(formula="(1 + tanh(4*x - 2)/tanh(2))/2"),
+            values={0.5: 0.5, 0.75: 0.5 + math.tanh(1.0) / (2 * swing)},
+            velocities={0.5: 2.0 / swing, 0.75: 2.0 / (swing * math.cosh(1.0) ** 2)},
+            peak_velocity=2.0 / swing,
+            peak_acceleration=math.inf,
+            peak_jerk=math.inf,
+            continuity=0,
+        ),
+    )
+
+
+register_rise(
+    RiseEntry(
+        name="formula",
+        parameters=FormulaRise,
+        doc="any smooth formula of S in x: a law of your own",
+        continuity="smooth inside; at the ends what the formula gives",
+        source="000 section 3.3.2, eqs. (3.3), (3.4)",
+        claims=_claims,
+    )
+)

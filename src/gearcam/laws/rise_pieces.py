@@ -1,0 +1,172 @@
+"""What rises are made of: sectors that mirror each other, and polynomials exact at both ends.
+
+Most rises have a second half that is the first one turned about the middle of the square,
+``S(phi) = 1 - S(1 - phi)``. They are written for the first half, where small lifts keep all their
+digits, and turned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from itertools import zip_longest
+from math import comb
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.numeric.jets import Jet, sin
+from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
+
+Array = NDArray[np.float64]
+Shape = Callable[[Jet], Jet]
+
+_NOTHING: Final = 1e-12
+"""Width at which a sector counts as none: the rounding of widths."""
+
+_SERIES: Final = 1.5
+"""Argument below which ``x - sin(x)`` is summed as a series: above, it loses one digit at most."""
+
+_TERMS: Final = 11
+"""Terms of that series; the next one is below 1e-17 of the sum."""
+
+
+def lag(x: Jet) -> Jet:
+    """``x - sin(x)``, with all its digits where x is small."""
+    direct = x - sin(x)
+    value, half = x.c[0], np.sin(0.5 * x.c[0])
+    square, series = value * value, np.ones_like(value)
+    for k in range(_TERMS, 0, -1):
+        series = 1.0 - square / ((2 * k + 2) * (2 * k + 3)) * series
+    exact = np.where(np.abs(value) < _SERIES, value * square / 6.0 * series, direct.c[0])
+    slope = [2.0 * half * half * rate for rate in x.c[1:2]]
+    return Jet([exact, *slope, *direct.c[2:]])
+
+
+def reflected(shape: Shape) -> Shape:
+    """Return a function turned about the middle of the square: ``1 - S(1 - phi)``."""
+    return lambda x: 1.0 - shape(1.0 - x)
+
+
+def split(place: float, left: Shape, right: Shape) -> Shape:
+    """Return one function from two ways to compute it, each exact on one side of a place.
+
+    Parameters
+    ----------
+    place : float
+        Up to which `left` counts.
+    left, right : callable
+        ``shape(jet) -> jet``, the same function.
+
+    Returns
+    -------
+    callable
+    """
+
+    def function(x: Jet) -> Jet:
+        first = x.c[0] <= place
+        both = zip(left(x).c, right(x).c, strict=True)
+        return Jet([np.where(first, before, after) for before, after in both])
+
+    return function
+
+
+def from_half(sectors: Iterable[tuple[float, Shape]]) -> Piecewise:
+    """Return the rise whose second half is its first one, turned.
+
+    Parameters
+    ----------
+    sectors : iterable of (width, shape)
+        Of the first half, widths 1/2 in all; those without a width are left out. The last goes on
+        smoothly through the middle.
+
+    Returns
+    -------
+    Piecewise
+        S over phi.
+    """
+    *lower, middle = sectors
+    kept = [(width, shape) for width, shape in lower if width > _NOTHING]
+    ends = np.cumsum([width for width, _ in kept])
+    shapes = [shape for _, shape in kept]
+    inner: list[Shape] = []
+    if middle[0] > _NOTHING:
+        inner = [split(0.5, middle[1], reflected(middle[1]))]
+        knots = np.concatenate([[0.0], ends, 1.0 - ends[::-1], [1.0]])
+    else:
+        knots = np.concatenate([[0.0], ends[:-1], [0.5], 1.0 - ends[-2::-1], [1.0]])
+    pieces = shapes + inner + [reflected(shape) for shape in reversed(shapes)]
+    return piecewise(knots, [Piece(shape) for shape in pieces])
+
+
+def shifted(powers: Sequence[Fraction], by: int) -> list[Fraction]:
+    """Return a polynomial of t as one of ``t - by``: its exact coefficients.
+
+    Parameters
+    ----------
+    powers : sequence of Fraction
+        Coefficients of rising powers.
+    by : int
+        How far.
+
+    Returns
+    -------
+    list of Fraction
+    """
+    return [
+        sum((powers[j] * comb(j, k) * by ** (j - k) for j in range(k, len(powers))), Fraction(0))
+        for k in range(len(powers))
+    ]
+
+
+def product(one: Sequence[Fraction], two: Sequence[Fraction]) -> list[Fraction]:
+    """Return the exact product of polynomials `one` and `two`: coefficients of rising powers."""
+    result = [Fraction(0)] * (len(one) + len(two) - 1)
+    for j, a in enumerate(one):
+        for k, b in enumerate(two):
+            result[j + k] += a * b
+    return result
+
+
+def total(one: Sequence[Fraction], two: Sequence[Fraction]) -> list[Fraction]:
+    """Return the exact sum of polynomials `one` and `two`: coefficients of rising powers."""
+    return [a + b for a, b in zip_longest(one, two, fillvalue=Fraction(0))]
+
+
+def from_both_ends(
+    left: Sequence[Fraction | float], right: Sequence[Fraction | float], low: float, high: float
+) -> Shape:
+    """Return a polynomial that is computed from the nearer end of an interval.
+
+    Parameters
+    ----------
+    left, right : sequences of numbers
+        Its coefficients of the powers of ``phi - low`` and of ``phi - high``.
+    low, high : float
+        The interval.
+
+    Returns
+    -------
+    callable
+        Its derivatives at either end are the coefficients there, to the last digit.
+    """
+    pairs = [(float(a), float(b)) for a, b in zip(left, right, strict=True)]
+    middle = 0.5 * (low + high)
+
+    def function(x: Jet) -> Jet:
+        first = x.c[0] <= middle
+        t = x.c[0] - np.where(first, low, high)
+        powers = [np.where(first, before, after) for before, after in pairs]
+        powers += [np.zeros_like(t)] * (x.order + 1 - len(powers))
+        # Horner's scheme, repeated: the coefficients about x
+        for k in range(x.order + 1):
+            for j in range(len(powers) - 2, k - 1, -1):
+                powers[j] = powers[j] + t * powers[j + 1]
+        step = Jet([0.0, *x.c[1:]])
+        result = Jet([powers[x.order], *[0.0] * x.order])
+        for value in powers[x.order - 1 :: -1] if x.order else []:
+            result = result * step + value
+        return result
+
+    return function

@@ -1,0 +1,320 @@
+"""Rises drawn by points: B-splines near control values, and splines through the rows of a table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.columns import ColumnsError, read_columns
+from gearcam.laws.rise_pieces import from_both_ends, product, shifted, total
+from gearcam.laws.rises import (
+    NARROWEST,
+    ClosedForm,
+    Rise,
+    RiseClaim,
+    RiseEntry,
+    register_rise,
+)
+from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
+from gearcam.quantities import COUNT, NUMBER, TEXT, param
+from gearcam.tolerances import Tolerances
+
+Array = NDArray[np.float64]
+Problem = tuple[str, int | None, str, str]
+
+_TYPED: Final = 1e-9
+"""Miss of a first or last point from the corners of the square that is overlooked: typed digits."""
+
+_FEWEST: Final = 3
+_MOST: Final = 2000
+"""Rows of a table: one every fifth of a degree of a full turn."""
+
+_MOST_VALUES: Final = 500
+"""Control values of a B-spline: nobody moves more by hand."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BSpline(ClosedForm):
+    """A B-spline of S with clamped, evenly spaced knots.
+
+    Every control value pulls S towards it over a few knots; as many zeros and ones at the ends as
+    are wanted make that many derivatives zero there.
+    """
+
+    control: tuple[float, ...] = param(
+        NUMBER, ge=-100, le=100, min_length=4, doc="control values of S, from 0 to 1"
+    )
+    degree: int = param(
+        COUNT, default=4, ge=3, le=5, doc="of the pieces; derivatives up to degree - 1 go on"
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        count = len(self.control)
+        if not self.degree < count <= _MOST_VALUES:
+            rule = f"{self.degree + 1} to {_MOST_VALUES} control values for degree {self.degree}"
+            yield "control", None, f"{count} control values are given", rule
+            return
+        for index, place, corner in ((0, "first", 0.0), (count - 1, "last", 1.0)):
+            if self.control[index] != corner:
+                message = f"the {place} control value is not {corner:g}"
+                yield "control", index, message, f"{corner:g}"
+
+    def function(self) -> Piecewise:
+        """S over phi, exact polynomials between the knots."""
+        p = self.degree
+        spans = len(self.control) - p
+        grid = [number / spans for number in range(spans + 1)]
+        values = [Fraction(value) for value in self.control]
+        pieces = []
+        for number in range(spans):
+            left = _span(values[number : number + p + 1], number, spans)
+            before, after = (
+                [value * spans**k for k, value in enumerate(powers)]
+                for powers in (left, shifted(left, 1))
+            )
+            low, high = number / spans, (number + 1) / spans
+            pieces.append(Piece(from_both_ends(before, after, low, high)))
+        return piecewise(grid, pieces)
+
+
+def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
+    """Return a B-spline between two knots: powers of the knots passed since the first of them.
+
+    De Boor's recursion with polynomials for numbers, exact; knots are 0, 1, ... `spans`.
+    """
+    p = len(control) - 1
+    # the p knots before and the p knots after the two, those beyond the ends moved there
+    knots = [min(max(number - p + 1 + k, 0), spans) for k in range(2 * p)]
+    rows = [[value] for value in control]
+    for r in range(1, p + 1):
+        for i in range(p, r - 1, -1):
+            low, high = knots[i - 1], knots[i + p - r]
+            share = [Fraction(number - low, high - low), Fraction(1, high - low)]
+            step = total(rows[i], [-value for value in rows[i - 1]])
+            rows[i] = total(rows[i - 1], product(share, step))
+    return rows[p]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """A spline through points, of quintics: it goes on up to the fourth derivative.
+
+    Of all curves through the points with the given ends it is the one with the least integral of
+    the squared jerk. Velocity and acceleration can be given at both ends, so that it meets dwells
+    without a jump of acceleration; a cubic spline could not.
+    """
+
+    file: str | None = param(TEXT, default=None, doc="CSV file with the columns x and y")
+    x: tuple[float, ...] | None = param(
+        NUMBER, default=None, ge=0, le=1, min_length=_FEWEST, doc="phi, from 0 to 1"
+    )
+    y: tuple[float, ...] | None = param(
+        NUMBER, default=None, ge=-100, le=100, min_length=_FEWEST, doc="S at x, from 0 to 1"
+    )
+    start: tuple[float, float] = param(
+        NUMBER,
+        default=(0.0, 0.0),
+        ge=-1e6,
+        le=1e6,
+        doc="S' and S'' at the start; zero meets a dwell",
+    )
+    end: tuple[float, float] = param(
+        NUMBER,
+        default=(0.0, 0.0),
+        ge=-1e6,
+        le=1e6,
+        doc="S' and S'' at the end; zero meets a dwell",
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        rule = "file, or x with y"
+        if self.file is not None:
+            if self.x is not None or self.y is not None:
+                yield "file", None, "the points are given twice", rule
+                return
+            try:
+                points, lines = read_columns(self.file, ("x", "y"))
+            except ColumnsError as error:
+                yield "file", None, str(error), "a CSV file with the columns x and y"
+                return
+            for _, row, message, allowed in _point_problems(points):
+                place = f"line {lines[row]}: " if row is not None else ""
+                yield "file", None, place + message, allowed
+        elif self.x is None or self.y is None:
+            yield ("x" if self.x is None else "y"), None, "no points are given", rule
+        elif len(self.x) != len(self.y):
+            message = f"{len(self.y)} values for {len(self.x)} places"
+            yield "y", None, message, "one value for each x"
+        else:
+            yield from _point_problems(np.array([self.x, self.y]).T)
+
+    def build(self, tolerances: Tolerances) -> Rise:  # noqa: ARG002  (a spline is in closed form)
+        """Return the rise.
+
+        Raises
+        ------
+        InfeasibleError
+            If the file is not such a table any more.
+        """
+        for name, index, message, rule in self.problems():
+            where = f"motion.{name}" + ("" if index is None else f"[{index}]")
+            raise InfeasibleError(message, where=where, nearest=rule)
+        if self.file is not None:
+            points, _ = read_columns(self.file, ("x", "y"))
+        else:
+            points = np.array([self.x, self.y]).T
+        points[0], points[-1] = (0.0, 0.0), (1.0, 1.0)
+        return Rise(function=_through(points, self.start, self.end))
+
+
+def _point_problems(points: Array) -> Iterator[Problem]:
+    """Yield what is wrong with points: column, row, message, allowed."""
+    if not _FEWEST <= len(points) <= _MOST:
+        yield "x", None, f"has {len(points)} points", f"{_FEWEST} to {_MOST} points"
+        return
+    for column, name in enumerate("xy"):
+        for row, place, corner in ((0, "first", 0.0), (len(points) - 1, "last", 1.0)):
+            value = float(points[row, column])
+            if abs(value - corner) > _TYPED:
+                message = f"the {place} {name} is {value:.10g}, not {corner:g}"
+                yield name, row, message, "x and y from 0 to 1: parts of the angle and of the lift"
+    for row in np.flatnonzero(np.diff(points[:, 0]) < NARROWEST)[:1]:
+        rule = f"each x at least {NARROWEST:g} above the one before"
+        yield "x", int(row) + 1, "x does not rise", rule
+
+
+def _through(points: Array, start: tuple[float, float], end: tuple[float, float]) -> Piecewise:
+    """Return the quintic spline through points, with S' and S'' given at its ends."""
+    x, y = points.T
+    slopes, bends = _joined(x, y, start, end).T
+    h = np.diff(x)
+    d0, d1, s0, s1 = slopes[:-1], slopes[1:], bends[:-1], bends[1:]
+    rise = np.diff(y) / h
+    # third to fifth coefficient, from what is given at both ends of an interval
+    first = 10.0 * rise - 6.0 * d0 - 4.0 * d1 - (1.5 * s0 - 0.5 * s1) * h
+    second = -15.0 * rise + 8.0 * d0 + 7.0 * d1 + (1.5 * s0 - s1) * h
+    third = 6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (s0 - s1) * h
+    left = np.array([y[:-1], d0, 0.5 * s0, first / h**2, second / h**3, third / h**4])
+    jerk = (first + 4.0 * second + 10.0 * third) / h**2
+    right = np.array([y[1:], d1, 0.5 * s1, jerk, (second + 5.0 * third) / h**3, third / h**4])
+    # the jerk at a point is one number for both sides, not only to rounding: the wider side's
+    shared = np.where(h[1:] > h[:-1], left[3, 1:], right[3, :-1])
+    left[3, 1:], right[3, :-1] = shared, shared
+    rows = zip(left.T.tolist(), right.T.tolist(), strict=True)
+    pieces = [
+        Piece(from_both_ends(before, after, float(x[k]), float(x[k + 1])))
+        for k, (before, after) in enumerate(rows)
+    ]
+    return piecewise(x, pieces)
+
+
+def _joined(x: Array, y: Array, start: tuple[float, float], end: tuple[float, float]) -> Array:
+    """Return S' and S'' at the points with which third and fourth derivative go on, (n, 2).
+
+    The two conditions at each inner point are those of the least squared jerk: a symmetric,
+    positive definite system of blocks beside the diagonal, eliminated without pivots.
+    """
+    h = np.diff(x)
+    a, b = h[:-1], h[1:]
+    rise = np.diff(y)
+    mixed = 36.0 * (b**-2 - a**-2)
+    diagonal = _blocks(192.0 * (a**-3 + b**-3), mixed, mixed, 9.0 * (1.0 / a + 1.0 / b))
+    beside = _blocks(168.0 * h**-3, -24.0 * h**-2, 24.0 * h**-2, -3.0 / h)
+    fourth = 360.0 * (rise[1:] / b**4 + rise[:-1] / a**4)
+    third = 60.0 * (rise[1:] / b**3 - rise[:-1] / a**3)
+    wanted = np.stack([fourth, third], axis=1)
+    wanted[0] -= beside[0].T @ start
+    wanted[-1] -= beside[-1] @ end
+    count = len(wanted)
+    for k in range(1, count):
+        factor = np.linalg.solve(diagonal[k - 1].T, beside[k]).T
+        diagonal[k] -= factor @ beside[k]
+        wanted[k] -= factor @ wanted[k - 1]
+    found = np.array([start, *wanted, end])
+    for k in range(count, 0, -1):
+        known = beside[k] @ found[k + 1] if k < count else 0.0
+        found[k] = np.linalg.solve(diagonal[k - 1], found[k] - known)
+    return found
+
+
+def _blocks(*entries: Array) -> Array:
+    return np.stack(entries, axis=1).reshape(-1, 2, 2)
+
+
+def _claims_bspline() -> tuple[RiseClaim, ...]:
+    """One span is the 3-4-5; two spans of degree 4 have ``S = 8*phi^3*(1 - phi)`` up to 1/2."""
+    one = RiseClaim(
+        parameters=BSpline(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
+        values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
+        velocities={0.25: 270 / 256, 0.5: 1.875},
+        peak_velocity=1.875,
+        peak_acceleration=10 / math.sqrt(3),
+        peak_jerk=60.0,
+        continuity=2,
+    )
+    # velocity 24*phi^2 - 32*phi^3, acceleration 48*phi*(1 - 2*phi), jerk 48 - 192*phi
+    two = RiseClaim(
+        parameters=BSpline(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0)),
+        values={0.25: 3 / 32, 0.5: 0.5, 0.75: 29 / 32},
+        velocities={0.25: 1.0, 0.5: 2.0, 0.75: 1.0},
+        peak_velocity=2.0,
+        peak_acceleration=6.0,
+        peak_jerk=48.0,
+        continuity=2,
+    )
+    return one, two
+
+
+def _claims_table() -> tuple[RiseClaim, ...]:
+    """Return splines that reproduce their curve: a quintic, and a line with its slopes."""
+    places = (0.0, 0.1, 0.3, 0.35, 0.7, 1.0)
+    quintic = RiseClaim(
+        parameters=Table(x=places, y=tuple(x**3 * (10 - 15 * x + 6 * x * x) for x in places)),
+        values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
+        velocities={0.25: 270 / 256, 0.5: 1.875},
+        peak_velocity=1.875,
+        peak_acceleration=10 / math.sqrt(3),
+        peak_jerk=60.0,
+        continuity=2,
+    )
+    line = RiseClaim(
+        parameters=Table(x=(0.0, 0.4, 1.0), y=(0.0, 0.4, 1.0), start=(1.0, 0.0), end=(1.0, 0.0)),
+        values={0.2: 0.2, 0.7: 0.7},
+        velocities={0.2: 1.0, 0.7: 1.0},
+        peak_velocity=1.0,
+        peak_acceleration=math.inf,
+        peak_jerk=math.inf,
+        continuity=0,
+    )
+    return quintic, line
+
+
+register_rise(
+    RiseEntry(
+        name="b-spline",
+        parameters=BSpline,
+        doc="a curve pulled by control values: shape a motion by hand, each value near its place",
+        continuity="C2 to C4 inside (degree - 1); at the ends by the number of zeros and ones",
+        source="C. de Boor, A Practical Guide to Splines",
+        claims=_claims_bspline,
+    )
+)
+register_rise(
+    RiseEntry(
+        name="table",
+        parameters=Table,
+        doc="measured or computed points, joined with the least jerk; repeats a motion that exists",
+        continuity="C4 inside; C2 between dwells, where the jerk jumps at both ends",
+        source="C. de Boor, A Practical Guide to Splines; the conditions derived from least jerk",
+        claims=_claims_table,
+    )
+)

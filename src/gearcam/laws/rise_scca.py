@@ -1,0 +1,206 @@
+"""The family of sine, constant and cosine acceleration (SCCA), with its two best known members.
+
+Over the first half of the rise the acceleration grows as a quarter of a sine over b/2, keeps its
+peak Ca over c/2, and falls to zero as a quarter of a cosine over d/2; the second half is the first
+one, turned. Velocities and lifts at the ends of the sectors are sums of positive terms, and Ca
+makes the lift at the middle one half.
+
+Source: R. L. Norton, Cam Design and Manufacturing Handbook, the SCCA family of double-dwell
+functions; Neklutin for the modified trapezoid.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from gearcam.laws.rise_pieces import from_half, lag
+from gearcam.laws.rises import NARROWEST, ClosedForm, RiseClaim, RiseEntry, register_rise
+from gearcam.numeric.jets import Jet, sin
+from gearcam.numeric.piecewise import Piecewise
+from gearcam.quantities import NUMBER, param
+
+_TYPED: Final = 1e-9
+"""Miss of the widths' sum from 1 that is spread over them: typed digits."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scca(ClosedForm):
+    """Sine, constant, cosine acceleration, by the widths of its sectors."""
+
+    b: float = param(NUMBER, ge=0, le=1, doc="width of the sine sectors, both together")
+    c: float = param(NUMBER, ge=0, le=1, doc="width of constant acceleration, both together")
+    d: float = param(NUMBER, ge=0, le=1, doc="width of the cosine sector in the middle")
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        for name in ("b", "c", "d"):
+            if 0.0 < getattr(self, name) < NARROWEST:
+                rule = f"0, or at least {NARROWEST:g}"
+                yield name, None, "this sector is too narrow", rule
+        total = self.b + self.c + self.d
+        if abs(total - 1.0) > _TYPED:
+            last = 1.0 - self.b - self.c
+            hint = f"; with this b and c, d is {last:.10g}" if last >= 0.0 else ""
+            yield "d", None, f"b + c + d is {total:.10g}", f"b + c + d = 1{hint}"
+
+    def function(self) -> Piecewise:
+        """S of the three sectors of the first half."""
+        total = self.b + self.c + self.d
+        return scca(self.b / total, self.c / total, self.d / total)
+
+
+def scca(b: float, c: float, d: float) -> Piecewise:
+    """Return S over phi of a member of the family.
+
+    Parameters
+    ----------
+    b, c, d : float
+        Widths of the sectors, 1 in all, none below zero; one of width zero makes no piece.
+
+    Returns
+    -------
+    Piecewise
+    """
+    u, w = b / math.pi, d / math.pi
+    # velocities and lifts over Ca at the ends of the first and the second sector
+    v1, s1 = u, u * u * (0.5 * math.pi - 1.0)
+    v2, s2 = v1 + 0.5 * c, s1 + 0.5 * c * (v1 + 0.25 * c)
+    peak = 0.5 / (s2 + 0.5 * d * v2 + w * w)
+
+    def constant(x: Jet) -> Jet:
+        t = x - 0.5 * b
+        return peak * (t * (0.5 * t + v1) + s1)
+
+    def cosine(x: Jet) -> Jet:
+        t = x - 0.5 * (b + c)
+        wave = sin((0.5 / w) * t)
+        return peak * ((2.0 * w * w) * (wave * wave) + v2 * t + s2)
+
+    sine = (0.5 * b, lambda x: (peak * u * u) * lag((1.0 / u) * x))
+    return from_half([sine, (0.5 * c, constant), (0.5 * d, cosine)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModifiedTrapezoid(ClosedForm):
+    """A trapezoid of acceleration with rounded flanks: b, c, d = 1/4, 1/2, 1/4."""
+
+    def function(self) -> Piecewise:
+        """S over phi."""
+        return scca(0.25, 0.5, 0.25)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModifiedSine(ClosedForm):
+    """A steep and a slow sine of acceleration: b, c, d = 1/4, 0, 3/4."""
+
+    def function(self) -> Piecewise:
+        """S over phi."""
+        return scca(0.25, 0.0, 0.75)
+
+
+def _claims_scca() -> tuple[RiseClaim, ...]:
+    """Norton's Ca, Cv, Cj, from another elimination than the code's; and a member of each kind."""
+    pi = math.pi
+    claims = []
+    for b, c, d in ((0.2, 0.5, 0.3), (0.3, 0.6, 0.1), (0.6, 0.0, 0.4)):
+        bottom = (pi**2 - 8) * (b * b - d * d) - 2 * pi * (pi - 2) * b + pi**2
+        peak = 4 * pi**2 / bottom
+        claims.append(
+            RiseClaim(
+                parameters=Scca(b=b, c=c, d=d),
+                values={b / 2: peak * (b / pi) ** 2 * (pi / 2 - 1), 0.5: 0.5},
+                velocities={b / 2: peak * b / pi, (b + c) / 2: peak * (b / pi + c / 2)},
+                peak_velocity=peak * ((b + d) / pi + c / 2),
+                peak_acceleration=peak,
+                peak_jerk=peak * pi / min(b, d),
+                continuity=2,
+            )
+        )
+    parabolas = RiseClaim(
+        parameters=Scca(b=0.0, c=1.0, d=0.0),
+        values={0.25: 0.125, 0.5: 0.5, 0.75: 0.875},
+        velocities={0.25: 1.0, 0.5: 2.0},
+        peak_velocity=2.0,
+        peak_acceleration=4.0,
+        peak_jerk=math.inf,
+        continuity=1,
+    )
+    # all sine: two cycloidal halves that meet with a jump of the acceleration
+    sines = RiseClaim(
+        parameters=Scca(b=1.0, c=0.0, d=0.0),
+        values={0.5: 0.5},
+        velocities={0.5: pi / (pi - 2)},
+        peak_velocity=pi / (pi - 2),
+        peak_acceleration=pi**2 / (pi - 2),
+        peak_jerk=math.inf,
+        continuity=1,
+    )
+    return (*claims, parabolas, sines)
+
+
+def _claims_trapezoid() -> tuple[RiseClaim, ...]:
+    pi = math.pi
+    eighth = (pi - 2) / (4 * pi * (pi + 2))
+    return (
+        RiseClaim(
+            parameters=ModifiedTrapezoid(),
+            values={0.125: eighth, 0.375: eighth + 0.25, 0.5: 0.5, 0.625: 0.75 - eighth},
+            velocities={0.125: 2 / (pi + 2), 0.375: 2 * (pi + 1) / (pi + 2), 0.5: 2.0},
+            peak_velocity=2.0,
+            peak_acceleration=8 * pi / (pi + 2),
+            peak_jerk=32 * pi**2 / (pi + 2),
+            continuity=2,
+        ),
+    )
+
+
+def _claims_sine() -> tuple[RiseClaim, ...]:
+    """``S = (2 + pi*phi - (9/4)*sin((4*phi + 1)*pi/3))/(pi + 4)`` from 1/8 to 7/8."""
+    pi = math.pi
+    quarter = (2 + pi / 4 - 9 * math.sqrt(3) / 8) / (pi + 4)
+    return (
+        RiseClaim(
+            parameters=ModifiedSine(),
+            values={0.125: (pi - 2) / (8 * (pi + 4)), 0.25: quarter, 0.5: 0.5, 0.75: 1 - quarter},
+            velocities={0.125: pi / (pi + 4), 0.25: 2.5 * pi / (pi + 4), 0.5: 4 * pi / (pi + 4)},
+            peak_velocity=4 * pi / (pi + 4),
+            peak_acceleration=4 * pi**2 / (pi + 4),
+            peak_jerk=16 * pi**3 / (pi + 4),
+            continuity=2,
+        ),
+    )
+
+
+register_rise(
+    RiseEntry(
+        name="scca",
+        parameters=Scca,
+        doc="one family from harmonic to cycloidal: trade peak speed, acceleration and jerk",
+        continuity="C2 where b and d are above zero, else C1: the acceleration jumps",
+        source="Norton, Cam Design and Manufacturing Handbook, SCCA family",
+        claims=_claims_scca,
+    )
+)
+register_rise(
+    RiseEntry(
+        name="modified-trapezoid",
+        parameters=ModifiedTrapezoid,
+        doc="low peak acceleration without a jump: high speeds with stiff followers",
+        continuity="C2: the jerk jumps at both ends",
+        source="Neklutin; Norton, Cam Design and Manufacturing Handbook",
+        claims=_claims_trapezoid,
+    )
+)
+register_rise(
+    RiseEntry(
+        name="modified-sine",
+        parameters=ModifiedSine,
+        doc="low peak speed and gentle torque: heavy loads, indexing tables, soft drives",
+        continuity="C2: the jerk jumps at both ends",
+        source="Norton, Cam Design and Manufacturing Handbook",
+        claims=_claims_sine,
+    )
+)
