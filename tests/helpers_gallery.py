@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -264,3 +265,20 @@ NUMBERS: dict[str, dict[str, Number]] = {
         "gears[0].openings[0].area_mm2": (flat_area("4.1", "3.1"), 1e-10),
     },
 }
+
+
+def look_up(summary: Any, path: str) -> Any:
+    """Follow a path such as ``gears[0].centrode.length_mm``; a whole key may hold brackets."""
+    if isinstance(summary, dict) and path in summary:
+        return summary[path]
+    head, rest = re.fullmatch(r"(\w+|\[\d+\])\.?(.*)", path).groups()  # type: ignore[union-attr]
+    value = summary[int(head[1:-1])] if head.startswith("[") else summary[head]
+    return look_up(value, rest) if rest else value
+
+
+def misses(summary: Any, numbers: Mapping[str, Number]) -> Iterable[str]:
+    """Numbers that are not as expected."""
+    for path, (value, error) in numbers.items():
+        found = look_up(summary, path)
+        if not abs(found - value) <= error:
+            yield f"{path} = {found!r}, expected {value!r} within {error}"

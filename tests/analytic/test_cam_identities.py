@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.mechanism import Mechanism
@@ -256,3 +257,20 @@ def test_a_constant_lift_over_half_a_turn_is_an_arc() -> None:
         assert np.ptp(np.abs(top)) < 1e-12 * abs(top[0])
         assert len(top) > 60
     assert there_and_back("cycloidal", 1.0).stretches[1].kind == "dwell"
+
+
+@pytest.mark.parametrize("kind", ["roller, offset", "swinging face, near"])
+def test_a_clockwise_cam_is_the_mirror_image(kind: str) -> None:
+    one, two = (cam(kind, degrees=DEGREES, clockwise=turned) for turned in (False, True))
+    for here, there in zip(one.places(90)[1:], two.places(90)[1:], strict=True):
+        np.testing.assert_allclose(there, -np.conj(here), atol=1e-12)
+    for made in (one, two):
+        _, points, normals = made.places(90)
+        metal = made.contour.polygon
+        for depth, inside in ((-0.01, True), (0.01, False)):
+            places = points + depth * normals
+            assert np.all(shapely.contains_xy(metal, places.real, places.imag) == inside)
+    assert two.size == one.size
+    np.testing.assert_allclose(two.contour.area, one.contour.area, rtol=1e-12)
+    mirrored = two.pitch_contour.vertices * [-1.0, 1.0]
+    np.testing.assert_allclose(mirrored[::-1], one.pitch_contour.vertices, atol=1e-9)

@@ -1,8 +1,8 @@
 """The assembled wheels neither overlap nor have play, beyond what their chords explain.
 
-The nail machine in 1 degree steps (play: 2 degrees), with outlines of 10 nm, so that what is left is the flanks'.
-The negative controls show that each claim can fail: tips longer than the mate's flank, one moved
-tooth, a wheel off phase, another centre distance.
+The nail machine in 1 degree steps (play: 2 degrees), with outlines of 10 nm, so that what is left
+is the flanks'. The negative controls show that each claim can fail: tips longer than the mate's
+flank, one moved tooth, a wheel off phase, another centre distance.
 """
 
 from __future__ import annotations

@@ -7,16 +7,17 @@ integrals of the raw law by mpmath. A file without two such numbers fails.
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import mpmath as mp
 import pytest
 
+import gearcam
 from gearcam.errors import GearcamError
-from helpers_gallery import NUMBERS, Number
+from helpers_cam_gallery import CAM_NUMBERS
+from helpers_gallery import NUMBERS, Number, misses
 from helpers_pairs import PROFILES, profile
 
 
@@ -90,6 +91,10 @@ UNDERCUT: dict[str, list[list[int]]] = {
 }
 """Undercut teeth of both wheels."""
 
+ALL = EXPECTED | CAM_NUMBERS
+FLAWED = {"undercut_cam"}
+"""Cams that show what an error is."""
+
 FEWEST = 2
 """Numbers that a file must come with."""
 
@@ -101,25 +106,8 @@ def unproved(folder: Path, expected: Mapping[str, Mapping[str, Number]]) -> set[
     return files ^ proved
 
 
-def look_up(summary: Any, path: str) -> Any:
-    """Follow a path such as ``gears[0].centrode.length_mm``; a whole key may hold brackets."""
-    if isinstance(summary, dict) and path in summary:
-        return summary[path]
-    head, rest = re.fullmatch(r"(\w+|\[\d+\])\.?(.*)", path).groups()  # type: ignore[union-attr]
-    value = summary[int(head[1:-1])] if head.startswith("[") else summary[head]
-    return look_up(value, rest) if rest else value
-
-
-def misses(summary: Any, numbers: Mapping[str, Number]) -> Iterable[str]:
-    """Numbers that are not as expected."""
-    for path, (value, error) in numbers.items():
-        found = look_up(summary, path)
-        if not abs(found - value) <= error:
-            yield f"{path} = {found!r}, expected {value!r} within {error}"
-
-
 def test_every_file_of_the_gallery_has_its_numbers() -> None:
-    assert unproved(PROFILES, EXPECTED) == set()
+    assert unproved(PROFILES, ALL) == set()
     assert set(UNDERCUT) == set(EXPECTED)
 
 
@@ -129,12 +117,12 @@ def test_a_file_without_its_numbers_fails(tmp_path: Path, numbers: dict | None) 
         (tmp_path / path.name).write_bytes(path.read_bytes())
     (tmp_path / "newcomer.toml").touch()
     extra = {} if numbers is None else {"newcomer": numbers}
-    assert unproved(tmp_path, {**EXPECTED, **extra}) == {"newcomer"}
+    assert unproved(tmp_path, {**ALL, **extra}) == {"newcomer"}
 
 
 def test_numbers_without_their_file_fail() -> None:
     extra: dict[str, dict[str, Number]] = {"gone": {"a": (1.0, 0.0), "b": (1.0, 0.0)}}
-    assert unproved(PROFILES, EXPECTED | extra) == {"gone"}
+    assert unproved(PROFILES, ALL | extra) == {"gone"}
 
 
 @pytest.mark.parametrize("name", sorted(EXPECTED))
@@ -146,6 +134,15 @@ def test_a_file_shows_its_numbers(name: str) -> None:
     assert [finding for finding in summary["findings"] if finding["severity"] == "error"] == []
 
 
+@pytest.mark.parametrize("name", sorted(CAM_NUMBERS))
+def test_a_cam_shows_its_numbers(name: str) -> None:
+    summary = gearcam.build(gearcam.load(PROFILES / f"{name}.toml")).summary()
+    assert summary["name"] == name
+    assert list(misses(summary, CAM_NUMBERS[name])) == []
+    errors = [finding for finding in summary["findings"] if finding["severity"] == "error"]
+    assert bool(errors) == (name in FLAWED)
+
+
 def test_a_wrong_number_is_seen() -> None:
     summary = profile("ellipse").summary()
     off = {"pair.center_distance_mm": (41.9606757804 + 2e-10, 1e-10)}
@@ -155,14 +152,18 @@ def test_a_wrong_number_is_seen() -> None:
 def kind_of(file: str) -> str:
     """The word in ``output.files`` that asks for a file."""
     path = Path(file)
-    if path.stem == "inspection":
-        return path.stem
+    if path.stem in ("inspection", "tool_path", "curvature"):
+        return path.stem.replace("_", "-")
     return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]
 
 
-@pytest.mark.parametrize("name", sorted(EXPECTED))
+@pytest.mark.parametrize("name", sorted(ALL))
 def test_a_file_writes_what_it_lists(name: str, tmp_path: Path) -> None:
-    made = profile(name)
+    made = (
+        profile(name)
+        if name in EXPECTED
+        else gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
+    )
     try:
         written = made.write(tmp_path)
     except GearcamError as error:  # pragma: no cover

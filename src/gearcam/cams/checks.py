@@ -65,7 +65,7 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Finding]:
 def undercut(cam: DiscCam, limit: float) -> Iterator[Finding]:
     """Tell where a profile is undercut, and the lift that its trimming costs."""
     left = list(cam.undercut)
-    lever = (cam.mechanism.arm or cam.mechanism.pivot) if cam.mechanism.oscillating else 1.0
+    lever = cam.mechanism.lever
     for corner, loss in zip(cam.corners, cam.lost, strict=True):
         low, high = corner.before, corner.after
         inside = [pair for pair in left if _within(pair, low, high)]

@@ -14,7 +14,7 @@ Depends on contact, mechanism, laws and numeric; numpy only.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -248,6 +248,7 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
     Returns
     -------
     Strokes
+        From the beginning of the turn; no corner but at a pitch curve's jumps (see `begun`).
     """
     program = curve.program
     knots, count = program.knots, len(program.knots) - 1
@@ -260,9 +261,6 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
             rows.append((piece, jump.before, jump.after, True, False))
         corner = jump is not None and not drawn
         rows.append((piece, float(knots[piece]), float(knots[piece + 1]), False, corner))
-    first = next((k for k, row in enumerate(rows) if row[4]), 0)
-    rows = rows[first:] + rows[:first]
-    rows[0] = (*rows[0][:4], True)  # a closed curve begins somewhere: at a corner if it has one
     piece, start, end, jumps, corner = zip(*rows, strict=True)
     return Strokes(
         curve=curve,
@@ -273,3 +271,14 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
         jump=np.array(jumps),
         corner=np.array(corner),
     )
+
+
+def begun(strokes: Strokes) -> Strokes:
+    """Return `strokes` that begin at a corner, as a `Sampler` wants them; one is made if needed."""
+    first = int(strokes.corner.argmax())
+    turned = {
+        name: np.roll(getattr(strokes, name), -first)
+        for name in ("piece", "start", "end", "jump", "corner")
+    }
+    turned["corner"][0] = True  # a smooth closed curve begins somewhere
+    return replace(strokes, **turned)

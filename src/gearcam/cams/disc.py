@@ -17,7 +17,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.cams.curve import Array, CamCurve, Plane, Strokes, strokes
+from gearcam.cams.curve import Array, CamCurve, Plane, Strokes, begun, strokes
+from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, range_of, size_of, turn, undercut
 from gearcam.cams.mechanism import Mechanism
@@ -129,9 +130,13 @@ class DiscCam:
     @cached_property
     def _kept(self) -> tuple[Strokes, tuple[Corner, ...]]:
         whole = strokes(self.curve, self.mechanism.radius)
-        if not self.undercut and star_shaped(whole):
-            return whole, ()
-        return trimmed(whole, self.undercut, self.tolerance)
+        size = self.mechanism.least + self.program.range[1] * self.mechanism.lever
+        kept, corners, left = without_small_loops(whole, self.undercut, size)
+        if left or not star_shaped(kept):
+            kept, more = trimmed(kept, left, self.tolerance)
+            starts = set(kept.start.tolist())
+            corners = (*(corner for corner in corners if corner.after in starts), *more)
+        return begun(kept), tuple(sorted(corners, key=lambda corner: corner.before))
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -171,7 +176,7 @@ class DiscCam:
         """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
         if self.mechanism.flat or self.mechanism.radius == 0.0:
             return self.contour
-        drawn = self._drawn(strokes(self.curve, 0.0))
+        drawn = self._drawn(begun(strokes(self.curve, 0.0)))
         return self._contour(Sampler(curves=drawn, tolerance=self.tolerance))
 
     def _contour(self, sampler: Sampler) -> Contour:

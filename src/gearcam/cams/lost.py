@@ -23,6 +23,8 @@ from gearcam.numeric.jets import Jet, acos, asin, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import extremes
 
 _TURN = 2.0 * math.pi
+_NARROWEST = 1e-9
+"""Width, rad, below which both sides of a corner may seem to have changed places."""
 
 
 def resting(mechanism: Mechanism, point: complex) -> Callable[[Jet], Jet]:
@@ -84,7 +86,7 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme
     rest, start, end = resting(mechanism, corner.point), corner.before, corner.after
     if end < start:
         end += _TURN
-    if end == start:
+    if end == start or end - start > _TURN - _NARROWEST:
         return Extreme(theta=start, value=0.0)
     inner = np.concatenate([program.knots, program.knots + _TURN])
     knots = np.unique([start, *inner[(inner > start) & (inner < end)], end])

@@ -56,6 +56,11 @@ class Mechanism:
     face_offset: float = 0.0
 
     @property
+    def lever(self) -> float:
+        """What turns a lift into millimetres: 1, or the arm (of a flat face the pivot's way)."""
+        return (self.arm or self.pivot) if self.oscillating else 1.0
+
+    @property
     def least(self) -> float:
         """Distance from the axis to a round follower's centre or to a flat face, at zero lift."""
         if not self.oscillating:

@@ -13,7 +13,7 @@ Depends on curve and numeric; shapely inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -53,6 +53,13 @@ class Corner:
     point: complex
     before: float
     after: float
+
+
+Place = tuple[int, float]
+"""A stroke's number and its parameter."""
+
+Row = tuple[int, float, float, bool]
+"""Number of a stroke, where a part of it begins and ends, and whether that begins at a corner."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -220,12 +227,26 @@ def _cut(
         ]
         corners.append(Corner(point=point, before=thetas[0], after=thetas[1]))
         cuts.append((first, second))
-    rows: list[tuple[int, float, float, bool]] = []
-    for (_, begin), (end, _) in zip([cuts[-1], *cuts[:-1]], cuts, strict=True):
-        rows += _between(strokes, begin, end)
-    order, start, end, corner = zip(*rows, strict=True)
+    kept = [
+        between(strokes, begin, end)
+        for (_, begin), (end, _) in zip([cuts[-1], *cuts[:-1]], cuts, strict=True)
+    ]
+    return pieced(strokes, kept), (corners[-1], *corners[:-1])
+
+
+def pieced(strokes: Strokes, chains: Iterable[Sequence[Row]]) -> Strokes:
+    """Return the strokes of some chains, each of which begins at a corner.
+
+    Parameters
+    ----------
+    strokes : Strokes
+        The whole curve.
+    chains : iterable of sequences of Row
+        See `between`.
+    """
+    order, start, end, corner = zip(*(row for chain in chains for row in chain), strict=True)
     index = np.array(order)
-    kept = replace(
+    return replace(
         strokes,
         piece=strokes.piece[index],
         start=np.array(start),
@@ -233,28 +254,35 @@ def _cut(
         jump=strokes.jump[index],
         corner=np.array(corner),
     )
-    return kept, (corners[-1], *corners[:-1])
 
 
-_Place = tuple[int, float]
-"""A stroke and its parameter."""
+def between(strokes: Strokes, begin: Place, end: Place) -> list[Row]:
+    """Return the strokes from one place to another, in the order of drawing.
 
+    Parameters
+    ----------
+    strokes : Strokes
+        A closed curve.
+    begin, end : Place
+        Where they begin and end.
 
-def _between(strokes: Strokes, begin: _Place, end: _Place) -> list[tuple[int, float, float, bool]]:
-    """Return the strokes from one place to another, in the order of drawing."""
-    rows = []
+    Returns
+    -------
+    list of Row
+    """
+    rows: list[Row] = []
     k, start, first = begin[0], begin[1], True
-    while not (k == end[0] and (not first or end[1] > start)):
-        rows.append((k, start, float(strokes.end[k]), first))
+    while not (k == end[0] and (not first or end[1] >= start)):
+        rows.append((k, start, float(strokes.end[k]), first or bool(strokes.corner[k])))
         k, first = (k + 1) % len(strokes.start), False
         start = float(strokes.start[k])
-    rows.append((k, start, end[1], first))
+    rows.append((k, start, end[1], first or bool(strokes.corner[k])))
     return rows
 
 
 def _crossing(
     strokes: Strokes, chords: _Chords, leave: int, enter: int, miss: float
-) -> tuple[tuple[_Place, _Place], complex] | None:
+) -> tuple[tuple[Place, Place], complex] | None:
     """Find where two chords' curves cross, by Newton steps that stay near the chords."""
     index = chords.stroke[[leave, enter]]
     low, high = chords.low[[leave, enter]], chords.high[[leave, enter]]

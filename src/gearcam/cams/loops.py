@@ -1,0 +1,160 @@
+"""Small loops of an undercut profile, closed on the curve itself.
+
+A profile that is only just undercut turns back for a stretch far below the tolerance of its chords.
+Polygons cannot show such a loop, and differences of its points are rounding. Its closure is found
+from the way instead: the integral of the velocity, taken from a place before the stretch to one
+behind it, vanishes; the integral of small numbers is a small number with all its digits.
+
+Depends on curve, trim and numeric; numpy only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from gearcam.cams.curve import Array, Strokes
+from gearcam.cams.trim import Corner, Place, between, pieced
+from gearcam.numeric.roots import bracketed_root
+
+SMALL = 1e-4
+"""Length of the way back, in sizes of the cam, up to which a loop is closed here: longer ones show
+well in polygons."""
+
+_GAUSS = 24
+_STEPS = 30
+_NOTHING = 1e-12
+"""Length of the way back, in sizes of the cam, that is cut out without closing: rounding."""
+
+_CLOSED = 1e-10
+_NOISE = 32.0 * np.finfo(float).eps
+"""Parts of the way back, and of the size, by which a closed loop may miss: angles are rounded."""
+
+_WIDTH = 1e-15
+"""Width of a root's bracket, rad."""
+
+
+def without_small_loops(
+    strokes: Strokes, undercut: Sequence[tuple[float, float]], size: float
+) -> tuple[Strokes, tuple[Corner, ...], list[tuple[float, float]]]:
+    """Close the small loops of a profile.
+
+    Parameters
+    ----------
+    strokes : Strokes
+        The whole profile, in order from the beginning of the turn.
+    undercut : sequence of (float, float)
+        Cam angles between which it runs backwards, rad.
+    size : float, mm
+        Of the cam.
+
+    Returns
+    -------
+    strokes : Strokes
+        Without the loops that were closed.
+    corners : tuple of Corner
+        Where they were.
+    left : list of (float, float)
+        The stretches that are undercut still.
+    """
+    closed: list[tuple[Place, Place]] = []
+    left: list[tuple[float, float]] = []
+    for stretch in undercut:
+        found = _closed(strokes, stretch, size)
+        if found is None:
+            left.append(stretch)
+        else:
+            closed.append(found)
+    if not closed:
+        return strokes, (), left
+    corners = tuple(_corner(strokes, first, second) for first, second in closed)
+    kept = [
+        between(strokes, begin, end)
+        for (_, begin), (end, _) in zip([closed[-1], *closed[:-1]], closed, strict=True)
+    ]
+    return pieced(strokes, kept), corners, left
+
+
+def _corner(strokes: Strokes, first: Place, second: Place) -> Corner:
+    (_, before), (_, after) = first, second
+    point = strokes.at(np.array([first[0]]), np.array([before]))[0][0]
+    return Corner(point=complex(point), before=before, after=after)
+
+
+def _closed(
+    strokes: Strokes, stretch: tuple[float, float], size: float
+) -> tuple[Place, Place] | None:
+    """Return the places where a loop about a stretch closes; None if it is not a small one."""
+    sweeps = np.flatnonzero(~strokes.jump)
+    low, high = stretch
+    # the last sweep that begins before the stretch, the first that ends behind it
+    before = [k for k in sweeps.tolist() if strokes.start[k] < low]
+    behind = [k for k in sweeps.tolist() if strokes.end[k] > high]
+    first = before[-1] if before else int(sweeps[-1])
+    last = behind[0] if behind else int(sweeps[0])
+    begin = (first, min(low, float(strokes.end[first])) if before else float(strokes.end[first]))
+    end = (last, max(high, float(strokes.start[last])) if behind else float(strokes.start[last]))
+    back = abs(_way(strokes, begin, end))
+    if back > SMALL * size:
+        return None
+    if back <= _NOTHING * size:
+        return begin, end
+    ways = (_ahead(strokes, begin, -1, 0.5 * back), _ahead(strokes, end, 1, 0.5 * back))
+    if ways[0] is None or ways[1] is None:
+        return None
+    room = begin[1], end[1]
+    found = _close(strokes, (first, ways[0]), (last, ways[1]), room)
+    if found is None:
+        return None
+    fits = abs(_way(strokes, *found)) <= _CLOSED * back + _NOISE * size
+    return found if fits else None
+
+
+def _ahead(strokes: Strokes, place: Place, side: int, length: float) -> float | None:
+    """Return where a sweep is a length of way before (-1) or behind (+1) a place."""
+    k, start = place
+    limit = float(strokes.end[k] if side > 0 else strokes.start[k])
+
+    def miss(parameter: Array) -> Array:
+        return np.array([abs(_part(strokes, k, start, float(p))) - length for p in parameter])
+
+    if miss(np.array([limit]))[0] < 0.0:
+        return None
+    return float(bracketed_root(miss, [start], [limit], _WIDTH)[0])
+
+
+def _close(
+    strokes: Strokes, one: Place, two: Place, room: tuple[float, float]
+) -> tuple[Place, Place] | None:
+    """Move two places, one before and one behind a stretch, until the way between them closes."""
+    (first, a), (last, b) = one, two
+    for _ in range(_STEPS):
+        way = _way(strokes, (first, a), (last, b))
+        index, places = np.array([first, last]), np.array([a, b])
+        slopes = strokes.speed(index, places) * strokes.at(index, places)[1]
+        # way - slopes[0]*da + slopes[1]*db = 0
+        cross = (np.conj(slopes[0]) * slopes[1]).imag
+        if cross == 0.0:
+            return None
+        da = (np.conj(slopes[1]) * way).imag / (np.conj(slopes[1]) * slopes[0]).imag
+        db = -(np.conj(slopes[0]) * way).imag / cross
+        a, b = a + float(da), b + float(db)
+        if not (strokes.start[first] <= a <= room[0] and room[1] <= b <= strokes.end[last]):
+            return None
+        if abs(da) + abs(db) <= _WIDTH:
+            break
+    return (first, a), (last, b)
+
+
+def _way(strokes: Strokes, begin: Place, end: Place) -> complex:
+    """Return the way from one place of the curve to another, along its strokes."""
+    return sum(_part(strokes, k, low, high) for k, low, high, _ in between(strokes, begin, end))
+
+
+def _part(strokes: Strokes, k: int, low: float, high: float) -> complex:
+    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    places = 0.5 * (low + high) + 0.5 * (high - low) * nodes
+    index = np.full(_GAUSS, k)
+    way = strokes.speed(index, places) * strokes.at(index, places)[1]
+    return complex(0.5 * (high - low) * (weights @ way))
