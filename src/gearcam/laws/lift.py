@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -230,14 +230,14 @@ class _Builder:
     ----------
     angles, heights
         Ends of the phases, rad, and lifts there.
+    knots, pieces
+        What is there already.
     """
 
     angles: Array
     heights: list[float]
-
-    def __post_init__(self) -> None:
-        self.knots: list[float] = [0.0]
-        self.pieces: list[Callable[[Jet], Jet]] = []
+    knots: list[float] = field(default_factory=lambda: [0.0])
+    pieces: list[Callable[[Jet], Jet]] = field(default_factory=list)
 
     def width(self, number: int) -> float:
         return float(self.angles[number + 1] - self.angles[number])
