@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-import mpmath as mp
+import mpmath
 
 from helpers_gallery import Number
 
+mp: Any = mpmath
 DEG = math.degrees(1.0)
 
 
@@ -16,13 +18,13 @@ def _undercut() -> tuple[float, float, float]:
     with mp.workdps(30):
         width = mp.radians(40)
 
-        def lift(t: mp.mpf) -> mp.mpf:
+        def lift(t: Any) -> Any:
             return 10 * (t / width - mp.sin(2 * mp.pi * t / width) / (2 * mp.pi))
 
-        def alpha(t: mp.mpf) -> mp.mpf:
+        def alpha(t: Any) -> Any:
             return mp.atan(mp.diff(lift, t) / (30 + lift(t)))
 
-        def room(t: mp.mpf) -> mp.mpf:
+        def room(t: Any) -> Any:
             """Radius of curvature of the pitch curve, polar form, less the roller's."""
             r, dr, ddr = 30 + lift(t), mp.diff(lift, t), mp.diff(lift, t, 2)
             return (r * r + dr * dr) ** mp.mpf(1.5) / (r * r + 2 * dr * dr - r * ddr) - 14

@@ -239,3 +239,16 @@ def test_extremes_stand_at_knots_inside_laws_too() -> None:
     assert radius.high.value == pytest.approx(40.0 + lift / 2 + 4 * lift / b**2, rel=1e-10)
     assert place.high.value == pytest.approx(2 * lift / b, rel=1e-10)
     assert place.high.theta == pytest.approx(b / 2, abs=1e-9)
+
+
+def test_the_pitch_curve_has_corners_at_shocks() -> None:
+    """The centre of a roller turns a corner there, and nowhere else."""
+    made = cam("roller, offset", "constant-velocity")
+    runs = made.pitch_contour.runs
+    knots = made.program.knots[:-1]
+    corners = made.curve.pitch(knots, made.program.derivatives(knots, 0)[0])
+    starts = np.array([run.points[0] @ [1, 1j] for run in runs])
+    assert len(runs) == 4
+    off = np.abs(starts[:, None] - corners).min(axis=0)
+    assert off.max() < 1e-12
+    assert len(cam("roller, offset").pitch_contour.runs) == 1

@@ -91,7 +91,7 @@ def test_the_wrong_phase_is_named() -> None:
 def test_a_lift_that_closes_to_rounding_is_closed() -> None:
     phases = [rise("2-3", 90.0, 0.1), rise("2-3", 90.0, 0.2), back("2-3", 180.0, 0.3)]
     made = program(phases)
-    assert made.lift.last == pytest.approx(0.0, abs=1e-15)
+    assert made.lift.last == 0.0
     off = [rise("2-3", 90.0, 0.1), rise("2-3", 90.0, 0.2), back("2-3", 180.0, 0.3 + 1e-8)]
     with pytest.raises(InfeasibleError, match="ends at a lift"):
         program(off)
@@ -132,6 +132,18 @@ def test_lifts_that_bring_the_follower_to_the_axis_are_refused() -> None:
                     make_cam(program(phases), mechanism(kind, offset=0.0))
             else:
                 make_cam(program(phases), mechanism(kind, offset=0.0))
+
+
+def test_a_follower_may_not_pass_below_the_axis() -> None:
+    """Beside it there would be room: the offset is larger than the roller."""
+    height = math.sqrt(30.0**2 - 8.0**2)
+    for lift in (height - 0.1, height + 0.1):
+        phases = [back("cycloidal", 90.0, lift), dwell(90.0), rise("cycloidal", 180.0, lift)]
+        if lift < height:
+            assert make_cam(program(phases), mechanism("roller, offset")).size.area > 0.0
+        else:
+            with pytest.raises(InfeasibleError, match="onto the cam's axis"):
+                make_cam(program(phases), mechanism("roller, offset"))
 
 
 def test_arms_that_swing_too_far_are_refused() -> None:

@@ -10,6 +10,7 @@ Depends on curve, trim and numeric; numpy only.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -24,8 +25,9 @@ well in polygons."""
 
 _GAUSS = 24
 _STEPS = 30
-_NOTHING = 1e-12
-"""Length of the way back, in sizes of the cam, that is cut out without closing: rounding."""
+_NOTHING = 1e-11
+"""Length of the way back, in sizes of the cam, that is cut out where rounding hides how it closes.
+"""
 
 _CLOSED = 1e-10
 _NOISE = 32.0 * np.finfo(float).eps
@@ -33,6 +35,8 @@ _NOISE = 32.0 * np.finfo(float).eps
 
 _WIDTH = 1e-15
 """Width of a root's bracket, rad."""
+
+_TURN = 2.0 * math.pi
 
 
 def without_small_loops(
@@ -60,10 +64,11 @@ def without_small_loops(
     """
     closed: list[tuple[Place, Place]] = []
     left: list[tuple[float, float]] = []
-    for stretch in undercut:
-        found = _closed(strokes, stretch, size)
+    for parts in _over_the_end(undercut):
+        # of two parts, one on each side of the turn's end, the later one begins
+        found = _closed(strokes, (parts[-1][0], parts[0][1]), size)
         if found is None:
-            left.append(stretch)
+            left += parts
         else:
             closed.append(found)
     if not closed:
@@ -74,6 +79,16 @@ def without_small_loops(
         for (_, begin), (end, _) in zip([closed[-1], *closed[:-1]], closed, strict=True)
     ]
     return pieced(strokes, kept), corners, left
+
+
+def _over_the_end(
+    undercut: Sequence[tuple[float, float]],
+) -> list[list[tuple[float, float]]]:
+    """Return the stretches, each by itself but for one that goes on over the end of the turn."""
+    parts = [[stretch] for stretch in undercut]
+    if len(parts) > 1 and undercut[0][0] == 0.0 and undercut[-1][1] >= _TURN:
+        return [[undercut[0], undercut[-1]], *parts[1:-1]]
+    return parts
 
 
 def _corner(strokes: Strokes, first: Place, second: Place) -> Corner:
@@ -98,13 +113,19 @@ def _closed(
     back = abs(_way(strokes, begin, end))
     if back > SMALL * size:
         return None
-    if back <= _NOTHING * size:
-        return begin, end
+    found = _searched(strokes, begin, end, back, size)
+    return (begin, end) if found is None and back <= _NOTHING * size else found
+
+
+def _searched(
+    strokes: Strokes, begin: Place, end: Place, back: float, size: float
+) -> tuple[Place, Place] | None:
+    """Return where the loop closes that runs backwards from `begin` to `end`, if it is found."""
     ways = (_ahead(strokes, begin, -1, 0.5 * back), _ahead(strokes, end, 1, 0.5 * back))
     if ways[0] is None or ways[1] is None:
         return None
     room = begin[1], end[1]
-    found = _close(strokes, (first, ways[0]), (last, ways[1]), room)
+    found = _close(strokes, (begin[0], ways[0]), (end[0], ways[1]), room)
     if found is None:
         return None
     fits = abs(_way(strokes, *found)) <= _CLOSED * back + _NOISE * size

@@ -20,6 +20,9 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes
 from gearcam.numeric.roots import bracketed_root
 
+_INSET = 1e-11
+"""More than the angle that extremes keep from knots, rad."""
+
 _ROOT = 1e-15
 """Width of a root's bracket, rad."""
 
@@ -141,7 +144,13 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
             root = float(bracketed_root(lambda t: both(t)[0][0], pair[:1], pair[1:], _ROOT)[0])
             low, high = (low, root) if sign[0] else (root, high)
         found.append((low, high))
-    return _joined(sorted(found))
+    return _joined(sorted((_at_knot(low, knots), _at_knot(high, knots)) for low, high in found))
+
+
+def _at_knot(theta: float, knots: Array) -> float:
+    """Return the knot that an angle means if it is as near as extremes keep from knots."""
+    nearest = float(knots[np.abs(knots - theta).argmin()])
+    return nearest if abs(nearest - theta) <= _INSET else theta
 
 
 def _stays_positive(both: Callable[[Array], tuple[Array, Array]], knots: Array) -> bool:
@@ -158,10 +167,10 @@ def _stays_positive(both: Callable[[Array], tuple[Array, Array]], knots: Array) 
 
 
 def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Join stretches that touch, but for the width that extremes keep from knots."""
+    """Join stretches that touch."""
     joined: list[tuple[float, float]] = []
     for low, high in stretches:
-        if joined and low - joined[-1][1] <= 1e-11:
+        if joined and low - joined[-1][1] <= _INSET:
             joined[-1] = (joined[-1][0], max(joined[-1][1], high))
         else:
             joined.append((low, high))

@@ -30,8 +30,11 @@ _AROUND = 97
 _BESIDE = 3.0
 """How far beside, in widths of the stretch: the loop closes within twice of it."""
 
-_ROUNDS = 6
+_ROUNDS = 8
 """Times that chords are made four times finer where crossings are not told apart."""
+
+_OVERLAP = 1e-12
+"""Angle, rad, by which an undercut stretch may reach into what is left: rounding."""
 
 _STEPS = 60
 _MISS = 1e-12
@@ -119,15 +122,26 @@ def trimmed(
         chains = _chains(chords)
         if chains is None:
             continue
-        if len(chains) == 1 and chains[0][1] - chains[0][0] == len(chords.points):
-            return strokes, ()
-        made = _cut(strokes, chords, chains)
-        if made is not None:
+        whole = len(chains) == 1 and chains[0][1] - chains[0][0] == len(chords.points)
+        made = (strokes, ()) if whole else _cut(strokes, chords, chains)
+        # chords that are too long may have missed a loop
+        if made is not None and not _backwards(made[0], undercut):
             return made
     raise InfeasibleError(
         "the profile crosses itself so often that what is left cannot be told",
         where="[cam]",
         nearest="a larger prime radius, or a smaller roller",
+    )
+
+
+def _backwards(strokes: Strokes, undercut: Sequence[tuple[float, float]]) -> bool:
+    """Return whether anything is left that runs backwards."""
+    if np.any(strokes.jump & (strokes.end < strokes.start)):
+        return True
+    start, end = strokes.start[~strokes.jump], strokes.end[~strokes.jump]
+    return any(
+        bool(np.any(np.minimum(end, high) - np.maximum(start, low) > _OVERLAP))
+        for low, high in undercut
     )
 
 
