@@ -225,7 +225,9 @@ def test_undercut_over_the_end_of_the_turn_is_one_finding() -> None:
     assert len(turned.undercut) == 3
     found = findings(turned, "undercut")
     assert len(found) == 2
-    assert any(" and from " in one.message for one in found)
+    (_, first_end), (start, end) = turned.undercut_ranges
+    assert first_end < start < 2.0 * math.pi < end
+    assert any(f"to {math.degrees(end):.6g} deg" in one.message for one in found)
     assert sorted(one.value or 0.0 for one in found) == pytest.approx(
         sorted(loss.value for loss in made.lost), rel=1e-9
     )

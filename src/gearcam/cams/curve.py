@@ -178,8 +178,11 @@ class Strokes:
 
     @property
     def breaks(self) -> tuple[Index, Array]:
-        """No curvature jumps inside a stroke."""
-        return np.zeros(0, dtype=np.int64), np.zeros(0)
+        """Where a law bends sharply inside sweeps."""
+        cuts = self.curve.program.cuts
+        inside = (self.start[:, None] < cuts) & (cuts < self.end[:, None]) & ~self.jump[:, None]
+        index, number = np.nonzero(inside)
+        return index, cuts[number]
 
     def states(self, index: Index, parameter: Array) -> tuple[Array, Array, Array]:
         """Return cam angle, lift and velocity.

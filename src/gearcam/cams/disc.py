@@ -25,7 +25,7 @@ from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, star_shaped, trimmed
 from gearcam.errors import InfeasibleError
 from gearcam.laws.lift import Program
-from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.piecewise import extremes
 from gearcam.numeric.sampling import Sampler
@@ -127,6 +127,14 @@ class DiscCam:
         """Cam angles, rad, between which the profile runs backwards."""
         return undercut(self.curve)
 
+    @property
+    def undercut_ranges(self) -> list[tuple[float, float]]:
+        """The same for people: one that goes on over the end of the turn ends beyond it."""
+        found, end = self.undercut, float(self.program.knots[-1])
+        if len(found) > 1 and found[0][0] == 0.0 and found[-1][1] >= end:
+            return [*found[1:-1], (found[-1][0], found[0][1] + end)]
+        return found
+
     @cached_property
     def _kept(self) -> tuple[Strokes, tuple[Corner, ...]]:
         whole = strokes(self.curve, self.mechanism.radius)
@@ -134,7 +142,7 @@ class DiscCam:
         kept, corners, left = without_small_loops(whole, self.undercut, size)
         if left or not star_shaped(kept):
             kept, more = trimmed(kept, left, self.tolerance)
-            starts = set(kept.start.tolist())
+            starts = set(kept.states(np.arange(len(kept.start)), kept.start)[0].tolist())
             corners = (*(corner for corner in corners if corner.after in starts), *more)
         return begun(kept), tuple(sorted(corners, key=lambda corner: corner.before))
 
@@ -161,6 +169,15 @@ class DiscCam:
     def _drawn(self, drawn: Strokes) -> Strokes:
         return replace(drawn, curve=replace(self.curve, mirrored=self.clockwise))
 
+    @property
+    def nearest_flat(self) -> float:
+        """Least distance of the axis from the inside of a straight piece, mm; inf without one."""
+        kept = self._kept[0]
+        if not self.mechanism.flat:
+            return math.inf
+        inside = np.flatnonzero(kept.jump & (kept.start < 0.0) & (kept.end > 0.0))
+        return float(np.abs(kept.at(inside, np.zeros(len(inside)))[0]).min(initial=math.inf))
+
     @cached_property
     def sampler(self) -> Sampler:
         """The profile with the density of points that the tolerance asks for."""
@@ -168,8 +185,17 @@ class DiscCam:
 
     @cached_property
     def contour(self) -> Contour:
-        """The profile, counter-clockwise."""
-        return self._contour(self.sampler)
+        """The profile, counter-clockwise, proved to be a simple curve about the axis."""
+        made = self._contour(self.sampler)
+        points = as_complex(made.vertices)
+        seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
+        if not seen_whole and not made.polygon.is_valid:
+            raise InfeasibleError(
+                "the profile crosses itself, and what is left of it cannot be told",
+                where="[cam]",
+                nearest="a larger prime radius, a smaller roller, or longer phases",
+            )
+        return made
 
     @cached_property
     def pitch_contour(self) -> Contour:
@@ -324,5 +350,5 @@ def _slowest(program: Program) -> float:
         _, ds, d2s = program.lift.derivatives(theta, 2)
         return ds[None], d2s[None]
 
-    ((_, values),) = extremes(velocity, program.knots)
+    ((_, values),) = extremes(velocity, program.cuts)
     return float(values.min())

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 
@@ -92,35 +93,60 @@ def _over_the_end(
 
 
 def _corner(strokes: Strokes, first: Place, second: Place) -> Corner:
-    (_, before), (_, after) = first, second
-    point = strokes.at(np.array([first[0]]), np.array([before]))[0][0]
-    return Corner(point=complex(point), before=before, after=after)
+    index, places = np.array([first[0], second[0]]), np.array([first[1], second[1]])
+    before, after = strokes.states(index, places)[0].tolist()
+    return Corner(point=complex(strokes.at(index, places)[0][0]), before=before, after=after)
 
 
 def _closed(
     strokes: Strokes, stretch: tuple[float, float], size: float
 ) -> tuple[Place, Place] | None:
     """Return the places where a loop about a stretch closes; None if it is not a small one."""
-    sweeps = np.flatnonzero(~strokes.jump)
-    low, high = stretch
-    # the last sweep that begins before the stretch, the first that ends behind it
-    before = [k for k in sweeps.tolist() if strokes.start[k] < low]
-    behind = [k for k in sweeps.tolist() if strokes.end[k] > high]
-    first = before[-1] if before else int(sweeps[-1])
-    last = behind[0] if behind else int(sweeps[0])
-    begin = (first, min(low, float(strokes.end[first])) if before else float(strokes.end[first]))
-    end = (last, max(high, float(strokes.start[last])) if behind else float(strokes.start[last]))
+    begin, end = _span(strokes, *stretch)
     back = abs(_way(strokes, begin, end))
     if back > SMALL * size:
         return None
-    found = _searched(strokes, begin, end, back, size)
-    return (begin, end) if found is None and back <= _NOTHING * size else found
+    for one, two in product(_beside(strokes, begin, -1), _beside(strokes, end, 1)):
+        found = _searched(strokes, one, two, back, size)
+        if found is not None:
+            return found
+    return (begin, end) if back <= _NOTHING * size else None
+
+
+def _span(strokes: Strokes, low: float, high: float) -> tuple[Place, Place]:
+    """Return the places between which a stretch runs backwards, with jumps at its ends."""
+    count, back = len(strokes.start), strokes.jump & (strokes.end < strokes.start)
+    if low == high:
+        theta = strokes.curve.program.knots[strokes.piece]
+        k = int(np.flatnonzero(back & (theta == low))[0])
+        return (k, float(strokes.start[k])), (k, float(strokes.end[k]))
+    sweep = ~strokes.jump
+    first = int(np.flatnonzero(sweep & (strokes.start <= low) & (low < strokes.end))[0])
+    last = int(np.flatnonzero(sweep & (strokes.start < high) & (high <= strokes.end))[0])
+    begin, end = (first, low), (last, high)
+    if low == strokes.start[first] and back[first - 1]:
+        begin = ((first - 1) % count, float(strokes.start[first - 1]))
+    after = (last + 1) % count
+    if high == strokes.end[last] and back[after]:
+        end = (after, float(strokes.end[after]))
+    return begin, end
+
+
+def _beside(strokes: Strokes, place: Place, side: int) -> list[Place]:
+    """Return the ends of the two strokes that come before (-1) or behind (+1) a place."""
+    far, near = (strokes.end, strokes.start) if side > 0 else (strokes.start, strokes.end)
+    k, count = place[0], len(strokes.start)
+    found = [place] if not strokes.jump[k] and place[1] != far[k] else []
+    for step in (1, 2)[: 2 - len(found)]:
+        other = (k + side * step) % count
+        found.append((other, float(near[other])))
+    return found
 
 
 def _searched(
     strokes: Strokes, begin: Place, end: Place, back: float, size: float
 ) -> tuple[Place, Place] | None:
-    """Return where the loop closes that runs backwards from `begin` to `end`, if it is found."""
+    """Return where a loop closes on the strokes of two places beside it, if it does there."""
     ways = (_ahead(strokes, begin, -1, 0.5 * back), _ahead(strokes, end, 1, 0.5 * back))
     if ways[0] is None or ways[1] is None:
         return None

@@ -88,7 +88,7 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme
         end += _TURN
     if end == start or end - start > _TURN - _NARROWEST:
         return Extreme(theta=start, value=0.0)
-    inner = np.concatenate([program.knots, program.knots + _TURN])
+    inner = np.concatenate([program.cuts, program.cuts + _TURN])
     knots = np.unique([start, *inner[(inner > start) & (inner < end)], end])
 
     def missing(theta: Array) -> tuple[Array, Array]:

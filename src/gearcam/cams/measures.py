@@ -79,7 +79,7 @@ def range_of(
     """
     places, values = [], []
     for low, high in stretches:
-        inner = curve.program.knots
+        inner = curve.program.cuts
         knots = np.array([low, *inner[(inner > low) & (inner < high)], high])
 
         def function(theta: Array) -> tuple[Array, Array]:
@@ -121,7 +121,7 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     """
     if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
         return []
-    knots = curve.program.knots
+    knots, cuts = curve.program.knots, curve.program.cuts
     back = [jump for jump in curve.program.jumps if jump.order == 1 and jump.after < jump.before]
     found = [(jump.theta, jump.theta) for jump in back]
 
@@ -129,13 +129,13 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         value, slope = curve.contact(theta).speed.derivatives()[:2]
         return value[None], slope[None]
 
-    if _stays_positive(both, knots):
+    if _stays_positive(both, cuts):
         return found
-    ((places, values),) = extremes(both, knots)
+    ((places, values),) = extremes(both, cuts)
     for k in range(len(places) - 1):
         pair, sign = places[k : k + 2], values[k : k + 2] < 0.0
-        across = np.searchsorted(knots, pair[0], side="right") != np.searchsorted(
-            knots, pair[1], side="right"
+        across = np.searchsorted(cuts, pair[0], side="right") != np.searchsorted(
+            cuts, pair[1], side="right"
         )
         if across or not sign.any():
             continue  # both sides of a knot are places of their own

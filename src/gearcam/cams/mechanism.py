@@ -14,7 +14,7 @@ oscillating flat     ``Psi0 = arcsin((base + f)/d)``, the face f nearer the cam
 
 Refused: followers that cannot touch the cam at zero lift.
 
-Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28); design.md section 2.
+Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28).
 """
 
 from __future__ import annotations

@@ -38,7 +38,8 @@ _OVERLAP = 1e-12
 
 _STEPS = 60
 _MISS = 1e-12
-"""Distance of two curves at their crossing, in sizes of the cam: rounding."""
+_ANGLE = 4e-15
+"""Distance of two curves at their crossing, in sizes of the cam, and in their speeds: rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,10 +149,13 @@ def _backwards(strokes: Strokes, undercut: Sequence[tuple[float, float]]) -> boo
 def _chords(strokes: Strokes, undercut: Sequence[tuple[float, float]], tolerance: float) -> _Chords:
     """Cut every stroke into chords, finely around undercut stretches."""
     number, low, high = [], [], []
+    bends = strokes.curve.program.cuts
     for k in range(len(strokes.start)):
         start, end = float(strokes.start[k]), float(strokes.end[k])
         probes = np.linspace(start, end, _PROBES)
-        points, tangents = strokes.at(np.full(_PROBES, k), probes)
+        if not strokes.jump[k]:
+            probes = np.union1d(probes, bends[(start < bends) & (bends < end)])
+        points, tangents = strokes.at(np.full(len(probes), k), probes)
         turning = np.abs(np.angle(tangents[1:] * np.conj(tangents[:-1])))
         # the square root of a chord's error adds up along the curve
         effort = np.sqrt(turning * np.abs(np.diff(points)) / (8.0 * tolerance)) + 1e-6
@@ -305,16 +309,13 @@ def _crossing(
     ends = np.sort([strokes.start[index], strokes.end[index]], axis=0)
     least, most = np.maximum(least, ends[0]), np.minimum(most, ends[1])
     place = 0.5 * (low + high)
-    step = 1e-6 * (high - low)
     best, gap = place, math.inf
     for _ in range(_STEPS):
-        points = strokes.at(index, place)[0]
+        points, tangents = strokes.at(index, place)
         apart = complex(points[1] - points[0])
         if abs(apart) < gap:
             best, gap = place, abs(apart)
-        slopes = (strokes.at(index, place + step)[0] - strokes.at(index, place - step)[0]) / (
-            2.0 * step
-        )
+        slopes = strokes.speed(index, place) * tangents
         # points[0] + a*slopes[0] = points[1] + b*slopes[1]
         cross = (np.conj(slopes[0]) * slopes[1]).imag
         if cross == 0.0:
@@ -325,7 +326,8 @@ def _crossing(
         if np.all(new == place):
             break
         place = new
-    if gap > miss:
+    # angles are rounded too
+    if gap > miss + _ANGLE * float(np.abs(strokes.speed(index, best)).max()):
         return None
     point = complex(strokes.at(index[:1], best[:1])[0][0])
     first, second = ((int(k), float(p)) for k, p in zip(index, best, strict=True))

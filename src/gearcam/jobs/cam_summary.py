@@ -77,7 +77,7 @@ def _cam(job: CamJob) -> dict[str, Any]:
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": _pressure(job),
         "curvature": _curvature(job),
-        "undercut": [[math.degrees(low), math.degrees(high)] for low, high in cam.undercut],
+        "undercut": [[math.degrees(low), math.degrees(high)] for low, high in cam.undercut_ranges],
     }
     if swings:
         made["start_angle_deg"] = math.degrees(mechanism.start)
@@ -94,7 +94,7 @@ def _cam(job: CamJob) -> dict[str, Any]:
         "chord_error_mm": job.profile.chord_error,
         "vertices": len(job.profile.vertices),
         "least_vertices": cam.sampler.least,
-        "radius_mm": {"min": float(reach.min()), "max": float(reach.max())},
+        "radius_mm": {"min": min(float(reach.min()), cam.nearest_flat), "max": float(reach.max())},
     }
     return made
 

@@ -43,6 +43,9 @@ _PROBES = 9
 
 _TURN = 2.0 * math.pi
 
+_KNOT = 4.0 * np.finfo(float).eps * _TURN
+"""Rounding of a knot, rad."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Stretch:
@@ -83,10 +86,13 @@ class Program:
         s over ``[0, 2*pi]``, mm or rad.
     stretches : tuple of Stretch
         Its phases; a segment counts as a rise or return by its direction.
+    cuts : (m,) array, rad
+        The knots, and more places where a law bends sharply: between them extremes are sought.
     """
 
     lift: Piecewise
     stretches: tuple[Stretch, ...]
+    cuts: Array
 
     @property
     def knots(self) -> Array:
@@ -109,7 +115,7 @@ class Program:
         at_knots = np.abs(self._sides).max(axis=(0, 1))[1:]
         first, second, third = (
             float(max(np.abs(found).max(), knots))
-            for (_, found), knots in zip(extremes(values, self.knots), at_knots, strict=True)
+            for (_, found), knots in zip(extremes(values, self.cuts), at_knots, strict=True)
         )
         return first, second, third
 
@@ -125,19 +131,23 @@ class Program:
     @cached_property
     def range(self) -> tuple[float, float]:
         """Smallest and largest lift, mm or rad."""
-        (_, low), (_, high) = self.lift.extremes
+        (_, low), (_, high) = self.lift.extremes_over(self.cuts)
         return low, high
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
         """The lowest derivative that jumps at each knot, the turn's ends counting as one."""
-        steps = np.diff(self.knots) * np.linspace(0.0, 1.0, _PROBES)[1:-1, None]
-        inside = np.abs(self.lift.derivatives((self.knots[:-1] + steps).ravel(), 3))
-        scales = np.maximum(inside.max(axis=1), np.abs(self._sides).max(axis=(0, 1)))
+        steps = np.diff(self.cuts) * np.linspace(0.0, 1.0, _PROBES)[1:-1, None]
+        inside = np.abs(self.lift.derivatives((self.cuts[:-1] + steps).ravel(), 4))
+        inside = inside.max(axis=1)
+        scales = np.maximum(inside[:4], np.abs(self._sides).max(axis=(0, 1)))
+        # a knot is rounded, and a derivative seen on the wrong side of it by its own slope
+        rounding = _KNOT * np.append(scales[1:], inside[4])
         found = []
         for right, (before, after) in enumerate(self._sides):
-            for order, scale in enumerate(scales[1:].tolist(), start=1):
-                if abs(after[order] - before[order]) > _JUMP * scale:
+            for order in (1, 2, 3):
+                limit = _JUMP * scales[order] + rounding[order]
+                if abs(after[order] - before[order]) > limit:
                     place = float(self.knots[right])
                     found.append(
                         Jump(theta=place, order=order, before=before[order], after=after[order])
@@ -203,7 +213,8 @@ def make_program(
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 builder.add_law(number, shape)
         stretches.append(Stretch(kind=kind, start=start, end=end))
-    return Program(lift=builder.made, stretches=tuple(stretches))
+    cuts = np.unique(builder.knots + builder.cuts)
+    return Program(lift=builder.made, stretches=tuple(stretches), cuts=cuts)
 
 
 def _end_state(
@@ -230,7 +241,7 @@ class _Builder:
     ----------
     angles, heights
         Ends of the phases, rad, and lifts there.
-    knots, pieces
+    knots, pieces, cuts
         What is there already.
     """
 
@@ -238,6 +249,7 @@ class _Builder:
     heights: list[float]
     knots: list[float] = field(default_factory=lambda: [0.0])
     pieces: list[Callable[[Jet], Jet]] = field(default_factory=list)
+    cuts: list[float] = field(default_factory=list)
 
     def width(self, number: int) -> float:
         return float(self.angles[number + 1] - self.angles[number])
@@ -264,6 +276,10 @@ class _Builder:
         pieces = list(zip(function.pieces, function.offsets.tolist(), strict=True))
         knots = function.knots
         backwards = shape.mirrored and rise < 0.0
+        if shape.cuts is not None:
+            shares = 1.0 - shape.cuts if backwards else shape.cuts
+            inner = shares[(shares > 0.0) & (shares < 1.0)]
+            self.cuts += (float(self.angles[number]) + self.width(number) * inner).tolist()
         if backwards:
             pieces, knots = pieces[::-1], 1.0 - knots[::-1]
         for k, (piece, offset) in enumerate(pieces):

@@ -192,6 +192,9 @@ def extremes(
     width = np.diff(grid)
     steps = np.linspace(1e-12, 1.0 - 1e-12, max(samples // len(width), samples // 4))
     x = grid[:-1, None] + width[:, None] * steps
+    # of a narrow interval so small a share may round to the knot, which is another piece's
+    x[:, 0] = np.maximum(x[:, 0], np.nextafter(grid[:-1], np.inf))
+    x[:, -1] = np.minimum(x[:, -1], np.nextafter(grid[1:], -np.inf))
     _, slopes = function(x.ravel())
     slopes = slopes.reshape(-1, *x.shape)
     owner, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
