@@ -52,31 +52,6 @@ class CamCurve:
     mechanism: Mechanism
     mirrored: bool = False
 
-    def lift(self, piece: Index, theta: Array, order: int) -> Array:
-        """Return the lift and its derivatives by given pieces, right at knots too.
-
-        Parameters
-        ----------
-        piece : (n,) array of int
-            Numbers of smooth pieces of the lift.
-        theta : (n,) array, rad
-            Cam angles in or at the ends of them.
-        order : int
-            Of the last derivative.
-
-        Returns
-        -------
-        (order + 1, n) array, mm or rad
-        """
-        lift = self.program.lift
-        result = np.empty((order + 1, theta.size))
-        for number in np.unique(piece).tolist():
-            here = np.flatnonzero(piece == number)
-            jet = lift.pieces[number](Jet.variable(theta[here], order)) + lift.offsets[number]
-            for k, values in enumerate(jet.derivatives()):
-                result[k, here] = values
-        return result
-
     def contact(self, theta: Array, order: int = 1) -> Contact:
         """Return the contact at cam angles.
 
@@ -196,7 +171,7 @@ class Strokes:
         """
         jump = self.jump[index]
         theta = np.where(jump, self.curve.program.knots[self.piece[index]], parameter)
-        s, ds = self.curve.lift(self.piece[index], theta, 1)
+        s, ds = self.curve.program.lift.on_pieces(self.piece[index], theta, 1)
         return theta, s, np.where(jump, parameter, ds)
 
     def at(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
@@ -211,8 +186,8 @@ class Strokes:
         """
         return self.curve.trace(*self.states(index, parameter), self.inset)
 
-    def speed(self, index: Index, parameter: Array) -> Array:
-        """Return how fast the curve is drawn, mm per unit of the parameter; negative backwards.
+    def moving(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
+        """Return points, and their velocities as the curve is drawn.
 
         Parameters
         ----------
@@ -220,12 +195,20 @@ class Strokes:
             Numbers of the strokes.
         parameter : (n,) array
             theta or velocity, within them.
+
+        Returns
+        -------
+        points, velocities : (n,) complex arrays, mm and mm per unit of the parameter
+            Against the tangent where the curve runs backwards.
         """
-        theta, s, ds = self.states(index, parameter)
-        lift = self.curve.lift(self.piece[index], theta, 2)
-        found = contact(self.curve.mechanism, *(Jet([values]) for values in lift))
+        jump = self.jump[index]
+        theta = np.where(jump, self.curve.program.knots[self.piece[index]], parameter)
+        s, ds, d2s = self.curve.program.lift.on_pieces(self.piece[index], theta, 2)
+        ds = np.where(jump, parameter, ds)
+        found = contact(self.curve.mechanism, Jet([s]), Jet([ds]), Jet([d2s]))
         speed = found.speed if self.inset > 0.0 else found.pitch_speed
-        return np.where(self.jump[index], self._rolling(s, ds), speed.c[0])
+        points, tangents = self.curve.trace(theta, s, ds, self.inset)
+        return points, np.where(jump, self._rolling(s, ds), speed.c[0]) * tangents
 
     def _rolling(self, s: Array, ds: Array) -> Array:
         """Return how fast a jump draws: a roller about its centre, or along a flat face."""
@@ -255,7 +238,7 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
     """
     program = curve.program
     knots, count = program.knots, len(program.knots) - 1
-    hard = {jump.theta: jump for jump in program.jumps if jump.order == 1}
+    hard = {jump.theta: jump for jump in program.hard}
     drawn = curve.mechanism.flat or inset > 0.0
     rows: list[tuple[int, float, float, bool, bool]] = []
     for piece in range(count):

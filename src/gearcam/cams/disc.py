@@ -20,7 +20,7 @@ import numpy as np
 from gearcam.cams.curve import Array, CamCurve, Plane, Strokes, begun, strokes
 from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
-from gearcam.cams.measures import Extreme, Range, Size, range_of, size_of, turn, undercut
+from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, star_shaped, trimmed
 from gearcam.errors import InfeasibleError
@@ -32,6 +32,9 @@ from gearcam.numeric.sampling import Sampler
 
 CHORD_TOLERANCE = 1e-3
 """Chord tolerance where the design gives none, mm."""
+
+_TURN = [(0.0, 2.0 * math.pi)]
+"""The whole turn, as stretches of it."""
 
 _STANDSTILL = 1e-9
 """A face that swings down within this of the cam's own speed touches one point for a while."""
@@ -68,8 +71,7 @@ class DiscCam:
 
     def pressure(self, kind: str) -> Range | None:
         """Return the signed pressure angles, rad, over all phases of a `kind` (rise, return)."""
-        stretches = [(s.start, s.end) for s in self.program.stretches if s.kind == kind]
-        return range_of(self.curve, lambda contact: contact.pressure, stretches)
+        return range_of(self.curve, lambda contact: contact.pressure, self.program.phases(kind))
 
     def pitch_curvature(self, kind: str = "") -> Range | None:
         """Return the pitch curve's curvature, 1/mm, over a turn or all phases of a `kind`.
@@ -79,11 +81,10 @@ class DiscCam:
         """
         if self.mechanism.flat:
             return None
-        stretches = [(s.start, s.end) for s in self.program.stretches if s.kind == kind]
         return range_of(
             self.curve,
             lambda contact: contact.turning / contact.pitch_speed,
-            stretches if kind else turn(self.curve),
+            self.program.phases(kind) if kind else _TURN,
         )
 
     @cached_property
@@ -99,10 +100,10 @@ class DiscCam:
             low, high = (found.low.value, found.high.value) if found else (0.0, 0.0)
             convex = 1.0 / high - radius if high > 0.0 else math.inf
             concave = -1.0 / low + radius if low < 0.0 else math.inf
-            for jump in self.program.jumps:
-                if jump.order == 1 and jump.after > jump.before:  # it rolls about its own centre
+            for jump in self.program.hard:
+                if jump.after > jump.before:  # it rolls about its own centre
                     concave = min(concave, radius)
-                elif jump.order == 1:
+                else:
                     convex = 0.0
         return (0.0 if self.corners else max(convex, 0.0)), concave
 
@@ -111,16 +112,14 @@ class DiscCam:
         """Radius of curvature of a flat follower's profile, mm, negative where undercut."""
         if not self.mechanism.flat:
             return None
-        return range_of(
-            self.curve, lambda contact: contact.speed / contact.turning, turn(self.curve)
-        )
+        return range_of(self.curve, lambda contact: contact.speed / contact.turning, _TURN)
 
     @cached_property
     def contact_place(self) -> Range | None:
         """Where a flat face is touched, mm (see `gearcam.cams.contact.Contact`)."""
         if not self.mechanism.flat:
             return None
-        return range_of(self.curve, lambda contact: contact.place, turn(self.curve))
+        return range_of(self.curve, lambda contact: contact.place, _TURN)
 
     @cached_property
     def undercut(self) -> list[tuple[float, float]]:
@@ -130,10 +129,9 @@ class DiscCam:
     @property
     def undercut_ranges(self) -> list[tuple[float, float]]:
         """The same for people: one that goes on over the end of the turn ends beyond it."""
-        found, end = self.undercut, float(self.program.knots[-1])
-        if len(found) > 1 and found[0][0] == 0.0 and found[-1][1] >= end:
-            return [*found[1:-1], (found[-1][0], found[0][1] + end)]
-        return found
+        joined = over_the_end(self.undercut)
+        ends = (parts[0][1] + (2.0 * math.pi if len(parts) > 1 else 0.0) for parts in joined)
+        return [(parts[-1][0], end) for parts, end in zip(joined, ends, strict=True)]
 
     @cached_property
     def _kept(self) -> tuple[Strokes, tuple[Corner, ...]]:
@@ -332,8 +330,7 @@ def _demand_swing(made: DiscCam, low: float, high: float) -> None:
             unit="deg",
             nearest="a lift within the limit",
         )
-    slowest = _slowest(made.program)
-    if mechanism.flat and not slowest > -1.0 + _STANDSTILL:
+    if mechanism.flat and not (slowest := _slowest(made.program)) > -1.0 + _STANDSTILL:
         raise InfeasibleError(
             "the face swings down faster than the cam turns: no profile can carry it",
             where="motion",

@@ -5,19 +5,19 @@ Polygons cannot show such a loop, and differences of its points are rounding. It
 from the way instead: the integral of the velocity, taken from a place before the stretch to one
 behind it, vanishes; the integral of small numbers is a small number with all its digits.
 
-Depends on curve, trim and numeric; numpy only.
+Depends on curve, measures, trim and numeric; numpy only.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
 
 from gearcam.cams.curve import Array, Strokes
-from gearcam.cams.trim import Corner, Place, between, pieced
+from gearcam.cams.measures import over_the_end
+from gearcam.cams.trim import Corner, Place, between, cut_out
 from gearcam.numeric.roots import bracketed_root
 
 SMALL = 1e-4
@@ -36,8 +36,6 @@ _NOISE = 32.0 * np.finfo(float).eps
 
 _WIDTH = 1e-15
 """Width of a root's bracket, rad."""
-
-_TURN = 2.0 * math.pi
 
 
 def without_small_loops(
@@ -65,7 +63,7 @@ def without_small_loops(
     """
     closed: list[tuple[Place, Place]] = []
     left: list[tuple[float, float]] = []
-    for parts in _over_the_end(undercut):
+    for parts in over_the_end(undercut):
         # of two parts, one on each side of the turn's end, the later one begins
         found = _closed(strokes, (parts[-1][0], parts[0][1]), size)
         if found is None:
@@ -74,28 +72,8 @@ def without_small_loops(
             closed.append(found)
     if not closed:
         return strokes, (), left
-    corners = tuple(_corner(strokes, first, second) for first, second in closed)
-    kept = [
-        between(strokes, begin, end)
-        for (_, begin), (end, _) in zip([closed[-1], *closed[:-1]], closed, strict=True)
-    ]
-    return pieced(strokes, kept), corners, left
-
-
-def _over_the_end(
-    undercut: Sequence[tuple[float, float]],
-) -> list[list[tuple[float, float]]]:
-    """Return the stretches, each by itself but for one that goes on over the end of the turn."""
-    parts = [[stretch] for stretch in undercut]
-    if len(parts) > 1 and undercut[0][0] == 0.0 and undercut[-1][1] >= _TURN:
-        return [[undercut[0], undercut[-1]], *parts[1:-1]]
-    return parts
-
-
-def _corner(strokes: Strokes, first: Place, second: Place) -> Corner:
-    index, places = np.array([first[0], second[0]]), np.array([first[1], second[1]])
-    before, after = strokes.states(index, places)[0].tolist()
-    return Corner(point=complex(strokes.at(index, places)[0][0]), before=before, after=after)
+    kept, corners = cut_out(strokes, closed)
+    return kept, corners, left
 
 
 def _closed(
@@ -179,7 +157,7 @@ def _close(
     for _ in range(_STEPS):
         way = _way(strokes, (first, a), (last, b))
         index, places = np.array([first, last]), np.array([a, b])
-        slopes = strokes.speed(index, places) * strokes.at(index, places)[1]
+        slopes = strokes.moving(index, places)[1]
         # way - slopes[0]*da + slopes[1]*db = 0
         cross = (np.conj(slopes[0]) * slopes[1]).imag
         if cross == 0.0:
@@ -203,5 +181,4 @@ def _part(strokes: Strokes, k: int, low: float, high: float) -> complex:
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     places = 0.5 * (low + high) + 0.5 * (high - low) * nodes
     index = np.full(_GAUSS, k)
-    way = strokes.speed(index, places) * strokes.at(index, places)[1]
-    return complex(0.5 * (high - low) * (weights @ way))
+    return complex(0.5 * (high - low) * (weights @ strokes.moving(index, places)[1]))

@@ -88,8 +88,6 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme
         end += _TURN
     if end == start or end - start > _TURN - _NARROWEST:
         return Extreme(theta=start, value=0.0)
-    inner = np.concatenate([program.cuts, program.cuts + _TURN])
-    knots = np.unique([start, *inner[(inner > start) & (inner < end)], end])
 
     def missing(theta: Array) -> tuple[Array, Array]:
         asked = program.derivatives(theta, 1)
@@ -97,6 +95,6 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme
             given = rest(Jet.variable(theta, 1)).derivatives()
         return (asked[0] - given[0])[None], (asked[1] - given[1])[None]
 
-    ((places, values),) = extremes(missing, knots)
+    ((places, values),) = extremes(missing, program.cuts_between(start, end))
     best = int(np.nanargmax(values))
     return Extreme(theta=float(places[best]) % _TURN, value=max(0.0, float(values[best])))

@@ -9,7 +9,7 @@ Depends on curve, contact and numeric; numpy only.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import Array, CamCurve, Strokes
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.piecewise import extremes, places_between
 from gearcam.numeric.roots import bracketed_root
 
 _INSET = 1e-11
@@ -25,10 +25,6 @@ _INSET = 1e-11
 
 _ROOT = 1e-15
 """Width of a root's bracket, rad."""
-
-_CELLS_OF_SPEED = 192
-_FEWEST_CELLS = 48
-"""Cells of a turn, and of each piece at least, in which a speed is looked at."""
 
 _GAUSS = 16
 _CELLS = 4
@@ -79,14 +75,12 @@ def range_of(
     """
     places, values = [], []
     for low, high in stretches:
-        inner = curve.program.cuts
-        knots = np.array([low, *inner[(inner > low) & (inner < high)], high])
 
         def function(theta: Array) -> tuple[Array, Array]:
             value, slope = pick(curve.contact(theta)).derivatives()[:2]
             return value[None], slope[None]
 
-        ((place, value),) = extremes(function, knots)
+        ((place, value),) = extremes(function, curve.program.cuts_between(low, high))
         places.append(place)
         values.append(value)
     if not places:
@@ -98,11 +92,6 @@ def range_of(
     )
     low, high = ends
     return Range(low=low, high=high)
-
-
-def turn(curve: CamCurve) -> list[tuple[float, float]]:
-    """Return the whole turn as stretches."""
-    return [(0.0, float(curve.program.knots[-1]))]
 
 
 def undercut(curve: CamCurve) -> list[tuple[float, float]]:
@@ -122,8 +111,8 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
         return []
     knots, cuts = curve.program.knots, curve.program.cuts
-    back = [jump for jump in curve.program.jumps if jump.order == 1 and jump.after < jump.before]
-    found = [(jump.theta, jump.theta) for jump in back]
+    back = (jump.theta for jump in curve.program.hard if jump.after < jump.before)
+    found = [(theta, theta) for theta in back]
 
     def both(theta: Array) -> tuple[Array, Array]:
         value, slope = curve.contact(theta).speed.derivatives()[:2]
@@ -159,10 +148,9 @@ def _stays_positive(both: Callable[[Array], tuple[Array, Array]], knots: Array) 
     Between two places a function lies above the lower of its tangents where it has a minimum, and
     above its ends elsewhere.
     """
-    width = np.diff(knots)
-    share = np.linspace(1e-12, 1.0 - 1e-12, max(_CELLS_OF_SPEED // len(width), _FEWEST_CELLS) + 1)
-    values, slopes = both((knots[:-1, None] + width[:, None] * share).ravel())
-    cell = np.repeat(width, len(share)) / (len(share) - 1)
+    x = places_between(knots)
+    values, slopes = both(x.ravel())
+    cell = np.repeat(np.diff(x, axis=1).max(axis=1), x.shape[1])
     return bool(np.all(values - np.abs(slopes) * cell > 0.0))
 
 
@@ -175,6 +163,27 @@ def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
         else:
             joined.append((low, high))
     return joined
+
+
+def over_the_end(
+    stretches: Sequence[tuple[float, float]],
+) -> list[list[tuple[float, float]]]:
+    """Return stretches of a turn by themselves, but for one that goes on over the turn's end.
+
+    Parameters
+    ----------
+    stretches : sequence of (float, float)
+        Cam angles, rad, in rising order, cut at the end of the turn.
+
+    Returns
+    -------
+    list of lists
+        Of one stretch, or of the two parts of one, that after the end first.
+    """
+    parts = [[stretch] for stretch in stretches]
+    if len(parts) > 1 and stretches[0][0] == 0.0 and stretches[-1][1] >= 2.0 * math.pi:
+        return [*parts[1:-1], [stretches[0], stretches[-1]]]
+    return parts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -228,7 +237,7 @@ def _integrals(strokes: Strokes, cells: int) -> Array:
     index = np.repeat(np.arange(count), len(share))
     run = (strokes.end - strokes.start)[index]
     parameter = strokes.start[index] + np.tile(share, count) * run
-    points, tangents = strokes.at(index, parameter)
-    way = strokes.speed(index, parameter) * run * np.tile(weight, count)
-    swept = 0.5 * float((np.conj(points) * tangents).imag @ way)
+    points, velocities = strokes.moving(index, parameter)
+    way = velocities * run * np.tile(weight, count)
+    swept = 0.5 * float((np.conj(points) * way).imag.sum())
     return np.array([math.fsum(np.abs(way)), abs(swept)])

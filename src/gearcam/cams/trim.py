@@ -13,7 +13,7 @@ Depends on curve and numeric; shapely inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -149,12 +149,11 @@ def _backwards(strokes: Strokes, undercut: Sequence[tuple[float, float]]) -> boo
 def _chords(strokes: Strokes, undercut: Sequence[tuple[float, float]], tolerance: float) -> _Chords:
     """Cut every stroke into chords, finely around undercut stretches."""
     number, low, high = [], [], []
-    bends = strokes.curve.program.cuts
     for k in range(len(strokes.start)):
         start, end = float(strokes.start[k]), float(strokes.end[k])
         probes = np.linspace(start, end, _PROBES)
         if not strokes.jump[k]:
-            probes = np.union1d(probes, bends[(start < bends) & (bends < end)])
+            probes = np.union1d(probes, strokes.curve.program.cuts_between(start, end))
         points, tangents = strokes.at(np.full(len(probes), k), probes)
         turning = np.abs(np.angle(tangents[1:] * np.conj(tangents[:-1])))
         # the square root of a chord's error adds up along the curve
@@ -233,38 +232,47 @@ def _cut(
 ) -> tuple[Strokes, tuple[Corner, ...]] | None:
     """Find the crossings on the true curves and return the strokes between them."""
     count, size = len(chords.points), float(np.abs(chords.points).max())
-    cuts, corners = [], []
+    cuts = []
     for (_, stop), (begin, _) in zip(chains, [*chains[1:], chains[0]], strict=True):
         leave, enter = (stop - 1) % count, (begin - 1) % count
         found = _crossing(strokes, chords, leave, enter, _MISS * size)
         if found is None:
             return None
-        (first, second), point = found
-        thetas = [
-            float(strokes.states(np.array([k]), np.array([p]))[0][0]) for k, p in (first, second)
-        ]
-        corners.append(Corner(point=point, before=thetas[0], after=thetas[1]))
-        cuts.append((first, second))
-    kept = [
-        between(strokes, begin, end)
-        for (_, begin), (end, _) in zip([cuts[-1], *cuts[:-1]], cuts, strict=True)
-    ]
-    return pieced(strokes, kept), (corners[-1], *corners[:-1])
+        cuts.append(found)
+    return cut_out(strokes, cuts)
 
 
-def pieced(strokes: Strokes, chains: Iterable[Sequence[Row]]) -> Strokes:
-    """Return the strokes of some chains, each of which begins at a corner.
+def cut_out(
+    strokes: Strokes, cuts: Sequence[tuple[Place, Place]]
+) -> tuple[Strokes, tuple[Corner, ...]]:
+    """Return what is left of a curve without the stretches between pairs of places.
 
     Parameters
     ----------
     strokes : Strokes
         The whole curve.
-    chains : iterable of sequences of Row
-        See `between`.
+    cuts : sequence of (Place, Place)
+        Places that are one point, in the order of drawing: what is between them is left out.
+
+    Returns
+    -------
+    strokes : Strokes
+        What is left, beginning at a corner.
+    corners : tuple of Corner
+        In the order of `cuts`.
     """
-    order, start, end, corner = zip(*(row for chain in chains for row in chain), strict=True)
+    corners = []
+    for pair in cuts:
+        index, places = np.array([k for k, _ in pair]), np.array([place for _, place in pair])
+        before, after = strokes.states(index, places)[0].tolist()
+        point = complex(strokes.at(index, places)[0][0])
+        corners.append(Corner(point=point, before=before, after=after))
+    rows: list[Row] = []
+    for (_, begin), (end, _) in zip([cuts[-1], *cuts[:-1]], cuts, strict=True):
+        rows += between(strokes, begin, end)
+    order, start, end, corner = zip(*rows, strict=True)
     index = np.array(order)
-    return replace(
+    kept = replace(
         strokes,
         piece=strokes.piece[index],
         start=np.array(start),
@@ -272,6 +280,7 @@ def pieced(strokes: Strokes, chains: Iterable[Sequence[Row]]) -> Strokes:
         jump=strokes.jump[index],
         corner=np.array(corner),
     )
+    return kept, tuple(corners)
 
 
 def between(strokes: Strokes, begin: Place, end: Place) -> list[Row]:
@@ -300,7 +309,7 @@ def between(strokes: Strokes, begin: Place, end: Place) -> list[Row]:
 
 def _crossing(
     strokes: Strokes, chords: _Chords, leave: int, enter: int, miss: float
-) -> tuple[tuple[Place, Place], complex] | None:
+) -> tuple[Place, Place] | None:
     """Find where two chords' curves cross, by Newton steps that stay near the chords."""
     index = chords.stroke[[leave, enter]]
     low, high = chords.low[[leave, enter]], chords.high[[leave, enter]]
@@ -311,11 +320,10 @@ def _crossing(
     place = 0.5 * (low + high)
     best, gap = place, math.inf
     for _ in range(_STEPS):
-        points, tangents = strokes.at(index, place)
+        points, slopes = strokes.moving(index, place)
         apart = complex(points[1] - points[0])
         if abs(apart) < gap:
             best, gap = place, abs(apart)
-        slopes = strokes.speed(index, place) * tangents
         # points[0] + a*slopes[0] = points[1] + b*slopes[1]
         cross = (np.conj(slopes[0]) * slopes[1]).imag
         if cross == 0.0:
@@ -327,8 +335,7 @@ def _crossing(
             break
         place = new
     # angles are rounded too
-    if gap > miss + _ANGLE * float(np.abs(strokes.speed(index, best)).max()):
+    if gap > miss + _ANGLE * float(np.abs(strokes.moving(index, best)[1]).max()):
         return None
-    point = complex(strokes.at(index[:1], best[:1])[0][0])
     first, second = ((int(k), float(p)) for k, p in zip(index, best, strict=True))
-    return (first, second), point
+    return first, second

@@ -90,7 +90,7 @@ def _drawing(job: CamJob, *, assembled: bool = False) -> Drawing:
     from gearcam.drawings import cam_drawing
 
     design, cam = job.design, job.cam
-    pitch = None if cam.mechanism.flat or cam.mechanism.radius == 0.0 else cam.pitch_contour
+    pitch = None if cam.pitch_contour is cam.contour else cam.pitch_contour
     prime, side = cam.mechanism.least, -1.0 if design.cam.clockwise else 1.0
     if not assembled:
         return cam_drawing(job.part, pitch, prime)

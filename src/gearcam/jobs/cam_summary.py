@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearcam.cams.measures import Range
-from gearcam.jobs.summary import FORMAT, versions
+from gearcam.jobs.summary import CHORD_HOW, FORMAT, versions
 
 if TYPE_CHECKING:
     from gearcam.jobs.cam import CamJob
@@ -156,8 +156,7 @@ def _accuracy(job: CamJob, extras: dict[str, Any]) -> dict[str, Any]:
     }
     how = {
         "profile_mm": "rounding of closed forms at the largest radius",
-        "chord_mm": "largest distance of the curve from a chord: measured at 13 places, or, "
-        "where the curvature hardly changes, from the tangents at its ends",
+        "chord_mm": CHORD_HOW,
         "perimeter_mm": "Gauss-Legendre quadrature with half the cells, and rounding",
         "area_mm2": "Gauss-Legendre quadrature with half the cells, and rounding",
     }

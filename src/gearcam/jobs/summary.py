@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 FORMAT = 1
 """Version of the summary's layout."""
 
+CHORD_HOW = (
+    "largest distance of the curve from a chord: measured at 13 places, or, "
+    "where the curvature hardly changes, from the tangents at its ends"
+)
+"""How a sampler knows its chord error."""
+
 
 def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) -> dict[str, Any]:
     """Return the summary of a job.
@@ -146,8 +152,7 @@ def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
         "closure_rad": "miss of the driven angle over a lobe",
         "arc_length_mm": "last Chebyshev coefficients over all intervals, and rounding",
         "flank_mm": "arc length, and the law's error and rounding at the largest radius",
-        "chord_mm": "largest distance of the curve from a chord: measured at 13 places, or, "
-        "where the curvature hardly changes, from the tangents at its ends",
+        "chord_mm": CHORD_HOW,
     }
     if dxf is not None:
         values["dxf_mm"] = dxf["error_mm"]

@@ -10,15 +10,16 @@ together with its claims, which one parametrised test proves for all laws.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Final, Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.laws.registry import Entry, hang
 from gearcam.laws.span import ONE_LOBE, Feed, Lobes, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
@@ -162,28 +163,8 @@ class Claim:
     continuity: int
 
 
-@dataclass(frozen=True, kw_only=True)
-class LawEntry:
-    """A law in the registry.
-
-    Parameters
-    ----------
-    name : str
-        As in ``law.type``.
-    parameters : type
-        Dataclass with a ``build`` method.
-    doc, continuity, source : str
-        One line each, for people.
-    claims : callable
-        Returns examples with what they must give.
-    """
-
-    name: str
-    parameters: type[Any]
-    doc: str
-    continuity: str
-    source: str
-    claims: Callable[[], tuple[Claim, ...]]
+class LawEntry(Entry[Claim]):
+    """A law in the registry; its name is that of ``law.type``."""
 
 
 LAWS: Final[dict[str, LawEntry]] = {}
@@ -202,9 +183,7 @@ def register(entry: LawEntry) -> None:
     ValueError
         If its name is taken.
     """
-    if entry.name in LAWS:
-        raise ValueError(f"law {entry.name!r} is registered twice")
-    LAWS[entry.name] = entry
+    hang(LAWS, entry, "law")
 
 
 def make_law(

@@ -99,6 +99,25 @@ class Program:
         """Knots of the lift over a turn, rad, both ends included."""
         return self.lift.knots
 
+    def cuts_between(self, low: float, high: float) -> Array:
+        """Return the cuts between two cam angles, with both of these.
+
+        Parameters
+        ----------
+        low, high : float, rad
+            Rising, within two turns.
+
+        Returns
+        -------
+        (n,) array, rad
+        """
+        cuts = np.concatenate([self.cuts, self.cuts + _TURN])
+        return np.unique([low, *cuts[(cuts > low) & (cuts < high)], high])
+
+    def phases(self, kind: str) -> list[tuple[float, float]]:
+        """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
+        return [(s.start, s.end) for s in self.stretches if s.kind == kind]
+
     def derivatives(self, theta: ArrayLike, order: int) -> list[Array]:
         """Return ``[s, s', ..., s^(order)]`` at any cam angles `theta`, rad."""
         theta = np.asarray(theta, dtype=float)
@@ -154,6 +173,11 @@ class Program:
                     )
                     break
         return tuple(found)
+
+    @property
+    def hard(self) -> tuple[Jump, ...]:
+        """The knots where the velocity jumps."""
+        return tuple(jump for jump in self.jumps if jump.order == 1)
 
     @property
     def continuity(self) -> int:

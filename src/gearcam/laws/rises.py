@@ -14,14 +14,15 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Final, Protocol
+from typing import ClassVar, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.laws.registry import Entry, hang
 from gearcam.numeric.piecewise import Piecewise, extremes
 from gearcam.tolerances import Tolerances
 
@@ -172,28 +173,8 @@ class RiseClaim:
     continuity: int
 
 
-@dataclass(frozen=True, kw_only=True)
-class RiseEntry:
-    """A rise in the registry.
-
-    Parameters
-    ----------
-    name : str
-        As in ``motion.law``.
-    parameters : type
-        Dataclass with a ``build`` method.
-    doc, continuity, source : str
-        One line each, for people.
-    claims : callable
-        Returns examples with what they must give.
-    """
-
-    name: str
-    parameters: type[Any]
-    doc: str
-    continuity: str
-    source: str
-    claims: Callable[[], tuple[RiseClaim, ...]]
+class RiseEntry(Entry[RiseClaim]):
+    """A rise in the registry; its name is that of ``motion.law``."""
 
 
 RISES: Final[dict[str, RiseEntry]] = {}
@@ -212,6 +193,4 @@ def register_rise(entry: RiseEntry) -> None:
     ValueError
         If its name is taken.
     """
-    if entry.name in RISES:
-        raise ValueError(f"rise {entry.name!r} is registered twice")
-    RISES[entry.name] = entry
+    hang(RISES, entry, "rise")

@@ -66,14 +66,31 @@ class Piecewise:
                 for v in jet.derivatives()
             ]
         index = np.searchsorted(self.knots[1:-1], flat, side="right")
-        result = np.empty((order + 1, flat.size))
-        for number, piece in enumerate(self.pieces):
+        return list(self.on_pieces(index, flat, order).reshape(order + 1, *x.shape))
+
+    def on_pieces(self, index: NDArray[np.int64], x: Array, order: int) -> Array:
+        """Return function and derivatives by given pieces, right at knots too.
+
+        Parameters
+        ----------
+        index : (n,) array of int
+            Numbers of the pieces.
+        x : (n,) array
+            Places in or at the ends of them.
+        order : int
+            Of the last derivative.
+
+        Returns
+        -------
+        (order + 1, n) array
+        """
+        result = np.empty((order + 1, x.size))
+        for number in np.flatnonzero(np.bincount(index)).tolist():
             here = np.flatnonzero(index == number)
-            if here.size:
-                jet = piece(Jet.variable(flat[here], order)) + self.offsets[number]
-                for k, values in enumerate(jet.derivatives()):
-                    result[k, here] = values
-        return list(result.reshape(order + 1, *x.shape))
+            jet = self.pieces[number](Jet.variable(x[here], order)) + self.offsets[number]
+            for k, values in enumerate(jet.derivatives()):
+                result[k, here] = values
+        return result
 
     def __call__(self, x: ArrayLike) -> Array:
         """Return the values at `x`."""
@@ -168,6 +185,31 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
     return Piecewise(knots=grid, pieces=closed, offsets=np.array(offsets))
 
 
+def places_between(knots: ArrayLike, samples: int = 192) -> Array:
+    """Return places in every interval between knots, both ends just inside.
+
+    Parameters
+    ----------
+    knots : (n + 1,) array
+        Rising.
+    samples : int
+        Places in all, at least a quarter of them in every interval.
+
+    Returns
+    -------
+    (n, k) array
+        Rising.
+    """
+    grid = np.asarray(knots, dtype=float)
+    width = np.diff(grid)
+    steps = np.linspace(1e-12, 1.0 - 1e-12, max(samples // len(width), samples // 4))
+    x = grid[:-1, None] + width[:, None] * steps
+    # of a narrow interval so small a share may round to the knot, which is another piece's
+    x[:, 0] = np.maximum(x[:, 0], np.nextafter(grid[:-1], np.inf))
+    x[:, -1] = np.minimum(x[:, -1], np.nextafter(grid[1:], -np.inf))
+    return x
+
+
 def extremes(
     function: Callable[[Array], tuple[Array, Array]], knots: ArrayLike, samples: int = 192
 ) -> list[tuple[Array, Array]]:
@@ -180,21 +222,14 @@ def extremes(
     knots : (n + 1,) array
         Between them the functions are smooth.
     samples : int
-        Points in all, at least a quarter of them on every interval, between which sign changes of
-        the slopes are sought.
+        Of the places between which sign changes of the slopes are sought (see `places_between`).
 
     Returns
     -------
     list of m (places, values)
         Candidates for the largest and smallest value, in rising order of place.
     """
-    grid = np.asarray(knots, dtype=float)
-    width = np.diff(grid)
-    steps = np.linspace(1e-12, 1.0 - 1e-12, max(samples // len(width), samples // 4))
-    x = grid[:-1, None] + width[:, None] * steps
-    # of a narrow interval so small a share may round to the knot, which is another piece's
-    x[:, 0] = np.maximum(x[:, 0], np.nextafter(grid[:-1], np.inf))
-    x[:, -1] = np.minimum(x[:, -1], np.nextafter(grid[1:], -np.inf))
+    x = places_between(knots, samples)
     _, slopes = function(x.ravel())
     slopes = slopes.reshape(-1, *x.shape)
     owner, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
@@ -203,7 +238,7 @@ def extremes(
         lambda t: function(t)[1][owner, np.arange(len(owner))],
         x[piece, cell],
         x[piece, cell + 1],
-        1e-8 * float(width.min()),
+        1e-8 * float(np.diff(knots).min()),
     )
     ends = x[:, [0, -1]].ravel()
     found = [np.sort(np.append(ends, roots[owner == k])) for k in range(len(slopes))]
