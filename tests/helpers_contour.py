@@ -116,7 +116,10 @@ def contour_of(pieces: list[Curve], tolerance: float) -> Contour:
         vertices.append(coarse.points[:-1])
         worst = max(worst, float(bow.max()))
     return Contour(
-        runs=tuple(runs), vertices=np.vstack(vertices), tolerance=tolerance, chord_error=worst
+        dense=lambda: tuple(runs),
+        vertices=np.vstack(vertices),
+        tolerance=tolerance,
+        chord_error=worst,
     )
 
 

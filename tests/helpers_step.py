@@ -68,7 +68,7 @@ def one_run(contour: Contour, *, joints: bool = True, doubled: bool = False) -> 
         points, tangents = (np.insert(v, ends[0], v[ends[0]], axis=0) for v in (points, tangents))
         ends = [ends[0], *(end + 1 for end in ends)]
     run = Run(points=points, tangents=tangents, joints=tuple(ends) if joints else ())
-    return replace(contour, runs=(run,))
+    return replace(contour, dense=lambda: (run,))
 
 
 def pieces(contour: Contour) -> tuple[int, int]:

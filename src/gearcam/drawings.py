@@ -126,11 +126,14 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
 
     match shape:
         case Contour():
-            runs = tuple(
-                replace(run, points=move(run.points), tangents=move(run.tangents, 0))
-                for run in shape.runs
+            return replace(
+                shape,
+                dense=lambda: tuple(
+                    replace(run, points=move(run.points), tangents=move(run.tangents, 0))
+                    for run in shape.runs
+                ),
+                vertices=move(shape.vertices),
             )
-            return replace(shape, runs=runs, vertices=move(shape.vertices))
         case Path():
             return replace(shape, points=move(shape.points))
         case Loop():

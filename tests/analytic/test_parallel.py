@@ -49,7 +49,7 @@ def finer(contour: Contour, count: int = 60) -> Contour:
         for run in contour.runs
     ]
     return Contour(
-        runs=tuple(runs),
+        dense=lambda: tuple(runs),
         vertices=contour.vertices,
         tolerance=contour.tolerance,
         chord_error=contour.chord_error,
@@ -266,7 +266,10 @@ def stadium() -> Contour:
         runs.append(Run(points=as_pairs(points), tangents=as_pairs(units), joints=(20, 920)))
         vertices.append(as_pairs(points[:-1]))
     return Contour(
-        runs=tuple(runs), vertices=np.vstack(vertices), tolerance=TOLERANCE, chord_error=1e-5
+        dense=lambda: tuple(runs),
+        vertices=np.vstack(vertices),
+        tolerance=TOLERANCE,
+        chord_error=1e-5,
     )
 
 
@@ -289,7 +292,7 @@ def test_joints_stay_where_rounding_cuts_runs() -> None:
     first = Run(points=as_pairs(points), tangents=as_pairs(units), joints=(80,))
     rest = finer(contour_of([line(30 + 10j, 30j), line(30j, 0j)], TOLERANCE))
     whole = Contour(
-        runs=(first, *rest.runs),
+        dense=lambda: (first, *rest.runs),
         vertices=np.vstack([as_pairs(points[:-1]), rest.vertices]),
         tolerance=TOLERANCE,
         chord_error=TOLERANCE,

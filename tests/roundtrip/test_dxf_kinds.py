@@ -124,7 +124,10 @@ def test_a_spline_that_leaves_the_curve_is_seen(monkeypatch: pytest.MonkeyPatch)
 def test_a_chain_with_a_gap_is_refused() -> None:
     contour = wheel().contour
     lost = Contour(
-        runs=contour.runs[:-1], vertices=contour.vertices, tolerance=TOLERANCE, chord_error=0.0
+        dense=lambda: contour.runs[:-1],
+        vertices=contour.vertices,
+        tolerance=TOLERANCE,
+        chord_error=0.0,
     )
     part = Part(name="gear1", contours=(lost,), width=8.0)
     with pytest.raises(ValueError, match="do not join"):

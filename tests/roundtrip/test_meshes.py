@@ -176,7 +176,7 @@ def test_vertices_that_fall_together_in_single_precision_stay_closed(kind: str) 
     plain = square_contour(200.0)
     corner = plain.vertices[0]
     vertices = np.vstack([corner - [0, 1e-7], corner - [1e-7, 0], plain.vertices[1:]])
-    contour = Contour(runs=plain.runs, vertices=vertices, tolerance=1e-3, chord_error=1e-7)
+    contour = Contour(dense=plain.dense, vertices=vertices, tolerance=1e-3, chord_error=1e-7)
     made = solid(Part(name="plate", contours=(contour,), width=10.0))
     assert len(made.vertices) == 10
     write, read = FORMATS[kind]

@@ -100,7 +100,7 @@ def test_a_piece_that_is_left_out_is_missed() -> None:
         points=np.vstack([first.points[:-1], second.points]),
         tangents=np.vstack([first.tangents[:-1], second.tangents]),
     )
-    fewer = plate(replace(contour, runs=(joined, *others)))
+    fewer = plate(replace(contour, dense=lambda: (joined, *others)))
     curved, straight = pieces(contour)
     assert sum(read(fewer, 1e-3).faces.values()) == curved + straight + 2 - 1
 

@@ -19,7 +19,9 @@ from helpers_contour import bore, gear_contour, square_contour
 def reverse(contour: Contour) -> Contour:
     """The same curve, clockwise."""
     runs = tuple(Run(points=r.points[::-1], tangents=-r.tangents[::-1]) for r in contour.runs[::-1])
-    return Contour(runs=runs, vertices=contour.vertices[::-1], tolerance=1e-3, chord_error=0.0)
+    return Contour(
+        dense=lambda: runs, vertices=contour.vertices[::-1], tolerance=1e-3, chord_error=0.0
+    )
 
 
 def test_area_and_volume_of_a_square_plate() -> None:

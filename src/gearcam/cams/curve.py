@@ -14,6 +14,7 @@ Depends on contact, mechanism, laws and numeric; numpy only.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,7 +63,18 @@ class CamCurve:
         order : int
             Of the jets, at most 2.
         """
-        found = self.program.derivatives(theta, 2 + order)
+        return self.contact_of(self.program.derivatives(theta, 2 + order), order)
+
+    def contact_of(self, found: Sequence[Array] | Array, order: int = 1) -> Contact:
+        """Return the contact from the lift and its derivatives.
+
+        Parameters
+        ----------
+        found : 3 + order arrays
+            ``s, s', s'', ...``, mm or rad.
+        order : int
+            Of the jets, at most 2.
+        """
         factors = (1.0, 1.0, 0.5)[: order + 1]
         s, ds, d2s = (Jet([f * found[k + j] for j, f in enumerate(factors)]) for k in range(3))
         return contact(self.mechanism, s, ds, d2s)

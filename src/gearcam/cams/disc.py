@@ -27,7 +27,6 @@ from gearcam.errors import InfeasibleError
 from gearcam.laws.lift import Program
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.piecewise import extremes
 from gearcam.numeric.sampling import Sampler
 
 CHORD_TOLERANCE = 1e-3
@@ -41,6 +40,15 @@ _STANDSTILL = 1e-9
 
 _OVERSAMPLING = 8
 """Dense points per chord: their own chord error is 1/64 of the polygon's."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Kept:
+    """What trimming leaves: as `drawn`, in a `sampler`, and `corners` of an unmirrored cam."""
+
+    drawn: Strokes
+    sampler: Sampler
+    corners: tuple[Corner, ...]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -134,20 +142,31 @@ class DiscCam:
         return [(parts[-1][0], end) for parts, end in zip(joined, ends, strict=True)]
 
     @cached_property
-    def _kept(self) -> tuple[Strokes, tuple[Corner, ...]]:
+    def _kept(self) -> _Kept:
         whole = strokes(self.curve, self.mechanism.radius)
         size = self.mechanism.least + self.program.range[1] * self.mechanism.lever
         kept, corners, left = without_small_loops(whole, self.undercut, size)
-        if left or not star_shaped(kept):
+        drawn = self._drawn(kept)
+        sampler = self._sampled(drawn)
+        if left or not star_shaped(*sampler.probes):
             kept, more = trimmed(kept, left, self.tolerance)
             starts = set(kept.states(np.arange(len(kept.start)), kept.start)[0].tolist())
             corners = (*(corner for corner in corners if corner.after in starts), *more)
-        return begun(kept), tuple(sorted(corners, key=lambda corner: corner.before))
+            drawn = self._drawn(kept)
+            sampler = self._sampled(drawn)
+        corners = tuple(sorted(corners, key=lambda corner: corner.before))
+        return _Kept(drawn=drawn, sampler=sampler, corners=corners)
+
+    def _drawn(self, kept: Strokes) -> Strokes:
+        return replace(begun(kept), curve=replace(self.curve, mirrored=self.clockwise))
+
+    def _sampled(self, drawn: Strokes) -> Sampler:
+        return Sampler(curves=drawn, tolerance=self.tolerance)
 
     @property
     def corners(self) -> tuple[Corner, ...]:
         """Where trimming has left corners, as the cam turns counter-clockwise."""
-        return self._kept[1]
+        return self._kept.corners
 
     @cached_property
     def lost(self) -> tuple[Extreme, ...]:
@@ -162,24 +181,21 @@ class DiscCam:
     @cached_property
     def size(self) -> Size:
         """Perimeter and area of the profile."""
-        return size_of(self._kept[0])
-
-    def _drawn(self, drawn: Strokes) -> Strokes:
-        return replace(drawn, curve=replace(self.curve, mirrored=self.clockwise))
+        return size_of(self._kept.drawn)
 
     @property
     def nearest_flat(self) -> float:
         """Least distance of the axis from the inside of a straight piece, mm; inf without one."""
-        kept = self._kept[0]
         if not self.mechanism.flat:
             return math.inf
+        kept = self._kept.drawn
         inside = np.flatnonzero(kept.jump & (kept.start < 0.0) & (kept.end > 0.0))
         return float(np.abs(kept.at(inside, np.zeros(len(inside)))[0]).min(initial=math.inf))
 
-    @cached_property
+    @property
     def sampler(self) -> Sampler:
         """The profile with the density of points that the tolerance asks for."""
-        return Sampler(curves=self._drawn(self._kept[0]), tolerance=self.tolerance)
+        return self._kept.sampler
 
     @cached_property
     def contour(self) -> Contour:
@@ -200,14 +216,13 @@ class DiscCam:
         """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
         if self.mechanism.flat or self.mechanism.radius == 0.0:
             return self.contour
-        drawn = self._drawn(begun(strokes(self.curve, 0.0)))
-        return self._contour(Sampler(curves=drawn, tolerance=self.tolerance))
+        return self._contour(self._sampled(self._drawn(strokes(self.curve, 0.0))))
 
     def _contour(self, sampler: Sampler) -> Contour:
         _, points, error = sampler.chords
         clockwise = not self.clockwise  # theta draws against the cam's turning
         return Contour(
-            runs=sampler.runs(_OVERSAMPLING, reverse=clockwise),
+            dense=lambda: sampler.runs(_OVERSAMPLING, reverse=clockwise),
             vertices=as_pairs(points[::-1] if clockwise else points),
             tolerance=self.tolerance,
             chord_error=error,
@@ -228,7 +243,7 @@ class DiscCam:
         points, normals : (n,) complex arrays, mm and 1
             Touched at those angles, with the outward normals of the metal.
         """
-        kept = self._drawn(self._kept[0])
+        kept = self._kept.drawn
         theta = 2.0 * math.pi * np.arange(count) / count
         sweeps = np.flatnonzero(~kept.jump)
         inside = (kept.start[sweeps] <= theta[:, None]) & (theta[:, None] < kept.end[sweeps])
@@ -330,7 +345,7 @@ def _demand_swing(made: DiscCam, low: float, high: float) -> None:
             unit="deg",
             nearest="a lift within the limit",
         )
-    if mechanism.flat and not (slowest := _slowest(made.program)) > -1.0 + _STANDSTILL:
+    if mechanism.flat and not (slowest := made.program.range_of(1)[0]) > -1.0 + _STANDSTILL:
         raise InfeasibleError(
             "the face swings down faster than the cam turns: no profile can carry it",
             where="motion",
@@ -338,14 +353,3 @@ def _demand_swing(made: DiscCam, low: float, high: float) -> None:
             limit=-1.0,
             nearest="the limit is -1 rad of swing per rad of the cam: a longer return",
         )
-
-
-def _slowest(program: Program) -> float:
-    """Return the smallest velocity of a program, per rad."""
-
-    def velocity(theta: Array) -> tuple[Array, Array]:
-        _, ds, d2s = program.lift.derivatives(theta, 2)
-        return ds[None], d2s[None]
-
-    ((_, values),) = extremes(velocity, program.cuts)
-    return float(values.min())

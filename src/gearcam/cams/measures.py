@@ -17,7 +17,7 @@ import numpy as np
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import Array, CamCurve, Strokes
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes, places_between
+from gearcam.numeric.piecewise import extremes, extremes_among
 from gearcam.numeric.roots import bracketed_root
 
 _INSET = 1e-11
@@ -110,7 +110,7 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     """
     if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
         return []
-    knots, cuts = curve.program.knots, curve.program.cuts
+    knots, cuts, survey = curve.program.knots, curve.program.cuts, curve.program.survey
     back = (jump.theta for jump in curve.program.hard if jump.after < jump.before)
     found = [(theta, theta) for theta in back]
 
@@ -118,9 +118,10 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         value, slope = curve.contact(theta).speed.derivatives()[:2]
         return value[None], slope[None]
 
-    if _stays_positive(both, cuts):
+    seen = curve.contact_of(survey.found).speed.derivatives()[:2]
+    if _stays_positive(survey.places, *seen):
         return found
-    ((places, values),) = extremes(both, cuts)
+    ((places, values),) = extremes_among(both, survey.places, seen[0][None], seen[1][None])
     for k in range(len(places) - 1):
         pair, sign = places[k : k + 2], values[k : k + 2] < 0.0
         across = np.searchsorted(cuts, pair[0], side="right") != np.searchsorted(
@@ -142,15 +143,13 @@ def _at_knot(theta: float, knots: Array) -> float:
     return nearest if abs(nearest - theta) <= _INSET else theta
 
 
-def _stays_positive(both: Callable[[Array], tuple[Array, Array]], knots: Array) -> bool:
-    """Return whether no tangent to a function reaches zero within its cell of a fine grid.
+def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
+    """Return whether no tangent to a function reaches zero within its cell of a fine grid, (n, k).
 
     Between two places a function lies above the lower of its tangents where it has a minimum, and
     above its ends elsewhere.
     """
-    x = places_between(knots)
-    values, slopes = both(x.ravel())
-    cell = np.repeat(np.diff(x, axis=1).max(axis=1), x.shape[1])
+    cell = np.diff(places, axis=1).max(axis=1, keepdims=True)
     return bool(np.all(values - np.abs(slopes) * cell > 0.0))
 
 

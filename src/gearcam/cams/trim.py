@@ -76,18 +76,14 @@ class _Chords:
     points: Plane
 
 
-def star_shaped(strokes: Strokes) -> bool:
+def star_shaped(points: Plane, tangents: Plane) -> bool:
     """Return whether a curve is seen whole from the axis: it then cannot cross itself.
 
     Parameters
     ----------
-    strokes : Strokes
-        Drawn forward everywhere.
+    points, tangents : complex arrays, mm and 1
+        All along the curve, which is drawn forward everywhere.
     """
-    index = np.repeat(np.arange(len(strokes.start)), _PROBES)
-    share = np.tile(np.linspace(0.0, 1.0, _PROBES), len(strokes.start))
-    start = strokes.start[index]
-    points, tangents = strokes.at(index, start + share * (strokes.end[index] - start))
     side = np.imag(np.conj(points) * tangents)
     return bool(np.all(side > 0.0) or np.all(side < 0.0))
 

@@ -140,7 +140,7 @@ class Outline:
     def contour(self) -> Contour:
         """The outline with dense points and tangents, for arcs, and its polygon."""
         return Contour(
-            runs=self.sampler.runs(self.oversampling, reverse=self._reversed) + self.body,
+            dense=lambda: self.sampler.runs(self.oversampling, reverse=self._reversed) + self.body,
             vertices=self.points,
             tolerance=self.tolerance,
             chord_error=self.chord_error,

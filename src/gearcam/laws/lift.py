@@ -30,7 +30,7 @@ from gearcam.laws.phases_of_lift import (
 )
 from gearcam.laws.rises import Rise
 from gearcam.numeric.jets import Jet, polynomial
-from gearcam.numeric.piecewise import Piecewise, extremes
+from gearcam.numeric.piecewise import Piecewise, extremes_among, places_between
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -38,8 +38,8 @@ Array = NDArray[np.float64]
 _JUMP = 1e-9
 """Jump of a derivative that counts, in its largest value: far above rounding."""
 
-_PROBES = 9
-"""Places between knots at which the size of derivatives is known well enough for that."""
+_INNER = slice(5, -5, 6)
+"""Surveyed places at which the size of derivatives is known well enough for that."""
 
 _TURN = 2.0 * math.pi
 
@@ -74,6 +74,26 @@ class Jump:
     order: int
     before: float
     after: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Survey:
+    """A lift and its derivatives to the fourth, all at once: most questions need no more.
+
+    Parameters
+    ----------
+    places : (n, k) array, rad
+        In every stretch between cuts, both ends just inside.
+    found : (5, n, k) array
+        Lift and derivatives there.
+    before, after : (m, 5) arrays
+        The same on both sides of each knot but the last.
+    """
+
+    places: Array
+    found: Array
+    before: Array
+    after: Array
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -126,53 +146,70 @@ class Program:
     @cached_property
     def peaks(self) -> tuple[float, float, float]:
         """Largest absolute velocity, acceleration and jerk between knots, per rad, rad^2, rad^3."""
-
-        def values(theta: Array) -> tuple[Array, Array]:
-            found = np.array(self.lift.derivatives(theta, 4))
-            return found[1:4], found[2:5]
-
-        at_knots = np.abs(self._sides).max(axis=(0, 1))[1:]
+        ranges = (np.abs(self.range_of(order)).max() for order in (1, 2, 3))
         first, second, third = (
-            float(max(np.abs(found).max(), knots))
-            for (_, found), knots in zip(extremes(values, self.cuts), at_knots, strict=True)
+            float(max(inside, knots))
+            for inside, knots in zip(ranges, self._at_knots[1:4], strict=True)
         )
         return first, second, third
 
     @cached_property
-    def _sides(self) -> list[tuple[list[float], list[float]]]:
-        """Lift and derivatives to the third, before and after each knot but the last."""
-        last = len(self.knots) - 1
-        return [
-            (self.lift.side(right or last, -1, 3), self.lift.side(right, 1, 3))
-            for right in range(last)
-        ]
+    def survey(self) -> Survey:
+        """The lift and its derivatives over the turn."""
+        places, pieces = places_between(self.cuts), np.arange(len(self.knots) - 1)
+        owner = np.repeat(np.searchsorted(self.knots, places[:, 0]) - 1, places.shape[1])
+        index = np.concatenate([pieces, pieces, owner])
+        theta = np.concatenate([self.knots[1:], self.knots[:-1], places.ravel()])
+        found = self.lift.on_pieces(index, theta, 4)
+        before, after, inside = np.split(found, [len(pieces), 2 * len(pieces)], axis=1)
+        return Survey(
+            places=places,
+            found=inside.reshape(5, *places.shape),
+            before=np.roll(before.T, 1, axis=0),
+            after=after.T,
+        )
+
+    @property
+    def _at_knots(self) -> Array:
+        """Largest absolute derivatives at knots, (5,)."""
+        sides = np.abs([self.survey.before, self.survey.after])
+        return sides.max(axis=(0, 1))
+
+    def range_of(self, order: int) -> tuple[float, float]:
+        """Return the smallest and largest derivative of an `order` to 3 between knots."""
+        survey = self.survey
+
+        def values(theta: Array) -> tuple[Array, Array]:
+            found = np.array(self.lift.derivatives(theta, order + 1))
+            return found[[order]], found[[order + 1]]
+
+        seen = survey.found[[order]], survey.found[[order + 1]]
+        ((_, extremes),) = extremes_among(values, survey.places, *seen)
+        return float(extremes.min()), float(extremes.max())
 
     @cached_property
     def range(self) -> tuple[float, float]:
         """Smallest and largest lift, mm or rad."""
-        (_, low), (_, high) = self.lift.extremes_over(self.cuts)
-        return low, high
+        return self.range_of(0)
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
         """The lowest derivative that jumps at each knot, the turn's ends counting as one."""
-        steps = np.diff(self.cuts) * np.linspace(0.0, 1.0, _PROBES)[1:-1, None]
-        inside = np.abs(self.lift.derivatives((self.cuts[:-1] + steps).ravel(), 4))
-        inside = inside.max(axis=1)
-        scales = np.maximum(inside[:4], np.abs(self._sides).max(axis=(0, 1)))
+        survey = self.survey
+        inside = np.abs(survey.found[..., _INNER]).max(axis=(1, 2))
+        scales = np.maximum(inside, self._at_knots)[:4]
         # a knot is rounded, and a derivative seen on the wrong side of it by its own slope
-        rounding = _KNOT * np.append(scales[1:], inside[4])
-        found = []
-        for right, (before, after) in enumerate(self._sides):
-            for order in (1, 2, 3):
-                limit = _JUMP * scales[order] + rounding[order]
-                if abs(after[order] - before[order]) > limit:
-                    place = float(self.knots[right])
-                    found.append(
-                        Jump(theta=place, order=order, before=before[order], after=after[order])
-                    )
-                    break
-        return tuple(found)
+        limits = _JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
+        jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
+        return tuple(
+            Jump(
+                theta=float(self.knots[knot]),
+                order=(order := 1 + int(jumping[knot].argmax())),
+                before=float(survey.before[knot, order]),
+                after=float(survey.after[knot, order]),
+            )
+            for knot in np.flatnonzero(jumping.any(axis=1)).tolist()
+        )
 
     @property
     def hard(self) -> tuple[Jump, ...]:

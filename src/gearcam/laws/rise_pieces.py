@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from itertools import zip_longest
-from math import comb
+from math import comb, factorial
 from typing import Final
 
 import numpy as np
@@ -28,18 +28,21 @@ _NOTHING: Final = 1e-12
 _SERIES: Final = 1.5
 """Argument below which ``x - sin(x)`` is summed as a series: above, it loses one digit at most."""
 
-_TERMS: Final = 11
-"""Terms of that series; the next one is below 1e-17 of the sum."""
+_POWERS: Final = tuple((-1) ** k / factorial(2 * k + 3) for k in range(10, -1, -1))
+"""Coefficients of that series over ``x^3``, of falling powers of ``x^2``; the next one is below
+1e-18 of the sum."""
 
 
 def lag(x: Jet) -> Jet:
     """``x - sin(x)``, with all its digits where x is small."""
     direct = x - sin(x)
     value, half = x.c[0], np.sin(0.5 * x.c[0])
-    square, series = value * value, np.ones_like(value)
-    for k in range(_TERMS, 0, -1):
-        series = 1.0 - square / ((2 * k + 2) * (2 * k + 3)) * series
-    exact = np.where(np.abs(value) < _SERIES, value * square / 6.0 * series, direct.c[0])
+    square = value * value
+    series = _POWERS[0] * square + _POWERS[1]
+    for power in _POWERS[2:]:
+        series *= square
+        series += power
+    exact = np.where(np.abs(value) < _SERIES, series * square * value, direct.c[0])
     slope = [2.0 * half * half * rate for rate in x.c[1:2]]
     return Jet([exact, *slope, *direct.c[2:]])
 
@@ -49,15 +52,13 @@ def reflected(shape: Shape) -> Shape:
     return lambda x: 1.0 - shape(1.0 - x)
 
 
-def split(place: float, left: Shape, right: Shape) -> Shape:
-    """Return one function from two ways to compute it, each exact on one side of a place.
+def turned(shape: Shape) -> Shape:
+    """Return a function that is its own reflection, computed from the nearer end of the square.
 
     Parameters
     ----------
-    place : float
-        Up to which `left` counts.
-    left, right : callable
-        ``shape(jet) -> jet``, the same function.
+    shape : callable
+        ``shape(jet) -> jet``, exact up to the middle.
 
     Returns
     -------
@@ -65,9 +66,10 @@ def split(place: float, left: Shape, right: Shape) -> Shape:
     """
 
     def function(x: Jet) -> Jet:
-        first = x.c[0] <= place
-        both = zip(left(x).c, right(x).c, strict=True)
-        return Jet([np.where(first, before, after) for before, after in both])
+        way = np.where(x.c[0] <= 0.5, 1.0, -1.0)
+        nearest = Jet([np.where(way > 0.0, x.c[0], 1.0 - x.c[0]), *(way * c for c in x.c[1:])])
+        value, *slopes = shape(nearest).c
+        return Jet([np.where(way > 0.0, value, 1.0 - value), *(way * c for c in slopes)])
 
     return function
 
@@ -92,7 +94,7 @@ def from_half(sectors: Iterable[tuple[float, Shape]]) -> Piecewise:
     shapes = [shape for _, shape in kept]
     inner: list[Shape] = []
     if middle[0] > _NOTHING:
-        inner = [split(0.5, middle[1], reflected(middle[1]))]
+        inner = [turned(middle[1])]
         knots = np.concatenate([[0.0], ends, 1.0 - ends[::-1], [1.0]])
     else:
         knots = np.concatenate([[0.0], ends[:-1], [0.5], 1.0 - ends[-2::-1], [1.0]])

@@ -7,6 +7,7 @@ curve, no chord farther from it than the tolerance.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -67,8 +68,9 @@ class Contour:
 
     Parameters
     ----------
-    runs : tuple of Run
-        In order; each begins where the one before ends.
+    dense : callable
+        Returns the runs in order, each beginning where the one before ends; called when they are
+        asked for, since polygons do without.
     vertices : (k, 2) array, mm
         The adaptive polygon, first point not repeated.
     tolerance : float, mm
@@ -77,10 +79,15 @@ class Contour:
         The chord error measured against the dense runs.
     """
 
-    runs: tuple[Run, ...]
+    dense: Callable[[], tuple[Run, ...]]
     vertices: Array
     tolerance: float
     chord_error: float
+
+    @cached_property
+    def runs(self) -> tuple[Run, ...]:
+        """The dense runs, in order."""
+        return self.dense()
 
     @cached_property
     def area(self) -> float:

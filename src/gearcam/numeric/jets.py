@@ -8,7 +8,7 @@ algebra. Outside a function's domain the values are nan or inf, for the caller t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
 import numpy as np
@@ -127,12 +127,21 @@ class Jet:
 
 
 def _convolve(a: Sequence[Array | float], b: Sequence[Array | float], k: int) -> Array | float:
-    return sum(a[j] * b[k - j] for j in range(k + 1) if not _is_zero(a[j], b[k - j]))
+    return _total(
+        a[j] * b[k - j] for j in range(k + 1) if not (_is_zero(a[j]) or _is_zero(b[k - j]))
+    )
 
 
-def _is_zero(*factors: Array | float) -> bool:
-    """Whether a product is zero at all points, without looking at arrays."""
-    return any(isinstance(factor, float) and factor == 0.0 for factor in factors)
+def _total(terms: Iterable[Array | float]) -> Array | float:
+    total: Array | float = 0.0
+    for term in terms:
+        total = term if _is_zero(total) else total + term
+    return total
+
+
+def _is_zero(value: Array | float) -> bool:
+    """Whether a coefficient is zero at all points, without looking at arrays."""
+    return isinstance(value, float) and value == 0.0
 
 
 def _chain(jet: Jet, value: Array | float, slope: Callable[[Jet], Jet]) -> Jet:
@@ -144,7 +153,7 @@ def _chain(jet: Jet, value: Array | float, slope: Callable[[Jet], Jet]) -> Jet:
             terms = (
                 j * jet.c[j] * inner.c[k - j] for j in range(1, k + 1) if not _is_zero(jet.c[j])
             )
-            result.append(sum(terms) / k)
+            result.append(_total(terms) / k)
     return Jet(result)
 
 
@@ -178,8 +187,8 @@ def _oscillate(x: Jet, sine: bool) -> Jet:
         return Jet(f)
     for k in range(1, x.order + 1):
         weights = [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
-        f.append(sum(w * g[j] for w, j in weights))
-        g.append(-sum(w * f[j] for w, j in weights))
+        f.append(_total(w * g[j] for w, j in weights))
+        g.append(-_total(w * f[j] for w, j in weights))
     return Jet(f)
 
 

@@ -230,16 +230,42 @@ def extremes(
         Candidates for the largest and smallest value, in rising order of place.
     """
     x = places_between(knots, samples)
-    _, slopes = function(x.ravel())
-    slopes = slopes.reshape(-1, *x.shape)
+    values, slopes = (found.reshape(-1, *x.shape) for found in function(x.ravel()))
+    return extremes_among(function, x, values, slopes)
+
+
+def extremes_among(
+    function: Callable[[Array], tuple[Array, Array]], x: Array, values: Array, slopes: Array
+) -> list[tuple[Array, Array]]:
+    """Find the same from values and slopes that are known already.
+
+    Parameters
+    ----------
+    function : callable
+        As of `extremes`.
+    x : (n, k) array
+        Places in n intervals, as `places_between` gives them.
+    values, slopes : (m, n, k) arrays
+        What the functions are there.
+
+    Returns
+    -------
+    list of m (places, values)
+    """
     owner, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
+    numbers = np.arange(len(owner))
     # An extreme is flat: a place good to 1e-8 of an interval gives its value to rounding.
     roots = bracketed_root(
-        lambda t: function(t)[1][owner, np.arange(len(owner))],
+        lambda t: function(t)[1][owner, numbers],
         x[piece, cell],
         x[piece, cell + 1],
-        1e-8 * float(np.diff(knots).min()),
+        1e-8 * float((x[:, -1] - x[:, 0]).min()),
     )
-    ends = x[:, [0, -1]].ravel()
-    found = [np.sort(np.append(ends, roots[owner == k])) for k in range(len(slopes))]
-    return [(places, function(places)[0][k]) for k, places in enumerate(found)]
+    tops = function(roots)[0][owner, numbers] if roots.size else roots
+    found = []
+    for k in range(len(slopes)):
+        places = np.append(x[:, [0, -1]], roots[owner == k])
+        heights = np.append(values[k][:, [0, -1]], tops[owner == k])
+        order = np.argsort(places, kind="stable")
+        found.append((places[order], heights[order]))
+    return found

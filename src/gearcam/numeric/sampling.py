@@ -99,13 +99,18 @@ class Sampler:
     closed: bool = True
 
     @cached_property
-    def density(self) -> Array:
-        """J from the start at ``_PROBES`` places a curve, rising; one more for the end."""
+    def probes(self) -> tuple[Complex, Complex]:
+        """Points and tangents at even places of every curve and at its ends, a curve a line."""
         count = len(self.curves.start)
-        place = np.arange(count)[:, None] + np.linspace(0.0, 1.0, _PROBES + 1)
         index = np.repeat(np.arange(count), _PROBES + 1)
         shares = np.tile(np.linspace(0.0, 1.0, _PROBES + 1), count)
-        points, tangents = (v.reshape(place.shape) for v in self._along(index, shares))
+        points, tangents = self._along(index, shares)
+        return points.reshape(count, -1), tangents.reshape(count, -1)
+
+    @cached_property
+    def density(self) -> Array:
+        """J from the start at ``_PROBES`` places a curve, rising; one more for the end."""
+        points, tangents = self.probes
         turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
         chords = np.abs(np.diff(points, axis=1))
         steps = np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()

@@ -106,7 +106,7 @@ def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
     thinned: Any = simplify(lines, _VERTICES * old.tolerance, preserve_topology=False)
     vertices = np.vstack([get_coordinates(line)[:-1] for line in thinned])
     contour = Contour(
-        runs=tuple(real),
+        dense=lambda: tuple(real),
         vertices=vertices,
         tolerance=old.tolerance,
         chord_error=_VERTICES * old.tolerance,
