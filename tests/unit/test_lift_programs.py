@@ -39,11 +39,10 @@ def state(made: Program, theta: float, side: int) -> np.ndarray:
     knots = made.knots
     number = int(np.argmin(np.abs(knots - theta)))
     assert abs(knots[number] - theta) < 1e-12
-    if side < 0 and number == 0:
-        number = len(knots) - 1
-    if side > 0 and number == len(knots) - 1:
-        number = 0
-    return np.array(made.lift.side(number, side, 3))
+    last = len(knots) - 1
+    piece = (number if side > 0 else number - 1) % last
+    knot = knots[piece if side > 0 else piece + 1]
+    return made.lift.on_pieces(np.array([piece]), np.array([knot]), 3)[:, 0]
 
 
 # --- closure and places ---------------------------------------------------------------------------

@@ -10,10 +10,9 @@ Source: 000 section 3.3, eqs. (3.3)-(3.5).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,9 +27,16 @@ from gearcam.laws.phases_of_lift import (
     levels,
     program_problems,
 )
-from gearcam.laws.rises import Rise
-from gearcam.numeric.jets import Jet, polynomial
-from gearcam.numeric.piecewise import Piecewise, extremes_among, places_between
+from gearcam.laws.placed import Place, PlacedLaws, placed
+from gearcam.laws.rises import Rise, RiseParameters
+from gearcam.numeric.jets import polynomial
+from gearcam.numeric.piecewise import (
+    Piece,
+    Piecewise,
+    extremes_among,
+    piecewise,
+    places_between,
+)
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -42,6 +48,9 @@ _INNER = slice(5, -5, 6)
 """Surveyed places at which the size of derivatives is known well enough for that."""
 
 _TURN = 2.0 * math.pi
+
+_STILL = piecewise([0.0, 1.0], [Piece(lambda t: 0.0 * t)])
+"""The law of a dwell."""
 
 _KNOT = 4.0 * np.finfo(float).eps * _TURN
 """Rounding of a knot, rad."""
@@ -102,7 +111,7 @@ class Program:
 
     Parameters
     ----------
-    lift : Piecewise
+    lift : PlacedLaws
         s over ``[0, 2*pi]``, mm or rad.
     stretches : tuple of Stretch
         Its phases; a segment counts as a rise or return by its direction.
@@ -110,7 +119,7 @@ class Program:
         The knots, and more places where a law bends sharply: between them extremes are sought.
     """
 
-    lift: Piecewise
+    lift: PlacedLaws
     stretches: tuple[Stretch, ...]
     cuts: Array
 
@@ -254,63 +263,44 @@ def make_program(
     angles[-1] = _TURN
     heights = levels(phases)
     heights[-1] = 0.0
-    shapes: list[Any] = [
-        phase.shape.build(tolerances) if isinstance(phase, RisePhase) else None for phase in phases
-    ]
-    builder = _Builder(angles=angles, heights=heights)
-    stretches = []
-    for number, (phase, shape) in enumerate(zip(phases, shapes, strict=True)):
-        start, end = float(angles[number]), float(angles[number + 1])
+    shapes = [phase.shape for phase in phases if isinstance(phase, RisePhase)]
+    rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
+    frame = _Frame(phases=phases, angles=angles, heights=heights, rises=rises)
+    places: list[Place] = []
+    stretches, cuts = [], []
+    for number, phase in enumerate(phases):
         match phase:
             case DwellPhase():
                 kind = "dwell"
-                builder.add(number, lambda t: 0.0 * t, (0.0, 1.0), 0.0)
+                places.append(frame.whole(number, _STILL, 0.0))
             case SegmentPhase():
-                kind = "rise" if heights[number + 1] >= heights[number] else "return"
-                before = (number - 1) % len(phases)
-                state = _end_state(phases[before], shapes[before], builder, before)
-                builder.add_segment(number, state, phase.end[1:])
+                kind = "rise" if frame.rise(number) >= 0.0 else "return"
+                places.append(frame.whole(number, frame.segment(number), 1.0))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
-                builder.add_law(number, shape)
+                places += frame.law(number, rises[phase.shape])
+                cuts.append(_cuts(places[-1], rises[phase.shape]))
+        start, end = float(angles[number]), float(angles[number + 1])
         stretches.append(Stretch(kind=kind, start=start, end=end))
-    cuts = np.unique(builder.knots + builder.cuts)
-    return Program(lift=builder.made, stretches=tuple(stretches), cuts=cuts)
+    lift = placed(places)
+    cuts = np.unique(np.concatenate([lift.knots, *cuts]))
+    return Program(lift=lift, stretches=tuple(stretches), cuts=cuts)
 
 
-def _end_state(
-    phase: Phase, shape: Rise | None, builder: _Builder, number: int
-) -> tuple[float, float]:
-    """Return velocity and acceleration at the end of a phase: its laws are fixed by themselves."""
-    if isinstance(phase, SegmentPhase):
-        return phase.end[1:]
-    if shape is None:
-        return 0.0, 0.0
-    rise, width = builder.rise(number), builder.width(number)
-    if shape.mirrored and rise < 0.0:
-        velocity, acceleration, _ = shape.start
-        return rise * velocity / width, -rise * acceleration / width**2
-    velocity, acceleration, _ = shape.end
-    return rise * velocity / width, rise * acceleration / width**2
+def _cuts(place: Place, rise: Rise) -> Array:
+    """Return where a law bends sharply in its place."""
+    cuts = np.array([]) if rise.cuts is None else rise.cuts
+    return place.origin + place.width * cuts[(cuts > 0.0) & (cuts < 1.0)]
 
 
-@dataclass(eq=False)
-class _Builder:
-    """Pieces of a lift, put together phase by phase.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Frame:
+    """Phases with their places: ends of the `angles`, rad, `heights` there, laws by their shape."""
 
-    Parameters
-    ----------
-    angles, heights
-        Ends of the phases, rad, and lifts there.
-    knots, pieces, cuts
-        What is there already.
-    """
-
+    phases: Sequence[Phase]
     angles: Array
     heights: list[float]
-    knots: list[float] = field(default_factory=lambda: [0.0])
-    pieces: list[Callable[[Jet], Jet]] = field(default_factory=list)
-    cuts: list[float] = field(default_factory=list)
+    rises: Mapping[RiseParameters, Rise]
 
     def width(self, number: int) -> float:
         return float(self.angles[number + 1] - self.angles[number])
@@ -318,47 +308,39 @@ class _Builder:
     def rise(self, number: int) -> float:
         return self.heights[number + 1] - self.heights[number]
 
-    def add(
-        self, number: int, shape: Callable[[Jet], Jet], part: tuple[float, float], scale: float
-    ) -> None:
-        """Add a piece of a phase: `part` of its width, lift above its start over `scale`."""
-        start, width, base = float(self.angles[number]), self.width(number), self.heights[number]
+    def backwards(self, number: int, rise: Rise) -> bool:
+        """Whether a law comes down by running backwards."""
+        return rise.mirrored and self.rise(number) < 0.0
 
-        def piece(theta: Jet) -> Jet:
-            return scale * shape((theta - start) * (1.0 / width)) + base
+    def whole(self, number: int, law: Piecewise, scale: float) -> Place:
+        """Return a law without knots that begins where a phase does."""
+        start, end = self.angles[number : number + 2].tolist()
+        base, width = self.heights[number], self.width(number)
+        return Place(law=law, part=0, end=end, origin=start, width=width, base=base, scale=scale)
 
-        self.pieces.append(piece)
-        last = part[1] >= 1.0
-        self.knots.append(float(self.angles[number + 1]) if last else start + part[1] * width)
+    def law(self, number: int, rise: Rise) -> list[Place]:
+        """Return the pieces of a law in the place of a phase."""
+        place = self.whole(number, rise.function, self.rise(number))
+        parts = range(len(rise.function.pieces))
+        if self.backwards(number, rise):
+            parts = parts[::-1]
+            place = replace(
+                place,
+                origin=place.end,
+                width=-place.width,
+                base=self.heights[number + 1],
+                scale=-place.scale,
+            )
+        inner = np.sort(place.origin + place.width * rise.function.knots[1:-1]).tolist()
+        return [
+            replace(place, part=part, end=end)
+            for part, end in zip(parts, [*inner, place.end], strict=True)
+        ]
 
-    def add_law(self, number: int, shape: Rise) -> None:
-        """Add a law; a mirrored one comes down by running backwards."""
-        function, rise = shape.function, self.rise(number)
-        pieces = list(zip(function.pieces, function.offsets.tolist(), strict=True))
-        knots = function.knots
-        backwards = shape.mirrored and rise < 0.0
-        if shape.cuts is not None:
-            shares = 1.0 - shape.cuts if backwards else shape.cuts
-            inner = shares[(shares > 0.0) & (shares < 1.0)]
-            self.cuts += (float(self.angles[number]) + self.width(number) * inner).tolist()
-        if backwards:
-            pieces, knots = pieces[::-1], 1.0 - knots[::-1]
-        for k, (piece, offset) in enumerate(pieces):
-
-            def forward(t: Jet, piece: Callable[[Jet], Jet] = piece, c: float = offset) -> Jet:
-                return piece(t) + c
-
-            def backward(t: Jet, piece: Callable[[Jet], Jet] = piece, c: float = offset) -> Jet:
-                return 1.0 - (piece(1.0 - t) + c)
-
-            part = float(knots[k]), float(knots[k + 1])
-            self.add(number, backward if backwards else forward, part, rise)
-
-    def add_segment(
-        self, number: int, start: tuple[float, float], end: tuple[float, float]
-    ) -> None:
-        """Add the quintic from the state before to the state at the end of a phase."""
+    def segment(self, number: int) -> Piecewise:
+        """Return the quintic from the state before to the state at the end of a phase."""
         width, rise = self.width(number), self.rise(number)
+        start, end = self.end_state((number - 1) % len(self.phases)), self.end_state(number)
         v0, a0, v1, a1 = start[0] * width, start[1] * width**2, end[0] * width, end[1] * width**2
         # what is left at the end after the start's own parabola
         p, v, a = rise - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
@@ -368,12 +350,18 @@ class _Builder:
             6 * p - 3 * v + 0.5 * a,
         )
         shape = polynomial([0.0, v0, 0.5 * a0, cubic, quartic, quintic])
-        self.add(number, shape, (0.0, 1.0), 1.0)
+        return piecewise([0.0, 1.0], [Piece(shape)])
 
-    @property
-    def made(self) -> Piecewise:
-        return Piecewise(
-            knots=np.array(self.knots),
-            pieces=tuple(self.pieces),
-            offsets=np.zeros(len(self.pieces)),
-        )
+    def end_state(self, number: int) -> tuple[float, float]:
+        """Return velocity and acceleration at the end of a phase: its law fixes them by itself."""
+        phase = self.phases[number]
+        if isinstance(phase, SegmentPhase):
+            return phase.end[1:]
+        if not isinstance(phase, RisePhase):
+            return 0.0, 0.0
+        law, rise, width = self.rises[phase.shape], self.rise(number), self.width(number)
+        if self.backwards(number, law):
+            velocity, acceleration, _ = law.start
+            return rise * velocity / width, -rise * acceleration / width**2
+        velocity, acceleration, _ = law.end
+        return rise * velocity / width, rise * acceleration / width**2
