@@ -36,8 +36,8 @@ class Contact:
 
     Parameters
     ----------
-    pressure : Jet, rad
-        Signed pressure angle.
+    across, along : Jet
+        Velocities whose ratio is the tangent of the pressure angle.
     turning : Jet
         How fast the profile's normal turns.
     pitch_speed : Jet, mm/rad
@@ -49,11 +49,17 @@ class Contact:
         cam's or from the pivot; zero for round ones.
     """
 
-    pressure: Jet
+    across: Jet
+    along: Jet
     turning: Jet
     pitch_speed: Jet
     speed: Jet
     place: Jet
+
+    @property
+    def pressure(self) -> Jet:
+        """Signed pressure angle, rad."""
+        return atan(self.across / self.along)
 
 
 def contact(mechanism: Mechanism, s: Jet, ds: Jet, d2s: Jet) -> Contact:
@@ -86,7 +92,8 @@ def contact(mechanism: Mechanism, s: Jet, ds: Jet, d2s: Jet) -> Contact:
     turning = beta_slope - (a * b_slope - b * a_slope) / square
     speed = sqrt(square)
     return Contact(
-        pressure=atan(b / a),
+        across=b,
+        along=a,
         turning=turning,
         pitch_speed=speed,
         speed=speed - mechanism.radius * turning,
@@ -98,7 +105,12 @@ def _sliding_face(mechanism: Mechanism, height: Jet, ds: Jet, d2s: Jet) -> Conta
     """000 section 3.4.4: contact at s', radius of curvature base + s + s''."""
     speed = height + d2s
     return Contact(
-        pressure=0.0 * ds, turning=0.0 * ds + 1.0, pitch_speed=speed, speed=speed, place=ds
+        across=0.0 * ds,
+        along=0.0 * ds + 1.0,
+        turning=0.0 * ds + 1.0,
+        pitch_speed=speed,
+        speed=speed,
+        place=ds,
     )
 
 
@@ -112,7 +124,8 @@ def _swinging_face(mechanism: Mechanism, psi: Jet, ds: Jet, d2s: Jet) -> Contact
     speed = (sine - mechanism.face_offset) * turning + along_slope
     place = cosine / turning
     return Contact(
-        pressure=-atan(mechanism.face_offset / place),
+        across=0.0 * place - mechanism.face_offset,
+        along=place,
         turning=turning,
         pitch_speed=speed,
         speed=speed,

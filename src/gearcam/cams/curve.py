@@ -32,7 +32,9 @@ Plane = NDArray[np.complex128]
 
 def unit(angle: Array) -> Plane:
     """Return unit vectors at angles (n,), rad."""
-    return np.exp(1j * angle).astype(np.complex128, copy=False)
+    result = np.empty(np.shape(angle), dtype=np.complex128)
+    result.real, result.imag = np.cos(angle), np.sin(angle)
+    return result
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -273,10 +275,9 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
 
 def begun(strokes: Strokes) -> Strokes:
     """Return `strokes` that begin at a corner, as a `Sampler` wants them; one is made if needed."""
-    first = int(strokes.corner.argmax())
+    order = (np.arange(len(strokes.start)) + strokes.corner.argmax()) % len(strokes.start)
     turned = {
-        name: np.roll(getattr(strokes, name), -first)
-        for name in ("piece", "start", "end", "jump", "corner")
+        name: getattr(strokes, name)[order] for name in ("piece", "start", "end", "jump", "corner")
     }
     turned["corner"][0] = True  # a smooth closed curve begins somewhere
     return replace(strokes, **turned)

@@ -49,9 +49,6 @@ _INNER = slice(5, -5, 6)
 
 _TURN = 2.0 * math.pi
 
-_STILL = piecewise([0.0, 1.0], [Piece(lambda t: 0.0 * t)])
-"""The law of a dwell."""
-
 _KNOT = 4.0 * np.finfo(float).eps * _TURN
 """Rounding of a knot, rad."""
 
@@ -174,7 +171,7 @@ class Program:
         return Survey(
             places=places,
             found=inside.reshape(5, *places.shape),
-            before=np.roll(before.T, 1, axis=0),
+            before=before.T[pieces - 1],
             after=after.T,
         )
 
@@ -272,7 +269,7 @@ def make_program(
         match phase:
             case DwellPhase():
                 kind = "dwell"
-                places.append(frame.whole(number, _STILL, 0.0))
+                places.append(frame.whole(number, None, 0.0))
             case SegmentPhase():
                 kind = "rise" if frame.rise(number) >= 0.0 else "return"
                 places.append(frame.whole(number, frame.segment(number), 1.0))
@@ -312,7 +309,7 @@ class _Frame:
         """Whether a law comes down by running backwards."""
         return rise.mirrored and self.rise(number) < 0.0
 
-    def whole(self, number: int, law: Piecewise, scale: float) -> Place:
+    def whole(self, number: int, law: Piecewise | None, scale: float) -> Place:
         """Return a law without knots that begins where a phase does."""
         start, end = self.angles[number : number + 2].tolist()
         base, width = self.heights[number], self.width(number)

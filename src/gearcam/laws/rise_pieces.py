@@ -35,16 +35,15 @@ _POWERS: Final = tuple((-1) ** k / factorial(2 * k + 3) for k in range(10, -1, -
 
 def lag(x: Jet) -> Jet:
     """``x - sin(x)``, with all its digits where x is small."""
-    direct = x - sin(x)
-    value, half = x.c[0], np.sin(0.5 * x.c[0])
+    wave, value, half = sin(x), x.c[0], np.sin(0.5 * x.c[0])
     square = value * value
     series = _POWERS[0] * square + _POWERS[1]
     for power in _POWERS[2:]:
         series *= square
         series += power
-    exact = np.where(np.abs(value) < _SERIES, series * square * value, direct.c[0])
+    exact = np.where(np.abs(value) < _SERIES, series * square * value, value - wave.c[0])
     slope = [2.0 * half * half * rate for rate in x.c[1:2]]
-    return Jet([exact, *slope, *direct.c[2:]])
+    return Jet([exact, *slope, *(a - b for a, b in zip(x.c[2:], wave.c[2:], strict=True))])
 
 
 def reflected(shape: Shape) -> Shape:

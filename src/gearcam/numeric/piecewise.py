@@ -7,7 +7,7 @@ integral in closed form. Between knots a piece is smooth; at a knot any derivati
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -19,6 +19,7 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.roots import bracketed_root
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,16 +60,10 @@ class Piecewise:
         """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
         x = np.asarray(x, dtype=float)
         flat = x.ravel()
-        if len(self.pieces) == 1:
-            jet = self.pieces[0](Jet.variable(flat, order)) + self.offsets[0]
-            return [
-                v if v.shape == x.shape else np.broadcast_to(v, flat.shape).reshape(x.shape)
-                for v in jet.derivatives()
-            ]
         index = np.searchsorted(self.knots[1:-1], flat, side="right")
         return list(self.on_pieces(index, flat, order).reshape(order + 1, *x.shape))
 
-    def on_pieces(self, index: NDArray[np.int64], x: Array, order: int) -> Array:
+    def on_pieces(self, index: Index, x: Array, order: int) -> Array:
         """Return function and derivatives by given pieces, right at knots too.
 
         Parameters
@@ -85,8 +80,7 @@ class Piecewise:
         (order + 1, n) array
         """
         result = np.empty((order + 1, x.size))
-        for number in np.flatnonzero(np.bincount(index)).tolist():
-            here = np.flatnonzero(index == number)
+        for number, here in members(index, len(self.pieces)):
             jet = self.pieces[number](Jet.variable(x[here], order)) + self.offsets[number]
             for k, values in enumerate(jet.derivatives()):
                 result[k, here] = values
@@ -139,6 +133,32 @@ class Piecewise:
             equal = [abs(b - a) <= 1e-9 * scale for b, a in zip(before, after, strict=True)]
             result.append(equal.index(False) - 1 if False in equal else 3)
         return tuple(result)
+
+
+def members(
+    index: NDArray[np.int64], count: int
+) -> Iterator[tuple[int, NDArray[np.int64] | slice]]:
+    """Yield every number that occurs in an index, and where.
+
+    Parameters
+    ----------
+    index : (n,) array of int
+        Numbers from 0 on.
+    count : int
+        How many there may be.
+
+    Yields
+    ------
+    number : int
+        Rising.
+    where : (k,) array of int, or slice
+        Its places in `index`.
+    """
+    if count == 1:
+        yield 0, slice(None)
+        return
+    for number in np.flatnonzero(np.bincount(index)).tolist():
+        yield number, np.flatnonzero(index == number)
 
 
 def piecewise(knots: ArrayLike, pieces: list[Piece]) -> Piecewise:

@@ -26,6 +26,7 @@ _PROBES = 24
 """Intervals per curve on which the density of points is found."""
 
 _EIGHTHS = np.arange(1, 8) / 8.0
+_QUARTERS = _EIGHTHS[1::2]
 _AROUND = np.array([-3, -2, -1, 1, 2, 3]) / 32.0
 """Places inside a chord at which its error is measured: where the curve bends like a corner, the
 largest distance is a peak."""
@@ -150,7 +151,7 @@ class Sampler:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
         vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
         ends = self._ends(vertices)
-        errors = self._errors(vertices, ends)
+        errors, rough = self._errors(vertices, ends)
         for _ in range(_ROUNDS):
             if np.mean(errors > _MARGIN * self.tolerance) <= _FEW:
                 break
@@ -159,20 +160,22 @@ class Sampler:
             at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
             vertices = self._spread(at_corners, effort, vertices)
             ends = self._ends(vertices)
-            errors = self._errors(vertices, ends)
+            errors, rough = self._errors(vertices, ends)
+        points = ends[0]
         for _ in range(_ROUNDS):
-            bad = np.flatnonzero(errors > _MARGIN * self.tolerance)
-            if bad.size == 0:
+            bad = errors > _MARGIN * self.tolerance
+            if not bad.any():
                 break
-            middle = 0.5 * (vertices[bad] + vertices[bad + 1])
-            vertices = np.insert(vertices, bad + 1, middle)
-            ends = np.insert(ends, bad + 1, np.stack(self.at(middle)), axis=1)
-            errors = np.insert(errors, bad + 1, 0.0)
-            new = bad + 1 + np.arange(bad.size)
+            middle = 0.5 * (vertices[:-1] + vertices[1:])[bad]
+            old = np.arange(len(errors)).repeat(1 + bad)
+            new = np.flatnonzero(old[1:] == old[:-1]) + 1
+            ends_of = np.append(old, len(errors))
+            vertices, points = vertices[ends_of], points[ends_of]
+            vertices[new], points[new] = middle, self.at(middle)[0]
+            errors, rough = errors[old], rough[old]
             halves = np.concatenate([new - 1, new])
-            errors[halves] = self._measure(vertices, ends[0], halves)
-        points = ends[0, :-1] if self.closed else ends[0]
-        return vertices, points, float(errors.max())
+            errors[halves] = self._measure(vertices, points, halves, rough[halves])
+        return vertices, points[:-1] if self.closed else points, float(errors.max())
 
     def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
         """Spread vertices evenly over `effort` (known at `places`) between `ends`: their J."""
@@ -191,8 +194,8 @@ class Sampler:
         ends = np.stack(self.at(vertices[:-1]))
         return np.append(ends, ends[:, :1], axis=1)
 
-    def _errors(self, vertices: Array, ends: Complex) -> Array:
-        """Distance of the curve from all chords.
+    def _errors(self, vertices: Array, ends: Complex) -> tuple[Array, Mask]:
+        """Distance of the curve from all chords, and which of them are rough.
 
         Where the curvature hardly changes it is the middle of the cubic with the end tangents.
         Elsewhere, and across the ends of curves and breaks, it is measured.
@@ -204,34 +207,39 @@ class Sampler:
         errors = length * np.abs(bend) / 8.0
         # Within a chord the ends' angles differ, along the curve the chords' curvatures.
         rough = self._rough(vertices) | (np.abs(rise - fall) > _UNEVEN * np.abs(bend))
-        errors[rough] = self._measure(vertices, ends[0], np.flatnonzero(rough))
         curvature = bend / length
         jump = np.abs(np.diff(curvature)) > 2.0 * _UNEVEN * np.abs(curvature[1:])
-        beside = (np.append(jump, False) | np.append(False, jump)) & ~rough
-        errors[beside] = self._measure(vertices, ends[0], np.flatnonzero(beside), around=False)
-        return errors
+        unsure = rough | np.append(jump, False) | np.append(False, jump)
+        errors[unsure] = self._measure(vertices, ends[0], np.flatnonzero(unsure), rough[unsure])
+        return errors, rough
 
-    def _measure(
-        self, vertices: Array, points: Complex, chords: Index, *, around: bool = True
-    ) -> Array:
-        """Distance of the curve from some chords: at quarters, or at eighths and `around` the best.
+    def _measure(self, vertices: Array, points: Complex, chords: Index, rough: Mask) -> Array:
+        """Distance of the curve from some chords: at quarters, of `rough` ones with more care.
 
-        A chord that only has uneven neighbours is smooth: its distance is flat near its largest.
+        They are measured at eighths and around the best of them. A chord that only has uneven
+        neighbours is smooth: its distance is flat near its largest.
         """
-        start, chord = points[chords], points[chords + 1] - points[chords]
-        low, span = vertices[chords], vertices[chords + 1] - vertices[chords]
+        direction = points[chords + 1] - points[chords]
+        direction /= np.maximum(np.abs(direction), np.finfo(float).tiny)
 
-        def off(share: Array) -> Array:
-            curve = self.at((low + span * share).ravel())[0].reshape(share.shape)
-            return np.abs(np.imag(np.conj(chord) * (curve - start)))
+        def off(number: Index, share: Array) -> Array:
+            k = chords[number]
+            j = vertices[k] + (vertices[k + 1] - vertices[k]) * share
+            return np.abs(np.imag(np.conj(direction[number]) * (self.at(j)[0] - points[k])))
 
-        places = _EIGHTHS if around else _EIGHTHS[1::2]
-        found = off(np.broadcast_to(places[:, None], (len(places), len(chords))))
-        largest = found.max(axis=0, initial=0.0)
-        if around:
-            second = off(places[found.argmax(axis=0)] + _AROUND[:, None])
-            largest = np.maximum(largest, second.max(axis=0))
-        return largest / np.maximum(np.abs(chord), np.finfo(float).tiny)
+        care, plain = np.flatnonzero(rough), np.flatnonzero(~rough)
+        number = np.concatenate([care.repeat(len(_EIGHTHS)), plain.repeat(len(_QUARTERS))])
+        shares = [np.tile(_EIGHTHS, care.size), np.tile(_QUARTERS, plain.size)]
+        found = off(number, np.concatenate(shares))
+        eighths, quarters = np.split(found, [shares[0].size])
+        largest = np.empty(len(chords))
+        largest[plain] = quarters.reshape(-1, len(_QUARTERS)).max(axis=1)
+        if care.size:
+            eighths = eighths.reshape(-1, len(_EIGHTHS))
+            share = _EIGHTHS[eighths.argmax(axis=1)][:, None] + _AROUND
+            around = off(care.repeat(len(_AROUND)), share.ravel()).reshape(share.shape)
+            largest[care] = np.maximum(eighths.max(axis=1), around.max(axis=1))
+        return largest
 
     def _rough(self, vertices: Array) -> Mask:
         """Whether chords hold a break inside."""
