@@ -138,7 +138,7 @@ class Program:
         (n,) array, rad
         """
         cuts = np.concatenate([self.cuts, self.cuts + _TURN])
-        return np.unique([low, *cuts[(cuts > low) & (cuts < high)], high])
+        return np.array(sorted({low, *cuts[(cuts > low) & (cuts < high)].tolist(), high}))
 
     def phases(self, kind: str) -> list[tuple[float, float]]:
         """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
@@ -264,7 +264,8 @@ def make_program(
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     frame = _Frame(phases=phases, angles=angles, heights=heights, rises=rises)
     places: list[Place] = []
-    stretches, cuts = [], []
+    stretches: list[Stretch] = []
+    cuts: list[float] = []
     for number, phase in enumerate(phases):
         match phase:
             case DwellPhase():
@@ -276,18 +277,18 @@ def make_program(
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 places += frame.law(number, rises[phase.shape])
-                cuts.append(_cuts(places[-1], rises[phase.shape]))
+                cuts += _cuts(places[-1], rises[phase.shape])
         start, end = float(angles[number]), float(angles[number + 1])
         stretches.append(Stretch(kind=kind, start=start, end=end))
     lift = placed(places)
-    cuts = np.unique(np.concatenate([lift.knots, *cuts]))
-    return Program(lift=lift, stretches=tuple(stretches), cuts=cuts)
+    sharp = np.array(sorted({*lift.knots.tolist(), *cuts}))
+    return Program(lift=lift, stretches=tuple(stretches), cuts=sharp)
 
 
-def _cuts(place: Place, rise: Rise) -> Array:
+def _cuts(place: Place, rise: Rise) -> list[float]:
     """Return where a law bends sharply in its place."""
     cuts = np.array([]) if rise.cuts is None else rise.cuts
-    return place.origin + place.width * cuts[(cuts > 0.0) & (cuts < 1.0)]
+    return (place.origin + place.width * cuts[(cuts > 0.0) & (cuts < 1.0)]).tolist()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

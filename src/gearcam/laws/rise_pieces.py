@@ -65,10 +65,11 @@ def turned(shape: Shape) -> Shape:
     """
 
     def function(x: Jet) -> Jet:
-        way = np.where(x.c[0] <= 0.5, 1.0, -1.0)
-        nearest = Jet([np.where(way > 0.0, x.c[0], 1.0 - x.c[0]), *(way * c for c in x.c[1:])])
+        first = x.c[0] <= 0.5
+        way = np.where(first, 1.0, -1.0)
+        nearest = Jet([np.where(first, x.c[0], 1.0 - x.c[0]), *(way * c for c in x.c[1:])])
         value, *slopes = shape(nearest).c
-        return Jet([np.where(way > 0.0, value, 1.0 - value), *(way * c for c in slopes)])
+        return Jet([np.where(first, value, 1.0 - value), *(way * c for c in slopes)])
 
     return function
 
