@@ -289,19 +289,19 @@ class Sampler:
         j, points, tangents = j[kept], points[kept], tangents[kept]
         cuts = np.flatnonzero(rank[kept] == 0)
         joints = np.flatnonzero(rank[kept] == 1)
+        last_points, last_tangents = self._left_ends(j[cuts[1:]])
         runs = []
-        for start, end in pairwise(cuts.tolist()):
-            before_corner = self._left_end(float(j[end]))
-            p = np.append(points[start:end], before_corner[0])
-            t = np.append(tangents[start:end], before_corner[1])
+        for number, (start, end) in enumerate(pairwise(cuts.tolist())):
+            p = np.append(points[start:end], last_points[number])
+            t = np.append(tangents[start:end], last_tangents[number])
             inside = joints[(joints > start) & (joints < end)] - start
             run = Run(points=as_pairs(p), tangents=as_pairs(t), joints=tuple(inside.tolist()))
             runs.append(run.reversed if reverse else run)
         return tuple(runs[::-1] if reverse else runs)
 
-    def _left_end(self, j: float) -> tuple[Complex, Complex]:
-        """Point and tangent at the end of the curve that ends at a corner."""
-        index = np.array([int(np.searchsorted(self.density[::_PROBES], j)) - 1])
+    def _left_ends(self, j: Array) -> tuple[Complex, Complex]:
+        """Points and tangents at the ends of the curves that end at corners."""
+        index = np.searchsorted(self.density[::_PROBES], j) - 1
         return self.curves.at(index, self.curves.end[index])
 
 

@@ -13,6 +13,7 @@ Depends on numeric; shapely inside the functions.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -24,6 +25,7 @@ from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.cubics import on_cubics
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 _FACING: Final = -0.5
 """Cosine of the angle between outward normals below which walls face each other: 120 degrees."""
@@ -36,8 +38,12 @@ _GRAIN: Final = 1e-9
 
 _PER_RUN: Final = 30
 _LEAST: Final = 1500
-_WINDOW: Final = 160
-"""First search: points per run, points at least, and how many neighbours each is compared with."""
+"""First search: points per run, and points at least."""
+
+_COARSE: Final = 4
+_WINDOW: Final = 40
+"""Before it: one of so many points, and how many neighbours each is compared with. Any slot found
+bounds the distance within which the narrowest one is sought."""
 
 _ALL: Final = 8000
 """Most points of which each is compared with every other where no slot was found nearby."""
@@ -128,48 +134,68 @@ def _inner(contour: Contour) -> tuple[float, complex | None]:
 
 def _slot(contour: Contour) -> tuple[float, complex | None]:
     """Width and middle of the narrowest slot."""
-    ways = [np.append(0.0, np.cumsum(np.hypot(*np.diff(r.points, axis=0).T))) for r in contour.runs]
-    step = sum(way[-1] for way in ways) / max(_LEAST, _PER_RUN * len(ways))
-    places = [np.linspace(0.0, way[-1], math.ceil(way[-1] / step) + 1) for way in ways]
-    number = np.repeat(np.arange(len(ways)), [len(place) for place in places])
-    along = np.concatenate(places)
-    made = [_at(run, way, s) for run, way, s in zip(contour.runs, ways, places, strict=True)]
-    p, n = (np.concatenate(values) for values in zip(*made, strict=True))
+    chain = _Chain.of(contour.runs)
+    length = np.diff(chain.way[chain.first], append=chain.way[-1])
+    step = chain.way[-1] / max(_LEAST, _PER_RUN * len(length))
+    counts = np.ceil(length / step).astype(int) + 1
+    number = np.repeat(np.arange(len(counts)), counts)
+    share = np.concatenate([np.linspace(0.0, 1.0, count) for count in counts.tolist()])
+    along = chain.way[chain.first[number]] + share * length[number]
+    p, n = chain.at(number, along)
     best, pair = _narrowest(p, n)
     if math.isinf(best):
         return best, None
-    fine = []
-    for k in pair:
-        run, way = contour.runs[number[k]], ways[number[k]]
-        fine.append(_at(run, way, np.clip(along[k] + step * _FINER, 0.0, way[-1])))
-    (p, n), (q, m) = fine
+    (p, n), (q, m) = (chain.at(number[[k]], along[k] + step * _FINER) for k in pair)
     width = _width(p[:, None], n[:, None], q[None], m[None])
     a = int(width.min(axis=1).argmin())
     best = float(width[a].min())
     return best, complex(p[a] + 0.5 * best * n[a])
 
 
-def _at(run: Run, way: Array, s: Array) -> tuple[Complex, Complex]:
-    """Points and outward normals of a run at ways along it."""
-    step = np.clip(np.searchsorted(way, s, side="right") - 1, 0, len(way) - 2)
-    share = (s - way[step]) / (way[step + 1] - way[step])
-    points, tangents = on_cubics(as_complex(run.points), as_complex(run.tangents), step, share)
-    return points, -1j * tangents
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Chain:
+    """The runs of a contour one behind the other, with the `way` to each point, mm.
+
+    `first` and `last` are the numbers of the runs' first and last points.
+    """
+
+    points: Complex
+    tangents: Complex
+    way: Array
+    first: Index
+    last: Index
+
+    @classmethod
+    def of(cls, runs: Sequence[Run]) -> _Chain:
+        points = np.concatenate([as_complex(run.points) for run in runs])
+        last = np.cumsum([len(run.points) for run in runs]) - 1
+        steps = np.abs(np.diff(points, prepend=points[0]))
+        steps[last[:-1] + 1] = 0.0  # a run begins where the one before it ends
+        return cls(
+            points=points,
+            tangents=np.concatenate([as_complex(run.tangents) for run in runs]),
+            way=np.cumsum(steps),
+            first=np.append(0, last[:-1] + 1),
+            last=last,
+        )
+
+    def at(self, run: Index, way: Array) -> tuple[Complex, Complex]:
+        """Points and outward normals at ways along the chain, none beyond its run's ends."""
+        way = np.clip(way, self.way[self.first[run]], self.way[self.last[run]])
+        step = np.searchsorted(self.way, way, side="right") - 1
+        step = np.clip(step, self.first[run], self.last[run] - 1)
+        share = (way - self.way[step]) / (self.way[step + 1] - self.way[step])
+        points, tangents = on_cubics(self.points, self.tangents, step, share)
+        return points, -1j * tangents
 
 
 def _narrowest(p: Complex, n: Complex) -> tuple[float, tuple[int, int]]:
-    """Find the least width of any pair: of neighbours first, then of those that lie near."""
+    """Find the least width of any pair, and the pair: of those that lie near enough."""
     from shapely import STRtree, points
 
-    best, pair, size = math.inf, (0, 0), len(p)
-    shift = 0
-    while shift < size - 1 and (shift < _WINDOW or (math.isinf(best) and size <= _ALL)):
-        shift += 1
-        for way in (shift, -shift):
-            width = _width(p, n, np.roll(p, way), np.roll(n, way))
-            k = int(width.argmin())
-            if width[k] < best:
-                best, pair = float(width[k]), (k, (k - way) % size)
+    best, pair = _of_neighbours(p, n, _COARSE, _WINDOW)
+    if math.isinf(best):
+        best, pair = _of_neighbours(p, n, 1, len(p) if len(p) <= _ALL else _COARSE * _WINDOW)
     if math.isinf(best):
         return best, pair
     made: Any = points(p.real, p.imag)
@@ -177,6 +203,19 @@ def _narrowest(p: Complex, n: Complex) -> tuple[float, tuple[int, int]]:
     width = _width(p[i], n[i], p[j], n[j])
     k = int(width.argmin())
     return (float(width[k]), (int(i[k]), int(j[k]))) if width[k] < best else (best, pair)
+
+
+def _of_neighbours(p: Complex, n: Complex, of: int, most: int) -> tuple[float, tuple[int, int]]:
+    """Find the least width of pairs up to `most` apart among one `of` so many points."""
+    p, n = p[::of], n[::of]
+    best, pair, size = math.inf, (0, 0), len(p)
+    for shift in range(1, min(most, size - 1) + 1):
+        for way in (shift, -shift):
+            width = _width(p, n, np.roll(p, way), np.roll(n, way))
+            k = int(width.argmin())
+            if width[k] < best:
+                best, pair = float(width[k]), (of * k, of * ((k - way) % size))
+    return best, pair
 
 
 def _width(p: Complex, n: Complex, q: Complex, m: Complex) -> Array:
