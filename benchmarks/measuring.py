@@ -15,6 +15,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+_UNCOMPILED = "PYTHONDONTWRITEBYTECODE"
 PACKAGES = ("gearcam", "numpy", "shapely", "ncgears", "scipy", "sympy")
 
 
@@ -80,12 +81,16 @@ def in_turns(functions: dict[str, Callable[[], object]], count: int) -> list[Tim
 
 
 def commands(cases: dict[str, Sequence[str]], count: int) -> list[Timing]:
-    """Whole processes, in turns: a busy moment hits them alike. The first round does not count."""
+    """Whole processes, in turns: a busy moment hits them alike. The first round does not count.
+
+    It leaves compiled modules behind, as an installed program has them.
+    """
+    environment = {key: value for key, value in os.environ.items() if key != _UNCOMPILED}
     samples: dict[str, list[float]] = {name: [] for name in cases}
     for round_number in range(count + 1):
         for name, command in cases.items():
             start = time.perf_counter()
-            subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+            subprocess.run(command, cwd=ROOT, env=environment, check=True, capture_output=True)
             if round_number:
                 samples[name].append(time.perf_counter() - start)
     return [Timing(name, tuple(values)) for name, values in samples.items()]

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import gearcam.laws.rise_laws  # noqa: F401  (fills the registry)
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.mechanism import Mechanism, make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec

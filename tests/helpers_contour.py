@@ -14,7 +14,8 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.numeric.contour import Contour, Run
-from gearcam.parts import Circle, Opening
+from gearcam.parts.part import Opening
+from gearcam.parts.shapes import Circle
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Parameter (n,) to complex points and complex vectors along the curve, of any length."""

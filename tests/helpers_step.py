@@ -10,7 +10,8 @@ import numpy as np
 
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import fit_spline
-from gearcam.parts import Loop, Part
+from gearcam.parts.part import Part
+from gearcam.parts.shapes import Loop
 
 KEYED = 10.0, 2.5, 12.8
 """Radius of a bore, half the width of its keyway, and where that ends, mm."""

@@ -32,7 +32,7 @@ from gearcam.console import (
     wrapped,
     written_lines,
 )
-from gearcam.design import FORMATS, KINDS, Design, load
+from gearcam.design import FORMATS, KINDS, load
 from gearcam.errors import (
     DesignError,
     InfeasibleError,
@@ -42,6 +42,7 @@ from gearcam.errors import (
 )
 
 if TYPE_CHECKING:
+    from gearcam.design import Design
     from gearcam.jobs import Job, Written
 
 GOOD: Final = 0
@@ -91,18 +92,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    parsers = _parsers()
+    functions = (_build, _check, _mesh, _follow, _laws, _new, _schema)
+    commands = {function.__name__.lstrip("_"): function for function in functions}
     top = argparse.ArgumentParser(
         prog="gearcam",
         description=_ABOUT,
-        epilog=_command_help(parsers) + _CODES,
+        epilog=_command_help(commands) + _CODES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("--version", action="store_true", help="show the version")
     top.add_argument("command", nargs="?", metavar="COMMAND", help="see below")
-    if words and words[0] in parsers:
-        parser, command = parsers[words[0]]
-        command(**vars(parser.parse_intermixed_args(words[1:])))
+    if words and words[0] in commands:
+        parser = _parser(words[0], commands[words[0]])
+        commands[words[0]](**vars(parser.parse_intermixed_args(words[1:])))
         return
     given = top.parse_args(words[:1])
     if given.version:
@@ -113,42 +115,38 @@ def _dispatch(words: list[str]) -> None:
     else:
         from gearcam.design.wording import did_you_mean
 
-        hint = did_you_mean(given.command, parsers)
+        hint = did_you_mean(given.command, commands)
         _refuse(
-            [Problem(f'"{given.command}" is not a command', allowed=", ".join(parsers), hint=hint)]
+            [Problem(f'"{given.command}" is not a command', allowed=", ".join(commands), hint=hint)]
         )
 
 
-def _parsers() -> dict[str, tuple[argparse.ArgumentParser, Callable[..., None]]]:
-    """Return a parser and a function for each command; its help is the function's docstring."""
-    parsers = {}
-    for command in (_build, _check, _mesh, _follow, _laws, _new, _schema):
-        name = command.__name__.lstrip("_")
-        parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
-        if command in (_build, _check, _mesh):
-            parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
-        if command is _follow:
-            parser.add_argument("file", metavar="FILE", help="design file (TOML) of a cam")
-            words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
-            parser.add_argument("profile", metavar="PROFILE", help=words)
-        if command in (_build, _check, _mesh, _follow):
-            parser.add_argument(
-                "-o", "--output", metavar="DIR", default="output", help="where to write"
-            )
-            parser.add_argument(
-                "--debug", action="store_true", help=f"show tracebacks (or set {_DEBUG})"
-            )
-        if command is _build:
-            words = f"write only these: {','.join(FORMATS)}"
-            parser.add_argument("--only", action="append", metavar="KINDS", help=words)
-        if command is _mesh:
-            _mesh_options(parser)
-        if command is _new:
-            words = f"the kind of design: {' or '.join(KINDS)}"
-            parser.add_argument("kind", metavar="KIND", help=words)
-            parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
-        parsers[name] = (parser, command)
-    return parsers
+def _parser(name: str, command: Callable[..., None]) -> argparse.ArgumentParser:
+    """Return the parser of a command; its help is the function's docstring."""
+    parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
+    if command in (_build, _check, _mesh):
+        parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
+    if command is _follow:
+        parser.add_argument("file", metavar="FILE", help="design file (TOML) of a cam")
+        words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
+        parser.add_argument("profile", metavar="PROFILE", help=words)
+    if command in (_build, _check, _mesh, _follow):
+        parser.add_argument(
+            "-o", "--output", metavar="DIR", default="output", help="where to write"
+        )
+        parser.add_argument(
+            "--debug", action="store_true", help=f"show tracebacks (or set {_DEBUG})"
+        )
+    if command is _build:
+        words = f"write only these: {','.join(FORMATS)}"
+        parser.add_argument("--only", action="append", metavar="KINDS", help=words)
+    if command is _mesh:
+        _mesh_options(parser)
+    if command is _new:
+        words = f"the kind of design: {' or '.join(KINDS)}"
+        parser.add_argument("kind", metavar="KIND", help=words)
+        parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
+    return parser
 
 
 def _mesh_options(parser: argparse.ArgumentParser) -> None:
@@ -174,8 +172,8 @@ def _numbers(text: str) -> list[int]:
         raise argparse.ArgumentTypeError(f'"{text}" is no list of teeth such as 1,27') from None
 
 
-def _command_help(parsers: Mapping[str, tuple[Any, Callable[..., None]]]) -> str:
-    rows = (f"  {name:<8}{command.__doc__}\n" for name, (_, command) in parsers.items())
+def _command_help(commands: Mapping[str, Callable[..., None]]) -> str:
+    rows = (f"  {name:<8}{command.__doc__}\n" for name, command in commands.items())
     return "commands:\n" + "".join(rows) + "\n"
 
 
@@ -307,7 +305,7 @@ def _refuse(problems: Sequence[Problem]) -> None:
 
 Progress = Callable[[str, int, int], None]
 Action = Callable[["Job", Progress | None], "Written"]
-Adapt = Callable[[Design], Design]
+Adapt = Callable[["Design"], "Design"]
 
 
 def _each(

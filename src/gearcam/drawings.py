@@ -22,7 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.numeric.contour import Contour
-from gearcam.parts import Circle, Loop, Part
+from gearcam.parts.part import Part
+from gearcam.parts.shapes import Circle, Loop
 
 Array = NDArray[np.float64]
 

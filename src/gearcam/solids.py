@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import GearcamError
-from gearcam.parts import Mark, Part, circle_points, circle_segments
+from gearcam.parts.part import Mark, Part
+from gearcam.parts.shapes import circle_points, circle_segments
 
 if TYPE_CHECKING:
     from manifold3d import Manifold

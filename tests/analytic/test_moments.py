@@ -10,7 +10,7 @@ import pytest
 
 from gearcam.numeric.cubics import hermite_arms
 from gearcam.numeric.moments import Moments, arc_moments, curve_moments
-from gearcam.parts import Circle, Loop
+from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import Curve, arc, as_pairs, disc_contour, line, square_contour
 
 EXACT = 1e-12

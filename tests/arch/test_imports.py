@@ -116,8 +116,8 @@ def test_an_early_import_is_caught(tmp_path: Path, code: str, caught: bool) -> N
     assert bool(rules.heavy_import_faults(sample)) is caught
 
 
-def _loaded(tmp_path: Path, *arguments: str) -> set[str]:
-    """Run a build in a process of its own and return the top names of what it loaded."""
+def _modules(tmp_path: Path, *arguments: str) -> set[str]:
+    """Run a build in a process of its own and return the names of what it loaded."""
     done = subprocess.run(
         [sys.executable, "-c", LOADED, "build", *arguments, "-o", str(tmp_path)],
         cwd=rules.ROOT,
@@ -128,7 +128,12 @@ def _loaded(tmp_path: Path, *arguments: str) -> set[str]:
     assert done.returncode == 0, done.stderr
     answer = json.loads(done.stdout.splitlines()[-1])
     assert answer["code"] == 0, done.stdout + done.stderr
-    return {name.split(".")[0] for name in answer["modules"]}
+    return set(answer["modules"])
+
+
+def _loaded(tmp_path: Path, *arguments: str) -> set[str]:
+    """Return the top names of what a build loads."""
+    return {name.split(".")[0] for name in _modules(tmp_path, *arguments)}
 
 
 def test_a_csv_build_loads_no_other_writer(tmp_path: Path) -> None:
@@ -136,6 +141,29 @@ def test_a_csv_build_loads_no_other_writer(tmp_path: Path) -> None:
     assert (tmp_path / "ellipse" / "gear1_outline.csv").exists()
     assert "numpy" in loaded
     assert loaded.isdisjoint(UNWANTED)
+
+
+LAWS = {f"gearcam.laws.{path.stem}" for path in (rules.SOURCE / "laws").glob("*.py")}
+"""All modules of laws and rises, with what they share."""
+
+
+@pytest.mark.parametrize(
+    ("file", "other", "laws"),
+    [
+        ("ellipse", "cams", {"base", "driver", "ellipse", "entry", "span"}),
+        (
+            "eccentric_cam",
+            "gears",
+            {"entry", "lift", "phases_of_lift", "placed", "rise_pieces", "rise_simple", "rises"},
+        ),
+    ],
+)
+def test_a_build_loads_its_kind_and_its_law(
+    tmp_path: Path, file: str, other: str, laws: set[str]
+) -> None:
+    loaded = _modules(tmp_path, f"profiles/{file}.toml", "--only", "csv")
+    assert f"gearcam.{other}" not in loaded
+    assert {name.rpartition(".")[2] for name in loaded & LAWS} == laws
 
 
 def test_a_drawing_loads_its_writer(tmp_path: Path) -> None:

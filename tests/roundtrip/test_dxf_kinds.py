@@ -17,9 +17,10 @@ from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
 from gearcam.numeric import splines
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
-from gearcam.parts import Circle, Loop, Opening, Part
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.openings import bore as bore_of
+from gearcam.parts.part import Opening, Part
+from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import bore, gear_contour
 from helpers_distance import distances
 

@@ -14,7 +14,7 @@ import pytest
 from gearcam.design import OutputSpec
 from gearcam.jobs.files import export
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.parts import Blank
+from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
 

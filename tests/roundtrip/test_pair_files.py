@@ -18,7 +18,8 @@ import pytest
 from gearcam.design import OutputSpec
 from gearcam.jobs.files import export, poses
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.parts import Blank, mass_properties
+from gearcam.parts.blank import Blank
+from gearcam.parts.mass import mass_properties
 from helpers_pairs import profile
 
 etree: Any = importlib.import_module("lxml.etree")

@@ -22,7 +22,8 @@ from gearcam.export import step, step_shapes
 from gearcam.export.step import Placed, StepSolid, read_step, step_bytes
 from gearcam.numeric.contour import Run
 from gearcam.numeric.splines import Spline, fit_spline
-from gearcam.parts import Circle, Hub, Mark, Opening, Part
+from gearcam.parts.part import Hub, Mark, Opening, Part
+from gearcam.parts.shapes import Circle
 from gearcam.solids import SolidError
 from helpers_contour import bore, disc_contour, gear_contour, square_contour
 from helpers_step import (
@@ -376,9 +377,8 @@ def test_a_moved_pole_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_outline_that_a_hole_crosses_is_invalid() -> None:
-    across = Opening(
-        kind="HOLE", shape=Circle(center=np.array([20.0, 0.0]), diameter=6.0), name="hole"
-    )
+    circle = Circle(center=np.array([20.0, 0.0]), diameter=6.0)
+    across = Opening(kind="HOLE", shape=circle, name="hole")
     with pytest.raises(SolidError, match="gear1: the solid came out invalid"):
         written(plate(square_contour(40.0), openings=(across,)))
 

@@ -11,7 +11,7 @@ from gearcam.design import OutputSpec
 from gearcam.export.step import read_step
 from gearcam.jobs.files import export
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.parts import Blank
+from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
 

@@ -119,7 +119,7 @@ def test_two_values_are_judged_one_by_one() -> None:
 def test_a_blank_made_in_python_meets_the_same_rules(change: dict[str, Any], good: bool) -> None:
     from dataclasses import replace
 
-    from gearcam.parts import Blank
+    from gearcam.parts.blank import Blank
 
     design = read("")
     if good:

@@ -15,7 +15,7 @@ from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.design import CamDesign, CamOutputSpec, document_of, load, loads, with_meshing
 from gearcam.design.kinds import KINDS
 from gearcam.design.models import faults_of
-from gearcam.design.motion import phase_table, rise_table, rises
+from gearcam.design.motion import phase_table, rise_table
 from gearcam.design.template import template
 from gearcam.errors import DesignError
 from gearcam.laws.phases_of_lift import (
@@ -26,12 +26,13 @@ from gearcam.laws.phases_of_lift import (
     RisePhase,
     SegmentPhase,
 )
+from gearcam.laws.rises import RISES
 from gearcam.parts.blank import WheelBlank
 from helpers_cam_files import FLAT, ROLLER, SWINGING, changed, read
 
 
 def shape(law: str) -> Any:
-    return rises()[law].parameters()
+    return RISES[law].parameters()
 
 
 def test_the_plate_cam_with_a_roller_is_read() -> None:
@@ -61,7 +62,7 @@ def test_the_cam_with_a_swinging_roller_is_read() -> None:
     assert isinstance(first, RisePhase)
     assert isinstance(third, ReturnPhase)
     assert (first.law, third.law) == ("modified-sine", "3-4-5")
-    assert type(third.shape) is rises()["3-4-5"].parameters
+    assert type(third.shape) is RISES["3-4-5"].parameters
     assert first.swing == pytest.approx(math.pi / 9, rel=1e-15)
     assert first.length is third.length is third.swing is None
     assert [phase.angle for phase in design.phases] == pytest.approx(
@@ -89,7 +90,7 @@ def test_a_segment_carries_its_end_in_the_units_of_the_lift() -> None:
 
 @pytest.mark.parametrize("name", ["rise", "return"])
 def test_every_law_is_read_with_its_parameters(name: str) -> None:
-    for law, entry in rises().items():
+    for law, entry in RISES.items():
         assert not set(phase_table(name).entries) & set(rise_table(law).entries), law
         assert not {"type", "law"} & set(rise_table(law).entries), law
         for claim in entry.claims():
@@ -108,7 +109,7 @@ def _made(raw: dict[str, Any]) -> Phase:
     values = phase_table(raw["type"]).inward(rest)
     if "law" in raw:
         own = rise_table(raw["law"]).inward(rest)
-        values |= {"law": raw["law"], "shape": rises()[raw["law"]].parameters(**own)}
+        values |= {"law": raw["law"], "shape": RISES[raw["law"]].parameters(**own)}
     return PHASES[raw["type"]](**values)
 
 
@@ -213,7 +214,7 @@ def test_the_template_shows_every_phase_and_every_law() -> None:
         assert re.search(rf'^(# )?type = "{name}" +#', text, re.MULTILINE)
         for key in phase_table(name).entries:
             assert re.search(rf"^(# )?{key} = ", text, re.MULTILINE), key
-    for law in rises():
+    for law in RISES:
         (part,) = re.findall(
             rf'^# law = "{law}"(.*?)(?:^#?$|\Z)', text, re.MULTILINE | re.DOTALL
         ) or [""]

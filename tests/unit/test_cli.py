@@ -15,10 +15,10 @@ import pytest
 
 from gearcam.cli import main
 from gearcam.design import KINDS, GearPairDesign, load
-from gearcam.design.motion import rises
 from gearcam.errors import InfeasibleError, WriteError
 from gearcam.findings import Finding
 from gearcam.laws.base import LAWS
+from gearcam.laws.rises import RISES
 
 GOOD = """\
 kind = "gear-pair"
@@ -338,7 +338,7 @@ def test_laws_shows_every_law_with_keys_continuity_and_source(
         assert " ".join(law.source.split()) in flat
     assert "knots_deg" in out
     assert "from 0 to below 1" in flat
-    for name, rise in rises().items():
+    for name, rise in RISES.items():
         assert f'    law = "{name}"\n' in out.partition("Laws of cams")[2]
         assert " ".join(rise.source.split()) in flat
 

@@ -12,7 +12,7 @@ from gearcam.design import GearPairDesign, OutputSpec, load, loads
 from gearcam.design.template import template
 from gearcam.errors import DesignError, Problem
 from gearcam.gears.spec import Rack
-from gearcam.parts import Blank
+from gearcam.parts.blank import Blank
 
 PROFILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))
 
@@ -171,7 +171,7 @@ def test_a_problem_carries_file_line_key_value_rule_and_hint() -> None:
         ('type = "phases"', 'type = "phase"', "law.type", "phases"),
         ('["csv"]', '["cvs"]', "output.files[0]", "csv"),
         ("[output]", "[ouput]", "ouput", "output"),
-        ("ratios =", "eccentricity = 1\nratios =", "law.eccentricity", '[law] of type "eccentric-'),
+        ("ratios =", "eccentricity = 1\nratios =", "law.eccentricity", 'type "ellipse" or'),
         ("ratios =", "teeth = 1\nratios =", "law.teeth", "belongs under [pair]"),
         ("[law]", "center_distance_mm = 180\n[law]", "center_distance_mm", "under [pair]"),
         ("[law]", "modul = 1\n[law]", "modul", "module_mm? (lengths are given in mm"),

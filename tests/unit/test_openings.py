@@ -13,8 +13,11 @@ import shapely
 
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
-from gearcam.parts import Mark, Opening, Part, Place, WheelBlank, make_part, timing_mark
-from gearcam.parts.openings import bore, openings
+from gearcam.parts.blank import WheelBlank
+from gearcam.parts.make import make_part
+from gearcam.parts.marks import timing_mark
+from gearcam.parts.openings import Place, bore, openings
+from gearcam.parts.part import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import disc_contour, gear_contour
 from helpers_distance import distances

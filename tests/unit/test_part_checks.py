@@ -13,7 +13,7 @@ from gearcam.findings import Finding
 from gearcam.gears.pair import contact_arcs
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.jobs.ordered import kept_reach
-from gearcam.parts import Blank
+from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
 

@@ -11,7 +11,10 @@ import pytest
 from gearcam.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour, Run
-from gearcam.parts import Blank, Loop, Mark, Part, circle_points, timing_mark
+from gearcam.parts.blank import Blank
+from gearcam.parts.marks import timing_mark
+from gearcam.parts.part import Mark, Part
+from gearcam.parts.shapes import Loop, circle_points
 from gearcam.quantities import params_of
 from helpers_contour import bore, gear_contour, square_contour
 

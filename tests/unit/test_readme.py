@@ -18,11 +18,12 @@ import gearcam
 from gearcam.cli import main
 from gearcam.design import KINDS, GearPairDesign, document_of, loads
 from gearcam.design.gear_pair import law_table
-from gearcam.design.motion import phase_table, rise_table, rises
+from gearcam.design.motion import phase_table, rise_table
 from gearcam.findings import CHECKS
 from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.parts import mass_properties
+from gearcam.laws.rises import RISES
+from gearcam.parts.mass import mass_properties
 from gearcam.quantities import Param
 
 ROOT = Path(__file__).parents[2]
@@ -164,7 +165,7 @@ def test_the_laws_are_those_of_the_registry() -> None:
 
 def test_the_rises_are_those_of_the_registry() -> None:
     shown = {name: row for row in rows(section("Cams")) for name in quoted(row[0])}
-    assert set(shown) == set(rises())
+    assert set(shown) == set(RISES)
     for name, row in shown.items():
         assert set(rise_table(name).entries) <= set(quoted(row[1])), name
 

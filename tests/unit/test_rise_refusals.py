@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-import gearcam.laws.rise_laws  # noqa: F401  (fills the registry)
 from gearcam.design.models import faults_of
 from gearcam.design.tables import table_of
 from gearcam.errors import InfeasibleError

@@ -16,12 +16,13 @@ from hypothesis import strategies as st
 from gearcam.design import load
 from gearcam.design.gear_pair import law_table
 from gearcam.design.kinds import KINDS
-from gearcam.design.motion import WITH_LAW, phase_table, rise_table, rises
+from gearcam.design.motion import WITH_LAW, phase_table, rise_table
 from gearcam.design.reader import examine
 from gearcam.design.schema import schema
 from gearcam.design.template import template
 from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
+from gearcam.laws.rises import RISES
 
 PROFILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))
 GOOD: dict[str, Any] = {
@@ -82,7 +83,7 @@ def test_every_key_is_described_and_no_other_is_allowed(
         if name not in WITH_LAW:
             expected[name] = {"type", *phase_table(name).entries}
             continue
-        for law in rises():
+        for law in RISES:
             keys = {"type", "law", *phase_table(name).entries, *rise_table(law).entries}
             expected[f"{name}-{law}"] = keys
     assert {name: set(made["properties"]) for name, made in definitions.items()} == expected
@@ -119,7 +120,7 @@ def test_every_rise_has_branches_that_take_its_examples(
     validator: jsonschema.Draft202012Validator, phase: str
 ) -> None:
     number = [item["type"] for item in CAM["motion"]].index(phase)
-    for law, entry in rises().items():
+    for law, entry in RISES.items():
         for claim in entry.claims():
             own = rise_table(law).document(claim.parameters)
             made = {"type": phase, "law": law, "angle_deg": 90, "lift_mm": 10, **own}

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from gearcam.drawings import OUTLINE, Drawing, Feature, pair_drawing, placed
-from gearcam.parts import Circle, Loop, Mark, Part
-from gearcam.parts.part import Opening
+from gearcam.parts.part import Mark, Opening, Part
+from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets import (
     LinearDimension,
     RoundDimension,

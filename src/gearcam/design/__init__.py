@@ -9,17 +9,20 @@ Refused: unknown keys, wrong types, values out of range, two values where one de
 kinds of design that this version does not build.
 """
 
-from gearcam.design.gear_pair import GearPairDesign, with_meshing
+from __future__ import annotations
 
-# isort: split
-from gearcam.design.cam import CamDesign  # the kinds hang themselves in, in this order
+import importlib
+from typing import TYPE_CHECKING, Any, Final
+
 from gearcam.design.kinds import KINDS
-from gearcam.design.outputs import CamOutputSpec, OutputSpec
-from gearcam.design.reader import Design, load, loads
+from gearcam.design.outputs import FORMATS, CamOutputSpec, OutputSpec
+from gearcam.design.reader import load, loads
 from gearcam.design.spec import document_of
 
-FORMATS = tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
-"""Every kind of file that a design of some kind can give."""
+if TYPE_CHECKING:
+    from gearcam.design.cam import CamDesign
+    from gearcam.design.designs import Design
+    from gearcam.design.gear_pair import GearPairDesign, with_meshing
 
 __all__ = [
     "FORMATS",
@@ -34,3 +37,17 @@ __all__ = [
     "loads",
     "with_meshing",
 ]
+
+_HOMES: Final = {
+    "CamDesign": "cam",
+    "Design": "designs",
+    "GearPairDesign": "gear_pair",
+    "with_meshing": "gear_pair",
+}
+"""What only one kind of design needs is loaded when it is asked for."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -11,14 +11,15 @@ from typing import Any, Final
 from gearcam.cams.spec import KIND as NAME
 from gearcam.cams.spec import CamSpec, FollowerSpec, size_problems
 from gearcam.design.examine import home_of
-from gearcam.design.kinds import KINDS, Examined, Kind, register, told_faults
-from gearcam.design.motion import TITLE, examine_motion, homes, motion_of, rises
+from gearcam.design.kinds import KINDS, Examined, Kind, told_faults
+from gearcam.design.motion import TITLE, examine_motion, homes, motion_of
 from gearcam.design.outputs import CAM_FORMATS, CamOutputSpec, output_faults
 from gearcam.design.spec import Wanted, settle
 from gearcam.design.tables import Table, table_of
 from gearcam.design.wording import Fault, show
 from gearcam.errors import DesignError, Problem
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase
+from gearcam.laws.rises import RISES
 from gearcam.parts.blank import CAM_KIND as PARTS_KIND
 from gearcam.parts.blank import Blank, WheelBlank
 
@@ -108,8 +109,8 @@ def _wanted(phases: Any) -> Iterator[Wanted]:
         return
     for number, phase in enumerate(phases):
         yield f"motion[{number}]", phase, tuple(PHASES.values())
-        if isinstance(phase, RisePhase) and phase.law in rises():
-            yield f"motion[{number}].shape", phase.shape, (rises()[phase.law].parameters,)
+        if isinstance(phase, RisePhase) and phase.law in RISES:
+            yield f"motion[{number}].shape", phase.shape, (RISES[phase.law].parameters,)
 
 
 @lru_cache(maxsize=1)
@@ -160,7 +161,7 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
         yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
 
 
-register(
+KINDS.hang(
     Kind(
         name=NAME,
         doc="a disc cam with its follower",

@@ -57,9 +57,8 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
 def meant_kind(document: Mapping[str, Any]) -> Kind:
     """Return the kind of a document; where it gives none that is known, the likeliest one."""
     name = document.get("kind")
-    near = nearest(name, KINDS) if isinstance(name, str) else ""
-    if near:
-        return KINDS[name if name in KINDS else near]
+    if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
+        return KINDS[near]
     return max(KINDS.values(), key=lambda kind: sum(title in document for title in kind.titles))
 
 

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any, Final, TypeGuard
 
 from gearcam.design.examine import home_of
-from gearcam.design.kinds import KINDS, Examined, Kind, made_of, register
+from gearcam.design.kinds import KINDS, Examined, Kind, made_of
 from gearcam.design.models import faults_of
 from gearcam.design.outputs import PAIR_FORMATS, OutputSpec, output_faults
 from gearcam.design.spec import DesignLike, settle
@@ -238,7 +238,7 @@ def _is_number(value: Any) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-register(
+KINDS.hang(
     Kind(
         name=NAME,
         doc="a pair of non-circular gears",

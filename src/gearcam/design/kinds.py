@@ -1,7 +1,8 @@
 """The kinds of design, and what an examination of one collects.
 
 A kind is one entry of the registry: its tables, its formats, its checks, its own rules and the
-design that comes of them. `gear_pair` and `cam` hang theirs in; nothing else names a kind.
+design that comes of them. `gear_pair` and `cam` hang theirs in; nothing else names a kind, and
+only that of a file is loaded.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from gearcam.design.locate import Path
 from gearcam.design.tables import Entry, Table
 from gearcam.design.wording import Fault, show
 from gearcam.findings import CHECKS
+from gearcam.registry import Registry
 
 
 @dataclass
@@ -124,32 +126,10 @@ class Kind:
         return Table("limits", None, entries)
 
 
-KINDS: Final[dict[str, Kind]] = {}
+KINDS: Final[Registry[Kind]] = Registry(
+    "kind", {"gearcam.design.gear_pair": ("gear-pair",), "gearcam.design.cam": ("cam",)}
+)
 """The kinds of design by name."""
-
-
-def register(kind: Kind) -> Kind:
-    """Hang a kind in the registry.
-
-    Parameters
-    ----------
-    kind : Kind
-        The kind.
-
-    Returns
-    -------
-    Kind
-        The same.
-
-    Raises
-    ------
-    ValueError
-        If its name is taken.
-    """
-    if kind.name in KINDS:
-        raise ValueError(f"kind {kind.name!r} is registered twice")
-    KINDS[kind.name] = kind
-    return kind
 
 
 Told = Iterable[tuple[str, int | None, str, str]]

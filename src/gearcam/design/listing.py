@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from gearcam.design.gear_pair import law_table
 from gearcam.design.models import description
-from gearcam.design.motion import rise_table, rises
+from gearcam.design.motion import rise_table
 from gearcam.design.tables import Table
 from gearcam.laws.base import LAWS, LawEntry
-from gearcam.laws.rises import RiseEntry
+from gearcam.laws.rises import RISES, RiseEntry
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ def law_groups() -> Iterator[tuple[str, list[Listed]]]:
         _listed(entry, f'law.type = "{name}"', law_table(name)) for name, entry in LAWS.items()
     ]
     yield "Laws of gear pairs: the ratio, in the table [law]", ratios
-    lifts = [_listed(entry, f'law = "{name}"', rise_table(name)) for name, entry in rises().items()]
+    lifts = [_listed(entry, f'law = "{name}"', rise_table(name)) for name, entry in RISES.items()]
     yield "Laws of cams: rises and returns, in the tables [[motion]]", lifts
 
 

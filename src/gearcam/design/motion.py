@@ -6,7 +6,6 @@ stand beside the keys of the phase.
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any, Final
@@ -17,7 +16,7 @@ from gearcam.design.models import faults_of
 from gearcam.design.tables import Table, table_of
 from gearcam.design.wording import Fault, did_you_mean, quoted, show
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
-from gearcam.laws.rises import RISES, RiseEntry
+from gearcam.laws.rises import RISES
 
 TITLE: Final = "motion"
 
@@ -29,13 +28,6 @@ LIFT: Final = {"rise": "lift", "segment": "to"}
 
 _UNREADABLE: Final = RisePhase(angle=1.0, law="", shape=None)
 """Stands for a phase that cannot be read: without a lift, so that nothing is said of the sum."""
-
-
-def rises() -> Mapping[str, RiseEntry]:
-    """Return the laws of rises and returns by name."""
-    # only here, as gear pairs have none
-    importlib.import_module("gearcam.laws.rise_laws")
-    return RISES
 
 
 @cache
@@ -59,7 +51,7 @@ def phase_table(name: str, law: str = "") -> Table:
 
 def rise_table(law: str) -> Table:
     """Return the table of a law's parameters."""
-    return table_of(TITLE, rises()[law].parameters)
+    return table_of(TITLE, RISES[law].parameters)
 
 
 def twins(known: Table) -> dict[str, tuple[str, ...]]:
@@ -125,14 +117,14 @@ def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> P
         phase, problems = made_of(own, PHASES[name], rest, faults, at)
         found.faults += [*faults, *problems]
         return phase
-    law = _word(at, raw, "law", "a law of rises and returns", rises(), found)
+    law = _word(at, raw, "law", "a law of rises and returns", RISES, found)
     rest.pop("law", None)
     if not law:  # whatever any law asks for may be meant
         rest = {key: value for key, value in rest.items() if key in own.entries or not _asked(key)}
     faults = list(faults_of(phase_table(name, law), rest, home=home, at=at))
     shape, problems = None, []
     if law:
-        shape, problems = made_of(rise_table(law), rises()[law].parameters, rest, faults, at)
+        shape, problems = made_of(rise_table(law), RISES[law].parameters, rest, faults, at)
     make = partial(PHASES[name], law=law, shape=shape)
     phase, own_problems = made_of(own, make, rest, faults, at)
     found.faults += [*faults, *problems, *own_problems]
@@ -140,7 +132,7 @@ def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> P
 
 
 def _asked(key: str) -> bool:
-    return any(key in rise_table(law).entries for law in rises())
+    return any(key in rise_table(law).entries for law in RISES)
 
 
 def _word(
@@ -185,7 +177,7 @@ def motion_of(phases: Sequence[Phase]) -> list[dict[str, Any]]:
         if isinstance(phase, RisePhase):
             table |= {"law": phase.law}
         table |= phase_table(name).document(phase)
-        if isinstance(phase, RisePhase) and phase.law in rises():
+        if isinstance(phase, RisePhase) and phase.law in RISES:
             table |= rise_table(phase.law).document(phase.shape)
         tables.append(table)
     return tables
@@ -198,7 +190,7 @@ def homes() -> dict[str, str]:
         for key in phase_table(name).entries:
             by_phase.setdefault(key, []).append(name)
     by_law: dict[str, list[str]] = {}
-    for law in rises():
+    for law in RISES:
         for key in rise_table(law).entries:
             by_law.setdefault(key, []).append(law)
     found = {key: f"with law = {quoted(laws)}" for key, laws in by_law.items()}

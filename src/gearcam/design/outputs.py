@@ -16,6 +16,9 @@ PAIR_FORMATS: Final = (
 """What ``output.files`` of a gear pair may list."""
 
 CAM_FORMATS: Final = (*PAIR_FORMATS, "tool-path", "curvature")
+
+FORMATS: Final = tuple(dict.fromkeys((*PAIR_FORMATS, *CAM_FORMATS)))
+"""Every kind of file that a design of some kind can give."""
 """What ``output.files`` of a cam may list."""
 
 _FILES: Final = "the files to write; summary.json always is"

@@ -6,18 +6,16 @@ import os
 import re
 import tomllib
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.design.cam import CamDesign
 from gearcam.design.examine import examine
-from gearcam.design.gear_pair import GearPairDesign
 from gearcam.design.kinds import KINDS
 from gearcam.design.locate import line_at, lines_of
 from gearcam.design.wording import MISSING, Fault, dotted
 from gearcam.errors import DesignError, Problem
 
-Design = GearPairDesign | CamDesign
-"""A design of any kind."""
+if TYPE_CHECKING:
+    from gearcam.design.designs import Design
 
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _PLAIN: Final = {

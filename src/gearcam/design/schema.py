@@ -11,10 +11,11 @@ from typing import Any, Final
 from gearcam.design.gear_pair import law_table
 from gearcam.design.kinds import KINDS, Kind
 from gearcam.design.models import description, model_of
-from gearcam.design.motion import LIFT, WITH_LAW, phase_table, rises, summary, twins
+from gearcam.design.motion import LIFT, WITH_LAW, phase_table, summary, twins
 from gearcam.design.tables import Table
 from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
+from gearcam.laws.rises import RISES
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
@@ -37,7 +38,7 @@ def schema() -> dict[str, Any]:
             definitions[f"{kind.name}-{title}"] = _titled(kind, title)
     definitions |= {f"law-{name}": _law_branch(name) for name in LAWS}
     for name in PHASES:
-        laws = {f"{name}-{law}": law for law in rises()} if name in WITH_LAW else {name: ""}
+        laws = {f"{name}-{law}": law for law in RISES} if name in WITH_LAW else {name: ""}
         definitions |= {title: _phase_branch(name, law) for title, law in laws.items()}
     return {
         "$schema": DIALECT,
@@ -114,11 +115,11 @@ def _motion_schema() -> dict[str, Any]:
 
 
 def _laws_of_phase(name: str) -> dict[str, Any]:
-    words = "; ".join(f"{law}: {entry.doc}" for law, entry in rises().items())
+    words = "; ".join(f"{law}: {entry.doc}" for law, entry in RISES.items())
     return {
         "required": ["law"],
-        "properties": {"law": {"enum": list(rises()), "description": words}},
-        "allOf": [_when("law", law, {"$ref": f"#/$defs/{name}-{law}"}) for law in rises()],
+        "properties": {"law": {"enum": list(RISES), "description": words}},
+        "allOf": [_when("law", law, {"$ref": f"#/$defs/{name}-{law}"}) for law in RISES],
     }
 
 

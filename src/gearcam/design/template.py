@@ -10,11 +10,12 @@ from gearcam.design.examine import name_fault
 from gearcam.design.gear_pair import law_table
 from gearcam.design.kinds import KINDS, Kind
 from gearcam.design.models import description
-from gearcam.design.motion import phase_table, rise_table, rises, summary
+from gearcam.design.motion import phase_table, rise_table, summary
 from gearcam.design.tables import Entry, Table
 from gearcam.design.wording import show
 from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
+from gearcam.laws.rises import RISES
 
 _COLUMN: Final = 36
 _WIDTH: Final = 96
@@ -99,7 +100,7 @@ def _motion_lines(kind: Kind) -> Iterator[str]:
     yield ""
     yield "# Other laws of rises and returns:"
     used = {phase["law"] for phase in example if "law" in phase}
-    for name, entry in rises().items():
+    for name, entry in RISES.items():
         if name not in used:
             yield from _law_comment("law", name, entry, rise_table(name))
 
@@ -111,7 +112,7 @@ def _phase(given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
     yield f"{mark}[[motion]]"
     yield mark + _line("type", given["type"], summary(PHASES[given["type"]]), column)
     if law:
-        yield mark + _line("law", law, rises()[law].doc, column)
+        yield mark + _line("law", law, RISES[law].doc, column)
     yield from _entries(phase_table(given["type"], law), given)
 
 

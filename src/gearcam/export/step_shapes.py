@@ -26,7 +26,8 @@ import numpy as np
 from gearcam.numeric.bulges import as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
-from gearcam.parts import Circle, Loop, Part
+from gearcam.parts.part import Part
+from gearcam.parts.shapes import Circle, Loop
 from gearcam.solids import OVERSHOOT, SolidError
 
 COLLECTIONS: Final = ("Array1", "IndexedMap", "List", "Sequence")

@@ -38,15 +38,14 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     bad = [name for name in columns if not name or set(name) & set(',"\r\n')]
     if bad:
         raise ValueError(f"names that cannot stand in a header: {bad}")
-    arrays = {
-        name: np.ma.asarray(values, dtype=np.float64).ravel() for name, values in columns.items()
-    }
+    arrays = {name: np.asarray(values, dtype=float).ravel() for name, values in columns.items()}
     lengths = {name: len(values) for name, values in arrays.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"columns differ in length: {lengths}")
     texts = []
-    for name, values in arrays.items():
-        missing, plain = np.ma.getmaskarray(values), np.ma.getdata(values)
+    for name, plain in arrays.items():
+        # asked for so, since numpy.ma takes as long to load as a table to write
+        missing = np.broadcast_to(np.ravel(getattr(columns[name], "mask", False)), plain.shape)
         bad_rows = np.flatnonzero(np.isnan(plain) & ~missing)
         if bad_rows.size:
             raise ValueError(f"column {name} is not a number in row {bad_rows[0]}")

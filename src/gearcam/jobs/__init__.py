@@ -8,7 +8,7 @@ loaded.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from gearcam.jobs.job import Job
 from gearcam.jobs.written import Written
@@ -33,12 +33,11 @@ def make_job(design: GearPairDesign | CamDesign) -> GearPairJob | CamJob:
     -------
     GearPairJob or CamJob
     """
-    from gearcam.design import GearPairDesign
+    # by its name: asking for the class of the other kind would load that
+    if design.kind == "cam":
+        from gearcam.jobs.cam import CamJob
 
-    if isinstance(design, GearPairDesign):
-        from gearcam.jobs.gear_pair import GearPairJob
+        return CamJob(cast("CamDesign", design))
+    from gearcam.jobs.gear_pair import GearPairJob
 
-        return GearPairJob(design)
-    from gearcam.jobs.cam import CamJob
-
-    return CamJob(design)
+    return GearPairJob(cast("GearPairDesign", design))

@@ -24,8 +24,8 @@ from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import CAM_KIND
 
 if TYPE_CHECKING:
-    from gearcam.parts import Part
     from gearcam.parts.checks import PartsSubject
+    from gearcam.parts.part import Part
 
 NAME = "cam"
 """Stem of the cam's files."""
@@ -99,8 +99,8 @@ class CamJob(Job):
     @cached_property
     def part(self) -> Part:
         """The cam as a part: bore, hub, holes, moved edges."""
-        from gearcam.parts import Place, make_part
-        from gearcam.parts.openings import RIM
+        from gearcam.parts.make import make_part
+        from gearcam.parts.openings import RIM, Place
 
         profile, thickness = self.profile, self.design.cam.thickness
         with self._stage("part"):

@@ -132,7 +132,7 @@ def _part(job: CamJob) -> dict[str, Any]:
     """Return what is known of a cam as a part, if one is ordered."""
     if not job.ordered:
         return {}
-    from gearcam.parts import mass_properties
+    from gearcam.parts.mass import mass_properties
 
     (tool,) = job.part_subject.tools
     made: dict[str, Any] = {

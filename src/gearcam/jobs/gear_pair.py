@@ -32,8 +32,8 @@ from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 
 if TYPE_CHECKING:
-    from gearcam.parts import Part
     from gearcam.parts.checks import PartsSubject
+    from gearcam.parts.part import Part
 
 MESHING = "meshing.csv"
 """The rows of a meshing study."""

@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 from gearcam.gears.checks import tooth_ranges
 from gearcam.gears.pair import Gear, contact_arcs
 from gearcam.gears.rolling import Plane
-from gearcam.parts import Mark, Part, Place, WheelBlank, make_part, timing_mark
+from gearcam.parts.blank import WheelBlank
 from gearcam.parts.checks import LostFlank, PartsSubject
-from gearcam.parts.parallel import touches
+from gearcam.parts.make import make_part
+from gearcam.parts.marks import timing_mark
+from gearcam.parts.openings import Place
+from gearcam.parts.part import Mark, Part
 
 if TYPE_CHECKING:
     from gearcam.jobs.gear_pair import GearPairJob
@@ -148,6 +151,8 @@ def kept_reach(gear: Gear, blank: WheelBlank) -> tuple[Array, Array]:
     by = [value for value in (blank.offset, -blank.tip_rounding) if value]
     if not by:
         return flanks.lowest, flanks.highest
+    from gearcam.parts.parallel import touches
+
     share = np.linspace(0.0, 1.0, _PLACES)[:, None]
     reach = flanks.lowest + share * (flanks.highest - flanks.lowest)
     points, normals = flank_places(gear, reach)

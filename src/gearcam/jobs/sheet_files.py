@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from gearcam.drawings import Drawing
     from gearcam.export.dxf import DxfStyle
     from gearcam.jobs.gear_pair import GearPairJob
-    from gearcam.parts import Part, WheelBlank
+    from gearcam.parts.blank import WheelBlank
+    from gearcam.parts.part import Part
 
 
 def sheet_files(job: GearPairJob, pair: Drawing, style: DxfStyle, ending: str) -> dict[str, bytes]:
@@ -88,7 +89,7 @@ def wheel_facts(job: GearPairJob, gear: Gear) -> dict[str, str]:
 
 def weight_facts(part: Part, blank: WheelBlank) -> dict[str, str]:
     """Return the rows of a `part`'s table on its mass, if its `blank` has a density."""
-    from gearcam.parts import mass_properties
+    from gearcam.parts.mass import mass_properties
 
     if blank.density is None:
         return {}

@@ -124,7 +124,7 @@ def _part(job: GearPairJob, gear: Gear) -> dict[str, Any]:
     """Return what is known of a wheel as a part, if parts are ordered."""
     if not job.ordered:
         return {}
-    from gearcam.parts import mass_properties
+    from gearcam.parts.mass import mass_properties
 
     part, density = job.parts[gear.wheel - 1], job.design.blank.wheel(gear.wheel).density
     found = job.parts_subject.tools[gear.wheel - 1].as_dict()

@@ -1,32 +1,5 @@
-"""Transmission-ratio laws: what motion is wanted, as piecewise analytic functions.
+"""Transmission-ratio laws and rises: what motion is wanted, as piecewise analytic functions.
 
-Depends on numpy alone. Importing this package fills the registry `gearcam.laws.base.LAWS`.
+The registries `gearcam.laws.base.LAWS` and `gearcam.laws.rises.RISES` load a law when it is asked
+for. Depends on numpy alone.
 """
-
-from gearcam.laws import (
-    centrodes,
-    constant,
-    ellipse,
-    formula,
-    motion,
-    phases,
-    programs,
-    rack,
-    shapes,
-    spiral,
-    table,
-)
-
-__all__ = [
-    "centrodes",
-    "constant",
-    "ellipse",
-    "formula",
-    "motion",
-    "phases",
-    "programs",
-    "rack",
-    "shapes",
-    "spiral",
-    "table",
-]

@@ -3,8 +3,8 @@
 A law gives ``i21 = dphi2/dphi1 > 0`` and its integral ``phi2`` over one *period* of the driver:
 the driver has `n1` equal lobes, the driven wheel `n2`, so that one period turns the driver by
 ``2*pi/n1`` and the driven wheel by ``2*pi/n2``. A law is made from its *parameters*, a frozen
-dataclass with the method ``build(lobes, tolerances)``; `register` hangs it in the registry
-together with its claims, which one parametrised test proves for all laws.
+dataclass with the method ``build(lobes, tolerances)``; ``LAWS.hang`` puts it into the
+registry together with its claims, which one parametrised test proves for all laws.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.registry import Entry, hang
+from gearcam.laws.entry import Entry
 from gearcam.laws.span import ONE_LOBE, Feed, Lobes, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
+from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -167,23 +168,23 @@ class LawEntry(Entry[Claim]):
     """A law in the registry; its name is that of ``law.type``."""
 
 
-LAWS: Final[dict[str, LawEntry]] = {}
-
-
-def register(entry: LawEntry) -> None:
-    """Hang a law in the registry.
-
-    Parameters
-    ----------
-    entry : LawEntry
-        The law.
-
-    Raises
-    ------
-    ValueError
-        If its name is taken.
-    """
-    hang(LAWS, entry, "law")
+LAWS: Final[Registry[LawEntry]] = Registry(
+    "law",
+    {
+        "gearcam.laws.phases": ("phases",),
+        "gearcam.laws.programs": ("three-phase-polynomial", "multispeed", "fourier"),
+        "gearcam.laws.constant": ("constant",),
+        "gearcam.laws.ellipse": ("ellipse",),
+        "gearcam.laws.centrodes": ("eccentric-circle", "limacon", "lobed"),
+        "gearcam.laws.shapes": ("bspline", "rounded-polygon"),
+        "gearcam.laws.spiral": ("log-spiral",),
+        "gearcam.laws.formula": ("formula",),
+        "gearcam.laws.table": ("table",),
+        "gearcam.laws.motion": ("motion",),
+        "gearcam.laws.rack": ("rack",),
+    },
+)
+"""The laws by name."""
 
 
 def make_law(

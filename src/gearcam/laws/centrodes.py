@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.driver import LOBES, demand_lobes, law_of_centrode
 from gearcam.laws.span import Lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
@@ -168,7 +168,7 @@ def _claims_lobed() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="eccentric-circle",
         parameters=EccentricCircle,
@@ -178,7 +178,7 @@ register(
         claims=_claims_eccentric,
     )
 )
-register(
+LAWS.hang(
     LawEntry(
         name="limacon",
         parameters=Limacon,
@@ -188,7 +188,7 @@ register(
         claims=_claims_limacon,
     )
 )
-register(
+LAWS.hang(
     LawEntry(
         name="lobed",
         parameters=Lobed,

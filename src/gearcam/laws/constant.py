@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.span import Lobes
 from gearcam.numeric.piecewise import Piece
 from gearcam.tolerances import Tolerances
@@ -34,7 +34,7 @@ def _claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="constant",
         parameters=Constant,

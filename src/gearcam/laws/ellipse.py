@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.driver import LOBES, demand_lobes
 from gearcam.laws.span import Lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin
@@ -88,7 +88,7 @@ def _claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="ellipse",
         parameters=Ellipse,

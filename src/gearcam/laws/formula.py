@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.driver import demand_positive, law_of_centrode
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.laws.span import (
@@ -233,7 +233,7 @@ def _claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="formula",
         parameters=Formula,

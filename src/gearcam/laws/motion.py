@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.formula import compiled, formula_problems, from_motion
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.slider import crank_angle, make_slide
@@ -139,7 +139,7 @@ def _claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="motion",
         parameters=Motion,

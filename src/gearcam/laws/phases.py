@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.span import Lobes, Span, Travel, demand_equal, driven_way
 from gearcam.laws.transitions import ARCS, Arc
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
@@ -333,7 +333,7 @@ def _open_claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="phases",
         parameters=Phases,

@@ -10,7 +10,7 @@ from itertools import zip_longest
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.phases import arcs_law, one_lobe
 from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, driven_way
 from gearcam.laws.transitions import ARCS, SMOOTH
@@ -282,7 +282,7 @@ def _claims_fourier() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="multispeed",
         parameters=Multispeed,
@@ -292,7 +292,7 @@ register(
         claims=_claims_multispeed,
     )
 )
-register(
+LAWS.hang(
     LawEntry(
         name="three-phase-polynomial",
         parameters=ThreePhasePolynomial,
@@ -302,7 +302,7 @@ register(
         claims=_claims_polynomial,
     )
 )
-register(
+LAWS.hang(
     LawEntry(
         name="fourier",
         parameters=Fourier,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.formula import compiled, derivative, formula_problems
 from gearcam.laws.span import Feed, Lobes, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError
@@ -80,7 +80,7 @@ def _claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="rack",
         parameters=Rack,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.formula import compiled, formula_problems
-from gearcam.laws.rises import Rise, RiseClaim, RiseEntry, register_rise
+from gearcam.laws.rises import RISES, Rise, RiseClaim, RiseEntry
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -138,7 +138,7 @@ def _claims() -> tuple[RiseClaim, ...]:
     )
 
 
-register_rise(
+RISES.hang(
     RiseEntry(
         name="formula",
         parameters=FormulaRise,

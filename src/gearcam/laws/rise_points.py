@@ -16,11 +16,11 @@ from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.rise_pieces import from_both_ends, product, shifted, total
 from gearcam.laws.rises import (
     NARROWEST,
+    RISES,
     ClosedForm,
     Rise,
     RiseClaim,
     RiseEntry,
-    register_rise,
 )
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
@@ -298,7 +298,7 @@ def _claims_table() -> tuple[RiseClaim, ...]:
     return quintic, line
 
 
-register_rise(
+RISES.hang(
     RiseEntry(
         name="b-spline",
         parameters=BSpline,
@@ -308,7 +308,7 @@ register_rise(
         claims=_claims_bspline,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="table",
         parameters=Table,

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import ClassVar, Final
 
 from gearcam.laws.rise_pieces import from_both_ends, product, shifted, total
-from gearcam.laws.rises import ClosedForm, RiseClaim, RiseEntry, register_rise
+from gearcam.laws.rises import RISES, ClosedForm, RiseClaim, RiseEntry
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 from gearcam.quantities import NUMBER, param
 
@@ -204,7 +204,7 @@ def _claims_polynomial() -> tuple[RiseClaim, ...]:
     return (line, leaving, _claim(dwells, smooth, (2.1875, 84 * math.sqrt(5) / 25, 52.5), 3))
 
 
-register_rise(
+RISES.hang(
     RiseEntry(
         name="2-3",
         parameters=Polynomial23,
@@ -214,7 +214,7 @@ register_rise(
         claims=_claims_23,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="3-4-5",
         parameters=Polynomial345,
@@ -224,7 +224,7 @@ register_rise(
         claims=_claims_345,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="4-5-6-7",
         parameters=Polynomial4567,
@@ -234,7 +234,7 @@ register_rise(
         claims=_claims_4567,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="5-6-7-8-9",
         parameters=Polynomial56789,
@@ -244,7 +244,7 @@ register_rise(
         claims=_claims_56789,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="3-4-5-6",
         parameters=Polynomial3456,
@@ -255,7 +255,7 @@ register_rise(
         claims=_claims_3456,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="polynomial",
         parameters=Polynomial,

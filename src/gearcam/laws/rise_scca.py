@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from gearcam.laws.rise_pieces import from_half, lag
-from gearcam.laws.rises import NARROWEST, ClosedForm, RiseClaim, RiseEntry, register_rise
+from gearcam.laws.rises import NARROWEST, RISES, ClosedForm, RiseClaim, RiseEntry
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import NUMBER, param
@@ -174,7 +174,7 @@ def _claims_sine() -> tuple[RiseClaim, ...]:
     )
 
 
-register_rise(
+RISES.hang(
     RiseEntry(
         name="scca",
         parameters=Scca,
@@ -184,7 +184,7 @@ register_rise(
         claims=_claims_scca,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="modified-trapezoid",
         parameters=ModifiedTrapezoid,
@@ -194,7 +194,7 @@ register_rise(
         claims=_claims_trapezoid,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="modified-sine",
         parameters=ModifiedSine,

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.laws.rise_pieces import from_half, lag, reflected
-from gearcam.laws.rises import NARROWEST, ClosedForm, RiseClaim, RiseEntry, register_rise
+from gearcam.laws.rises import NARROWEST, RISES, ClosedForm, RiseClaim, RiseEntry
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 from gearcam.quantities import NUMBER, param
@@ -134,7 +134,7 @@ def _claims_cycloidal() -> tuple[RiseClaim, ...]:
     )
 
 
-register_rise(
+RISES.hang(
     RiseEntry(
         name="constant-velocity",
         parameters=ConstantVelocity,
@@ -144,7 +144,7 @@ register_rise(
         claims=_claims_velocity,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="constant-acceleration",
         parameters=ConstantAcceleration,
@@ -154,7 +154,7 @@ register_rise(
         claims=_claims_acceleration,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="harmonic",
         parameters=Harmonic,
@@ -164,7 +164,7 @@ register_rise(
         claims=_claims_harmonic,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="cycloidal",
         parameters=Cycloidal,

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.laws.rise_pieces import from_half, lag
-from gearcam.laws.rises import NARROWEST, ClosedForm, RiseClaim, RiseEntry, register_rise
+from gearcam.laws.rises import NARROWEST, RISES, ClosedForm, RiseClaim, RiseEntry
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import NUMBER, param
@@ -154,7 +154,7 @@ def _claims_acceleration() -> tuple[RiseClaim, ...]:
     )
 
 
-register_rise(
+RISES.hang(
     RiseEntry(
         name="trapezoidal-velocity",
         parameters=TrapezoidalVelocity,
@@ -164,7 +164,7 @@ register_rise(
         claims=_claims_velocity,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="sine-trapezoidal-velocity",
         parameters=SineTrapezoidalVelocity,
@@ -174,7 +174,7 @@ register_rise(
         claims=_claims_sine_velocity,
     )
 )
-register_rise(
+RISES.hang(
     RiseEntry(
         name="trapezoidal-acceleration",
         parameters=TrapezoidalAcceleration,

@@ -4,8 +4,8 @@ A rise gives the lift over the whole lift, S, over the cam angle over the whole 
 from 0 to 1; S', S'' and S''' are its velocity, acceleration and jerk. A lift program scales it to
 a phase of the cam and turns it over for a return. Every rise is a piecewise analytic function with
 exact derivatives, made from its *parameters*, a frozen dataclass with the method
-``build(tolerances)``; `register_rise` hangs it in the registry together with its claims, which one
-parametrised test proves for all. `gearcam.laws.rise_laws` fills the registry.
+``build(tolerances)``; ``RISES.hang`` puts it into the registry together with its claims, which one
+parametrised test proves for all.
 
 Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 """
@@ -22,8 +22,9 @@ from typing import ClassVar, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.laws.registry import Entry, hang
+from gearcam.laws.entry import Entry
 from gearcam.numeric.piecewise import Piecewise, extremes
+from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
@@ -177,20 +178,31 @@ class RiseEntry(Entry[RiseClaim]):
     """A rise in the registry; its name is that of ``motion.law``."""
 
 
-RISES: Final[dict[str, RiseEntry]] = {}
-
-
-def register_rise(entry: RiseEntry) -> None:
-    """Hang a rise in the registry.
-
-    Parameters
-    ----------
-    entry : RiseEntry
-        The rise.
-
-    Raises
-    ------
-    ValueError
-        If its name is taken.
-    """
-    hang(RISES, entry, "rise")
+RISES: Final[Registry[RiseEntry]] = Registry(
+    "rise",
+    {
+        "gearcam.laws.rise_simple": (
+            "constant-velocity",
+            "constant-acceleration",
+            "harmonic",
+            "cycloidal",
+        ),
+        "gearcam.laws.rise_polynomials": (
+            "2-3",
+            "3-4-5",
+            "4-5-6-7",
+            "5-6-7-8-9",
+            "3-4-5-6",
+            "polynomial",
+        ),
+        "gearcam.laws.rise_trapezoids": (
+            "trapezoidal-velocity",
+            "sine-trapezoidal-velocity",
+            "trapezoidal-acceleration",
+        ),
+        "gearcam.laws.rise_scca": ("modified-trapezoid", "modified-sine", "scca"),
+        "gearcam.laws.rise_points": ("b-spline", "table"),
+        "gearcam.laws.rise_formula": ("formula",),
+    },
+)
+"""The rises by name."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.driver import Shape, law_of_centrode
 from gearcam.laws.span import Lobes
 from gearcam.numeric.jets import Jet, cos, polynomial, sin, sqrt
@@ -190,7 +190,7 @@ def _claims_polygon() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="bspline",
         parameters=BSpline,
@@ -200,7 +200,7 @@ register(
         claims=_claims_spline,
     )
 )
-register(
+LAWS.hang(
     LawEntry(
         name="rounded-polygon",
         parameters=RoundedPolygon,

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.span import Lobes, Travel, demand_equal
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece
@@ -77,7 +77,7 @@ def _claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="log-spiral",
         parameters=LogSpiral,

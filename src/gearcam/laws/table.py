@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import Claim, LawEntry, RatioLaw, make_law, register
+from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, driven_way
@@ -278,7 +278,7 @@ def _claims() -> tuple[Claim, ...]:
     )
 
 
-register(
+LAWS.hang(
     LawEntry(
         name="table",
         parameters=Table,

@@ -13,6 +13,7 @@ from typing import Final
 from gearcam.findings import Finding, check
 from gearcam.parts.blank import CAM_KIND, KIND
 from gearcam.parts.part import Part
+from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
 
@@ -100,16 +101,23 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
     """Thickness and place of every wall."""
     from shapely import LinearRing, Point
 
-    rings = [LinearRing(opening.shape.points(part.tolerance)) for opening in part.openings]
+    # a circle is its centre, its radius away
+    rings = [
+        (Point(*shape.center), 0.5 * shape.diameter)
+        if isinstance(shape := opening.shape, Circle)
+        else (LinearRing(shape.points(part.tolerance)), 0.0)
+        for opening in part.openings
+    ]
     edges = [(contour.polygon.boundary, "outline") for contour in part.contours]
     if part.hub is not None:
         circle = Point(0.0, 0.0).buffer(0.5 * part.hub.diameter, quad_segs=256).boundary
         edges.append((circle, "hub's edge"))
-    for number, (opening, ring) in enumerate(zip(part.openings, rings, strict=True)):
-        for other, name in zip(rings[:number], part.openings[:number], strict=True):
-            yield float(ring.distance(other)), f"{opening.name} and the {name.name}"
+    for number, (opening, (ring, radius)) in enumerate(zip(part.openings, rings, strict=True)):
+        for (other, more), name in zip(rings[:number], part.openings[:number], strict=True):
+            wall = float(ring.distance(other)) - radius - more
+            yield max(wall, 0.0), f"{opening.name} and the {name.name}"
         for edge, what in edges:
-            yield float(ring.distance(edge)), f"{opening.name} and the {what}"
+            yield max(float(ring.distance(edge)) - radius, 0.0), f"{opening.name} and the {what}"
 
 
 @check(

@@ -17,7 +17,6 @@ from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.openings import Place, bore, common, demand_apart, openings
-from gearcam.parts.parallel import moved, rounded
 from gearcam.parts.part import Hub, Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 
@@ -58,7 +57,11 @@ def make_part(
     InfeasibleError
         If something has no room, or meets something else.
     """
-    edges = [rounded(contour, blank.tip_rounding) for contour in contours]
+    edges = list(contours)
+    if blank.tip_rounding:
+        from gearcam.parts.parallel import rounded
+
+        edges = [rounded(contour, blank.tip_rounding) for contour in edges]
     found = openings(blank, edges, place)
     hub = None
     if blank.hub_diameter:
@@ -66,6 +69,8 @@ def make_part(
         _demand_within(hub, edges, place)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     if blank.offset:
+        from gearcam.parts.parallel import moved
+
         edges = [moved(contour, blank.offset) for contour in edges]
         found = tuple(_shifted(opening, blank, place) for opening in found)
         demand_apart(found, blank, common(edges), place)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import Cross, Feature, Path, Shape
-from gearcam.parts import Circle, Loop
+from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.sheet import (
     ARROW_ROOM,
     CENTERLINE,

@@ -20,7 +20,8 @@ from typing import Final
 import numpy as np
 
 from gearcam.drawings import part_features, placed
-from gearcam.parts import Circle, Hub, Loop, Part
+from gearcam.parts.part import Hub, Part
+from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
 from gearcam.sheets.extent import true_points
 from gearcam.sheets.paper import choose, finish, start

@@ -1,4 +1,4 @@
-"""What the registries of laws have in common: entries with claims, each name once."""
+"""What the entries of laws and of rises have in common."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 C = TypeVar("C")
-E = TypeVar("E", bound="Entry[Any]")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,25 +31,3 @@ class Entry(Generic[C]):
     continuity: str
     source: str
     claims: Callable[[], tuple[C, ...]]
-
-
-def hang(registry: dict[str, E], entry: E, what: str) -> None:
-    """Hang an entry in a registry.
-
-    Parameters
-    ----------
-    registry : dict of str to Entry
-        By name.
-    entry : Entry
-        The law.
-    what : str
-        What the registry holds, for the message.
-
-    Raises
-    ------
-    ValueError
-        If its name is taken.
-    """
-    if entry.name in registry:
-        raise ValueError(f"{what} {entry.name!r} is registered twice")
-    registry[entry.name] = entry
