@@ -152,11 +152,7 @@ class Program:
     @cached_property
     def peaks(self) -> tuple[float, float, float]:
         """Largest absolute velocity, acceleration and jerk between knots, per rad, rad^2, rad^3."""
-        ranges = (np.abs(self.range_of(order)).max() for order in (1, 2, 3))
-        first, second, third = (
-            float(max(inside, knots))
-            for inside, knots in zip(ranges, self._at_knots[1:4], strict=True)
-        )
+        first, second, third = (max(map(abs, self.range_of(order))) for order in (1, 2, 3))
         return first, second, third
 
     @cached_property
@@ -175,14 +171,8 @@ class Program:
             after=after.T,
         )
 
-    @property
-    def _at_knots(self) -> Array:
-        """Largest absolute derivatives at knots, (5,)."""
-        sides = np.abs([self.survey.before, self.survey.after])
-        return sides.max(axis=(0, 1))
-
     def range_of(self, order: int) -> tuple[float, float]:
-        """Return the smallest and largest derivative of an `order` to 3 between knots."""
+        """Return the smallest and largest derivative of an `order` to 3, on both sides of knots."""
         survey = self.survey
 
         def values(theta: Array) -> tuple[Array, Array]:
@@ -190,8 +180,9 @@ class Program:
             return found[[order]], found[[order + 1]]
 
         seen = survey.found[[order]], survey.found[[order + 1]]
-        ((_, extremes),) = extremes_among(values, survey.places, *seen)
-        return float(extremes.min()), float(extremes.max())
+        ((_, inside),) = extremes_among(values, survey.places, *seen)
+        found = np.concatenate([inside, survey.before[:, order], survey.after[:, order]])
+        return float(found.min()), float(found.max())
 
     @cached_property
     def range(self) -> tuple[float, float]:
@@ -203,7 +194,8 @@ class Program:
         """The lowest derivative that jumps at each knot, the turn's ends counting as one."""
         survey = self.survey
         inside = np.abs(survey.found[..., _INNER]).max(axis=(1, 2))
-        scales = np.maximum(inside, self._at_knots)[:4]
+        at_knots = np.abs([survey.before, survey.after]).max(axis=(0, 1))
+        scales = np.maximum(inside, at_knots)[:4]
         # a knot is rounded, and a derivative seen on the wrong side of it by its own slope
         limits = _JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]

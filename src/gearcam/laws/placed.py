@@ -1,8 +1,7 @@
 """Laws put into their places: a function over a turn made of laws on the unit square.
 
-The places of all phases that follow one law are evaluated together, a return that mirrors its rise
-among them: it is the rise placed from its end, with a width below zero. Small lifts keep all their
-digits at the foot of both.
+The places of all phases that follow one law are evaluated together, a return that runs it backwards
+among them: that is the law placed from the phase's end, with a width below zero.
 """
 
 from __future__ import annotations
