@@ -51,8 +51,10 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
             raise ValueError(f"column {name} is not a number in row {bad_rows[0]}")
         # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
         tidy = np.where(np.isinf(plain), np.inf, plain + 0.0)
-        cells = zip(tidy.tolist(), missing.tolist(), strict=True)
-        texts.append(["" if empty else repr(value) for value, empty in cells])
+        cells = [repr(value) for value in tidy.tolist()]
+        for row in np.flatnonzero(missing).tolist():
+            cells[row] = ""
+        texts.append(cells)
     lines = [",".join(arrays), *(",".join(row) for row in zip(*texts, strict=True))]
     return ("\n".join(lines) + "\n").encode("ascii")
 

@@ -60,6 +60,8 @@ class Piecewise:
         """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
         x = np.asarray(x, dtype=float)
         flat = x.ravel()
+        if len(self.pieces) == 1:
+            return [values.reshape(x.shape) for values in self._piece(0, flat, order)]
         index = np.searchsorted(self.knots[1:-1], flat, side="right")
         return list(self.on_pieces(index, flat, order).reshape(order + 1, *x.shape))
 
@@ -81,10 +83,13 @@ class Piecewise:
         """
         result = np.empty((order + 1, x.size))
         for number, here in members(index, len(self.pieces)):
-            jet = self.pieces[number](Jet.variable(x[here], order)) + self.offsets[number]
-            for k, values in enumerate(jet.derivatives()):
+            for k, values in enumerate(self._piece(number, x[here], order)):
                 result[k, here] = values
         return result
+
+    def _piece(self, number: int, x: Array, order: int) -> list[Array]:
+        jet = self.pieces[number](Jet.variable(x, order)) + self.offsets[number]
+        return jet.derivatives()
 
     def __call__(self, x: ArrayLike) -> Array:
         """Return the values at `x`."""
@@ -118,8 +123,8 @@ class Piecewise:
     def side(self, knot: int, side: int, order: int) -> list[float]:
         """Return derivatives up to `order` at a knot by the piece on one `side` (-1 or +1)."""
         number = knot - 1 if side < 0 else knot
-        jet = self.pieces[number](Jet.variable(self.knots[knot : knot + 1], order))
-        return [float(v[0]) for v in (jet + self.offsets[number]).derivatives()]
+        found = self._piece(number, self.knots[knot : knot + 1], order)
+        return [float(values[0]) for values in found]
 
     @cached_property
     def continuity(self) -> tuple[int, ...]:
