@@ -114,6 +114,26 @@ def test_pieces_can_be_put_into_other_functions() -> None:
     np.testing.assert_allclose(waved, direct, atol=1e-13)
 
 
+@pytest.mark.parametrize(
+    ("parameters", "degree"),
+    [
+        (Table(x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.05, 0.3, 0.25, 0.9, 1.0)), 5),
+        (BSpline(control=(0.0, 0.0, 0.2, 0.9, 0.4, 1.0, 1.0), degree=3), 3),
+    ],
+)
+def test_all_pieces_at_once_are_those_one_by_one(parameters: Table | BSpline, degree: int) -> None:
+    made = rise(parameters).function
+    order = 6
+    for number, piece in enumerate(made.pieces):
+        places = np.linspace(made.knots[number], made.knots[number + 1], 11)
+        found = made.on_pieces(np.full(11, number), places, order)
+        alone = piece(Jet.variable(places, order)).derivatives()
+        np.testing.assert_allclose(found, alone, rtol=1e-15, atol=0.0)
+        through = np.polynomial.Polynomial.fit(places, found[0], degree)
+        scale = np.abs(found[1]).max()
+        assert np.abs(through.deriv()(places) - found[1]).max() < 1e-10 * scale
+
+
 # --- laws by their accelerations, in high precision ---------------------------------------------
 
 

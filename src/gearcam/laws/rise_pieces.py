@@ -8,18 +8,20 @@ digits, and turned.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import zip_longest
 from math import comb, factorial
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 Shape = Callable[[Jet], Jet]
 
 _NOTHING: Final = 1e-12
@@ -159,12 +161,8 @@ def from_both_ends(
     def function(x: Jet) -> Jet:
         first = x.c[0] <= middle
         t = x.c[0] - np.where(first, low, high)
-        powers = [np.where(first, before, after) for before, after in pairs]
-        powers += [np.zeros_like(t)] * (x.order + 1 - len(powers))
-        # Horner's scheme, repeated: the coefficients about x
-        for k in range(x.order + 1):
-            for j in range(len(powers) - 2, k - 1, -1):
-                powers[j] = powers[j] + t * powers[j + 1]
+        nearer = [np.where(first, before, after) for before, after in pairs]
+        powers: list[Any] = _about(t, nearer, x.order)
         step = Jet([0.0, *x.c[1:]])
         result = Jet([powers[x.order], *[0.0] * x.order])
         for value in powers[x.order - 1 :: -1] if x.order else []:
@@ -172,3 +170,64 @@ def from_both_ends(
         return result
 
     return function
+
+
+def _about(t: Array, powers: Sequence[Array], order: int) -> list[Array]:
+    """Return the coefficients of polynomials about places `t`, to an order at least."""
+    found = [*powers, *[np.zeros_like(t)] * (order + 1 - len(powers))]
+    # Horner's scheme, repeated
+    for k in range(order + 1):
+        for j in range(len(found) - 2, k - 1, -1):
+            found[j] = found[j] + t * found[j + 1]
+    return found
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Spline(Piecewise):
+    """Polynomials between knots, each computed from the nearer end, all of them at once.
+
+    Parameters
+    ----------
+    left, right : (n, m) arrays
+        Coefficients of rising powers of the distance from the knots before and behind.
+    """
+
+    left: Array
+    right: Array
+
+    def on_pieces(self, index: Index, x: Array, order: int) -> Array:
+        """Return function and derivatives by given pieces (see `Piecewise.on_pieces`)."""
+        low, high = self.knots[index], self.knots[index + 1]
+        first = x <= 0.5 * (low + high)
+        powers = np.where(first[:, None], self.left[index], self.right[index]).T
+        found = _about(x - np.where(first, low, high), list(powers), order)[: order + 1]
+        return np.array([factorial(k) * values for k, values in enumerate(found)])
+
+
+def spline(knots: ArrayLike, left: ArrayLike, right: ArrayLike) -> Spline:
+    """Return the polynomials between knots, given by their coefficients at both ends.
+
+    Parameters
+    ----------
+    knots : (n + 1,) array
+        Rising.
+    left, right : (n, m) arrays
+        See `Spline`; both describe the same polynomials.
+
+    Returns
+    -------
+    Spline
+    """
+    places, rows = np.asarray(knots, dtype=float), (np.asarray(left), np.asarray(right))
+    ends = zip(places[:-1].tolist(), places[1:].tolist(), strict=True)
+    pieces = [
+        from_both_ends(before, after, low, high)
+        for before, after, (low, high) in zip(*(r.tolist() for r in rows), ends, strict=True)
+    ]
+    return Spline(
+        knots=places,
+        pieces=tuple(pieces),
+        offsets=np.zeros(len(pieces)),
+        left=rows[0],
+        right=rows[1],
+    )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, read_columns
-from gearcam.laws.rise_pieces import from_both_ends, product, shifted, total
+from gearcam.laws.rise_pieces import product, shifted, spline, total
 from gearcam.laws.rises import (
     NARROWEST,
     RISES,
@@ -22,7 +22,7 @@ from gearcam.laws.rises import (
     RiseClaim,
     RiseEntry,
 )
-from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
+from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
@@ -73,16 +73,12 @@ class BSpline(ClosedForm):
         spans = len(self.control) - p
         grid = [number / spans for number in range(spans + 1)]
         values = [Fraction(value) for value in self.control]
-        pieces = []
-        for number in range(spans):
-            left = _span(values[number : number + p + 1], number, spans)
-            before, after = (
-                [value * spans**k for k, value in enumerate(powers)]
-                for powers in (left, shifted(left, 1))
-            )
-            low, high = number / spans, (number + 1) / spans
-            pieces.append(Piece(from_both_ends(before, after, low, high)))
-        return piecewise(grid, pieces)
+        left = [_span(values[n : n + p + 1], n, spans) for n in range(spans)]
+        both = (
+            [[float(value * spans**k) for k, value in enumerate(powers)] for powers in rows]
+            for rows in (left, [shifted(powers, 1) for powers in left])
+        )
+        return spline(grid, *both)
 
 
 def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
@@ -209,12 +205,7 @@ def _through(points: Array, start: tuple[float, float], end: tuple[float, float]
     # the jerk at a point is one number for both sides, not only to rounding: the wider side's
     shared = np.where(h[1:] > h[:-1], left[3, 1:], right[3, :-1])
     left[3, 1:], right[3, :-1] = shared, shared
-    rows = zip(left.T.tolist(), right.T.tolist(), strict=True)
-    pieces = [
-        Piece(from_both_ends(before, after, float(x[k]), float(x[k + 1])))
-        for k, (before, after) in enumerate(rows)
-    ]
-    return piecewise(x, pieces)
+    return spline(x, left.T, right.T)
 
 
 def _joined(x: Array, y: Array, start: tuple[float, float], end: tuple[float, float]) -> Array:
