@@ -129,12 +129,13 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         )
         if across or not sign.any():
             continue  # both sides of a knot are places of their own
-        low, high = (float(place) for place in pair)
+        low, high = (_at_knot(float(place), knots) for place in pair)
         if not sign.all():
             root = float(bracketed_root(lambda t: both(t)[0][0], pair[:1], pair[1:], _ROOT)[0])
             low, high = (low, root) if sign[0] else (root, high)
-        found.append((low, high))
-    return _joined(sorted((_at_knot(low, knots), _at_knot(high, knots)) for low, high in found))
+        if low < high:
+            found.append((low, high))
+    return _joined(sorted(found))
 
 
 def _at_knot(theta: float, knots: Array) -> float:
