@@ -173,8 +173,8 @@ class Strokes:
         index, number = np.nonzero(inside)
         return index, cuts[number]
 
-    def states(self, index: Index, parameter: Array) -> tuple[Array, Array, Array]:
-        """Return cam angle, lift and velocity.
+    def states(self, index: Index, parameter: Array, order: int = 1) -> tuple[Array, ...]:
+        """Return cam angle, lift, velocity and more derivatives.
 
         Parameters
         ----------
@@ -182,11 +182,13 @@ class Strokes:
             Numbers of the strokes.
         parameter : (n,) array
             theta or velocity, within them.
+        order : int
+            Of the last derivative.
         """
-        jump = self.jump[index]
-        theta = np.where(jump, self.curve.program.knots[self.piece[index]], parameter)
-        s, ds = self.curve.program.lift.on_pieces(self.piece[index], theta, 1)
-        return theta, s, np.where(jump, parameter, ds)
+        jump, program = self.jump[index], self.curve.program
+        theta = np.where(jump, program.knots[self.piece[index]], parameter)
+        s, ds, *more = program.lift.on_pieces(self.piece[index], theta, order)
+        return theta, s, np.where(jump, parameter, ds), *more
 
     def at(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
         """Return points and unit tangents in the direction of drawing; backwards where undercut.
@@ -198,7 +200,8 @@ class Strokes:
         parameter : (n,) array
             theta or velocity, within them.
         """
-        return self.curve.trace(*self.states(index, parameter), self.inset)
+        theta, s, ds = self.states(index, parameter)
+        return self.curve.trace(theta, s, ds, self.inset)
 
     def moving(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, and their velocities as the curve is drawn.
@@ -215,14 +218,11 @@ class Strokes:
         points, velocities : (n,) complex arrays, mm and mm per unit of the parameter
             Against the tangent where the curve runs backwards.
         """
-        jump = self.jump[index]
-        theta = np.where(jump, self.curve.program.knots[self.piece[index]], parameter)
-        s, ds, d2s = self.curve.program.lift.on_pieces(self.piece[index], theta, 2)
-        ds = np.where(jump, parameter, ds)
+        theta, s, ds, d2s = self.states(index, parameter, 2)
         found = contact(self.curve.mechanism, Jet([s]), Jet([ds]), Jet([d2s]))
         speed = found.speed if self.inset > 0.0 else found.pitch_speed
         points, tangents = self.curve.trace(theta, s, ds, self.inset)
-        return points, np.where(jump, self._rolling(s, ds), speed.c[0]) * tangents
+        return points, np.where(self.jump[index], self._rolling(s, ds), speed.c[0]) * tangents
 
     def _rolling(self, s: Array, ds: Array) -> Array:
         """Return how fast a jump draws: a roller about its centre, or along a flat face."""

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from gearcam.numeric.piecewise import Piecewise, members
+from gearcam.numeric.piecewise import Pieces, Piecewise, members
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -46,13 +46,11 @@ class Place:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PlacedLaws:
-    """A function of one variable, smooth between knots, made of laws in their places.
+class PlacedLaws(Pieces):
+    """A function made of laws in their places (see `Pieces`); its knots are angles, rad.
 
     Parameters
     ----------
-    knots : (n + 1,) array, rad
-        Rising.
     laws : tuple of m Piecewise or None
         Each once.
     law, part : (n,) arrays of int
@@ -61,7 +59,6 @@ class PlacedLaws:
         How it is placed (see `Place`); the width's reciprocal.
     """
 
-    knots: Array
     laws: tuple[Piecewise | None, ...]
     law: Index
     part: Index
@@ -70,28 +67,8 @@ class PlacedLaws:
     base: Array
     scale: Array
 
-    def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
-        """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
-        x = np.asarray(x, dtype=float)
-        index = np.searchsorted(self.knots[1:-1], x.ravel(), side="right")
-        return list(self.on_pieces(index, x.ravel(), order).reshape(order + 1, *x.shape))
-
     def on_pieces(self, index: Index, x: Array, order: int) -> Array:
-        """Return function and derivatives by given pieces, right at knots too.
-
-        Parameters
-        ----------
-        index : (n,) array of int
-            Numbers of the pieces.
-        x : (n,) array, rad
-            Places in or at the ends of them.
-        order : int
-            Of the last derivative.
-
-        Returns
-        -------
-        (order + 1, n) array
-        """
+        """Return function and derivatives by given pieces (see `Pieces.on_pieces`)."""
         law, part = self.law[index], self.part[index]
         factor, per_width = self.scale[index], self.per_width[index]
         share = (x - self.origin[index]) * per_width

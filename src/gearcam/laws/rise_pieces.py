@@ -201,6 +201,7 @@ class Spline(Piecewise):
         first = x <= 0.5 * (low + high)
         powers = np.where(first[:, None], self.left[index], self.right[index]).T
         found = _about(x - np.where(first, low, high), list(powers), order)[: order + 1]
+        found[0] = found[0] + self.offsets[index]
         return np.array([factorial(k) * values for k, values in enumerate(found)])
 
 

@@ -7,6 +7,7 @@ integral in closed form. Between knots a piece is smooth; at a knot any derivati
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -39,32 +40,24 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Piecewise:
+class Pieces(ABC):
     """A function of one variable, smooth between knots.
 
     Parameters
     ----------
     knots : (n + 1,) array
         Rising.
-    pieces : tuple of n callables
-        ``piece(jet) -> jet``.
-    offsets : (n,) array
-        Added to the pieces: integration constants.
     """
 
     knots: Array
-    pieces: tuple[Callable[[Jet], Jet], ...]
-    offsets: Array
 
     def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
         x = np.asarray(x, dtype=float)
-        flat = x.ravel()
-        if len(self.pieces) == 1:
-            return [values.reshape(x.shape) for values in self._piece(0, flat, order)]
-        index = np.searchsorted(self.knots[1:-1], flat, side="right")
-        return list(self.on_pieces(index, flat, order).reshape(order + 1, *x.shape))
+        index = np.searchsorted(self.knots[1:-1], x.ravel(), side="right")
+        return list(self.on_pieces(index, x.ravel(), order).reshape(order + 1, *x.shape))
 
+    @abstractmethod
     def on_pieces(self, index: Index, x: Array, order: int) -> Array:
         """Return function and derivatives by given pieces, right at knots too.
 
@@ -81,6 +74,32 @@ class Piecewise:
         -------
         (order + 1, n) array
         """
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Piecewise(Pieces):
+    """A function made of pieces that are written for jets (see `Pieces`).
+
+    Parameters
+    ----------
+    pieces : tuple of n callables
+        ``piece(jet) -> jet``.
+    offsets : (n,) array
+        Added to the pieces: integration constants.
+    """
+
+    pieces: tuple[Callable[[Jet], Jet], ...]
+    offsets: Array
+
+    def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
+        """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
+        if len(self.pieces) > 1:
+            return super().derivatives(x, order)
+        x = np.asarray(x, dtype=float)
+        return [values.reshape(x.shape) for values in self._piece(0, x.ravel(), order)]
+
+    def on_pieces(self, index: Index, x: Array, order: int) -> Array:
+        """Return function and derivatives by given pieces (see `Pieces.on_pieces`)."""
         result = np.empty((order + 1, x.size))
         for number, here in members(index, len(self.pieces)):
             for k, values in enumerate(self._piece(number, x[here], order)):
@@ -140,9 +159,7 @@ class Piecewise:
         return tuple(result)
 
 
-def members(
-    index: NDArray[np.int64], count: int
-) -> Iterator[tuple[int, NDArray[np.int64] | slice]]:
+def members(index: Index, count: int) -> Iterator[tuple[int, Index | slice]]:
     """Yield every number that occurs in an index, and where.
 
     Parameters
