@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import Rack
 from gearcam.laws.constant import Constant
-from gearcam.meshing.contact import COAST, DRIVE, contacts, count, flank_pairs, stretches
+from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
 from gearcam.meshing.lens import lenses
 from helpers_pairs import job
@@ -88,8 +89,7 @@ def test_contact_ratio_and_active_radii(teeth: tuple[int, int], rack: Rack, side
     # the ends of the arc of contact of tooth 1 are where the mates' tips touch
     start, end = (float(edge[0]) for edge in pairs.arcs)
     rolling = gears[0].pair.rolling
-    inset = 1e-12 * pairs.pitch
-    phases = rolling.angle(np.array([start + inset, end - inset]))
+    phases = np.array([start + 1e-12, end - 1e-12])
     found = contacts(pairs, phases)
     radii = np.stack([np.abs(found.point), np.abs(found.point - rolling.center_distance)])
     lowest = [float(values.min()) for values in radii]
@@ -133,7 +133,7 @@ def test_play_at_another_centre_distance(teeth: tuple[int, int], rack: Rack, mor
     phases = np.linspace(0.0, 2.0 * math.pi / teeth[0], 23)
     turns = []
     for side in (DRIVE, COAST):
-        found = touches(flank_pairs(gears, side), phases, distance=distance)
+        found = touches(flank_pairs(gears, side, distance), phases)
         outward = np.full(len(phases), -np.inf)
         np.maximum.at(outward, found.step, -side * found.turn)
         turns.append(-side * outward)
@@ -168,10 +168,10 @@ def test_lens_areas(teeth: tuple[int, int], rack: Rack) -> None:
 def test_single_and_double_pair_arcs(teeth: tuple[int, int], rack: Rack) -> None:
     truth, gears = spur(teeth, rack)
     pairs = flank_pairs(gears, DRIVE)
-    start, end, carrying = stretches(pairs)
+    start, end, carrying = pairs.stretches
     assert end[:-1] == pytest.approx(start[1:], abs=1e-12)
     assert float((end - start).sum()) == pytest.approx(2.0 * math.pi, rel=1e-12)
     mean = float(((end - start) * carrying).sum()) / (2.0 * math.pi)
     assert mean == pytest.approx(truth.contact_ratio, rel=1e-9)
     middle = 0.5 * (start + end)
-    assert np.array_equal(count(pairs, middle), carrying)
+    assert np.array_equal(pairs.carrying(middle), carrying)

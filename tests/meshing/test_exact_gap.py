@@ -9,18 +9,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.ellipse import Ellipse
-from gearcam.meshing.contact import (
-    COAST,
-    DRIVE,
-    FlankPairs,
-    contacts,
-    count,
-    flank_pairs,
-    stretches,
-)
+from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
 from helpers_pairs import job, profile
 
@@ -77,7 +70,7 @@ def first_touch(made: GearPairJob, side: int, phi: float, distance: float) -> fl
 def test_first_touch_is_that_of_dense_points(made: GearPairJob, side: int, more: float) -> None:
     phases = np.linspace(0.1, 6.2, 23)
     distance = made.pair.center_distance + more
-    found = touches(flank_pairs(made.gears, side), phases, distance=distance)
+    found = touches(flank_pairs(made.gears, side, distance), phases)
     outward = np.full(len(phases), -np.inf)
     np.maximum.at(outward, found.step, -side * found.turn)
     expected = [first_touch(made, side, phi, distance) for phi in phases]
@@ -146,9 +139,9 @@ def test_sliding_is_the_difference_of_the_arcs_travelled(made: GearPairJob, side
 def test_counts_arcs_and_contacts_agree(made: GearPairJob, side: int) -> None:
     pairs = flank_pairs(made.gears, side)
     phases = np.random.default_rng(7).uniform(0.0, 2.0 * math.pi, 500)
-    number = count(pairs, phases)
+    number = pairs.carrying(phases)
     assert np.array_equal(number, np.bincount(contacts(pairs, phases).step, minlength=500))
-    start, end, carrying = stretches(pairs)
+    start, end, carrying = pairs.stretches
     place = np.searchsorted(start, phases, side="right") - 1
     assert np.array_equal(number, carrying[place])
     rolling = made.pair.rolling

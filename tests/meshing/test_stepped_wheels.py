@@ -51,7 +51,7 @@ def test_every_step_meshes_without_error_and_without_overlap(name: str) -> None:
     spec = MeshingSpec(steps=90)
     for gears in GearPairJob(design).steps[1:]:  # the first one is the pair without steps
         found = study(gears, spec)
-        assert np.abs(found.columns["transmission_error_rad"]).max() < 1e-9
+        assert np.abs(found.columns["lag_rad"]).max() < 1e-9
         assert np.abs(found.columns["backlash_mm"]).max() < 1e-9
         summary = found.summary
         assert summary["interference_steps"] == 0

@@ -214,7 +214,7 @@ def test_a_pinion_cutter_that_reaches_a_remote_tooth_names_both() -> None:
     )
     pair = replace(made.pair, toothings=(large, made.pair.toothings[1]))
     gears = (replace(gear, pair=pair), made.gear2)
-    subject = Subject(pair=pair, gears=gears, bores=(None, None), backlash=0.0)
+    subject = Subject(pair=pair, gears=gears, bores=(None, None))
     (found,) = remote_cutter(subject, math.nan)
     assert found.severity == "warning"
     numbers = [int(word) for word in found.where.replace(",", "").split() if word.isdigit()]
@@ -237,14 +237,15 @@ def test_a_pair_that_does_not_drive_is_an_error() -> None:
     found = codes(overlap_of(0.95))["contact-ratio"]
     assert found.severity == "error"
     assert found.value == pytest.approx(0.95, abs=1e-9)
-    assert "Nothing drives" in found.message
+    assert "No flanks touch" in found.message
+    assert "ends of flanks drive" in found.message
     assert "phi1 = " in found.message
     assert codes(overlap_of(1.01))["contact-ratio"].severity == "warning"
 
 
 def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:
     made = job(Constant(), (17, 60))
-    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None), backlash=0.0)
+    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))
     ratio = subject.contact_ratio
     (warning,) = undercut(subject, ratio - 1e-6)
     (error,) = undercut(subject, ratio + 1e-6)
@@ -267,7 +268,7 @@ def test_the_largest_module_that_the_message_names_is_the_largest() -> None:
 def test_contact_ratio_of_circular_wheels_is_the_textbooks() -> None:
     """Contact ratio from tip and base circles; both sides, every flank."""
     made = job(Constant(), (24, 36))
-    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None), backlash=0.0)
+    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))
     alpha, r1, r2 = math.radians(20), 12.0, 18.0
 
     def tip(r: float) -> float:
@@ -275,9 +276,9 @@ def test_contact_ratio_of_circular_wheels_is_the_textbooks() -> None:
 
     path = tip(r1) + tip(r2) - (r1 + r2) * math.sin(alpha)
     expected = path / (math.pi * math.cos(alpha))
-    for arcs in subject.arcs:
-        np.testing.assert_allclose(arcs.ratios, expected, rtol=1e-9)
-        assert arcs.gaps == ()
+    for pairs in subject.sides:
+        np.testing.assert_allclose(pairs.contact_ratios, expected, rtol=1e-9)
+        assert pairs.stretches[2].min() == 1
 
 
 def test_findings_come_worst_first() -> None:

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from gearcam.findings import CHECKS, Finding, run_checks
+from gearcam.gears.contact import DRIVE
 from gearcam.gears.spec import Rack
 from gearcam.laws.constant import Constant
 from gearcam.meshing.checks import KIND, clearances, spans
-from gearcam.meshing.contact import DRIVE
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
 from helpers_pairs import job, profile
@@ -34,6 +34,7 @@ def wheels(distance_more: float = 0.0) -> Meshing:
 def test_all_checks_are_here() -> None:
     codes = {code for kind, code in CHECKS if kind == KIND}
     assert codes == {
+        "contact-ratio",
         "nothing-drives",
         "interference",
         "edge-contact",
@@ -70,17 +71,31 @@ def test_tip_clearance_follows_the_mounting() -> None:
             assert distances == pytest.approx(0.5 + more, abs=2e-4)
 
 
-def test_nothing_drives_tells_the_arcs() -> None:
-    """Short teeth: their arcs of contact leave gaps."""
+def test_contact_ratio_below_one_is_an_error_and_says_that_edges_drive() -> None:
+    """Short teeth: their arcs of contact leave gaps, in which the ends of flanks touch."""
     short = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.5, dedendum=0.7))
-    finding = found(study(short.gears, FEW))["nothing-drives"]
+    findings = found(study(short.gears, FEW))
+    assert "nothing-drives" not in findings
+    finding = findings["contact-ratio"]
     assert finding.severity == "error"
-    assert "phi1 = " in finding.where
+    assert "ends of flanks drive" in finding.message
     ratio = mount(short.gears, FEW).pairs[DRIVE].contact_ratios[0]
+    assert finding.value == pytest.approx(ratio, rel=1e-9)
     assert ratio < 1.0
-    assert finding.value == pytest.approx(360.0 * (1.0 - ratio), rel=1e-9)
     longer = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.7, dedendum=0.9))
-    assert "nothing-drives" not in found(study(longer.gears, FEW))
+    assert "contact-ratio" not in found(study(longer.gears, FEW))
+
+
+@pytest.mark.parametrize(("distance", "bad"), [(43.7, True), (42.0, False)])
+def test_nothing_drives_where_not_even_edges_reach(distance: float, bad: bool) -> None:
+    """Tips of 22 mm radius: at 43.7 mm they hardly reach each other, and not all along."""
+    made = job(Constant(), (20, 20), module=2.0)
+    findings = found(study(made.gears, replace(FEW, center_distance=distance)))
+    assert ("nothing-drives" in findings) == bad
+    assert findings["contact-ratio"].severity == "error"
+    if bad:
+        assert "nothing drives at all" in findings["contact-ratio"].message
+        assert "phi1 = " in findings["nothing-drives"].where
 
 
 def test_edge_contact_where_only_an_edge_is_left() -> None:

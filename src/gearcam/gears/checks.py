@@ -14,7 +14,7 @@ import numpy as np
 from gearcam.findings import Finding, Severity, check
 from gearcam.gears import centrode_checks
 from gearcam.gears.pair import Gear
-from gearcam.gears.subject import KIND, Subject
+from gearcam.gears.subject import CONTACT_RATIO, KIND, Subject
 from gearcam.quantities import LENGTH, NUMBER, Param
 
 __all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
@@ -53,53 +53,20 @@ def largest_module(gear: Gear) -> float:
     return gear.convex_radius * math.sin(cutter.alpha) ** 2 / depth
 
 
-_CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
-
-
-@check(
-    "contact-ratio",
-    kind=KIND,
-    doc="smallest contact ratio of any flank, both sides; phases in which nothing drives",
-    limit=_CONTACT_RATIO,
-)
-def contact_ratio(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Warn of a low contact ratio; an error where nothing drives."""
-    for side, arcs in zip(("backward", "forward"), subject.arcs, strict=True):
-        worst = float(arcs.ratios.min())
-        if not arcs.gaps and worst >= limit:
-            continue
-        tooth = int(arcs.tooth[arcs.ratios.argmin()])
-        message = "Few teeth carry at a time; a larger rack.addendum or more teeth help."
-        if arcs.gaps:
-            places = [math.degrees(float(subject.pair.rolling.angle(s))) for s in arcs.gaps[0]]
-            message = (
-                f"Nothing drives {side} from phi1 = {places[0]:.6g} to {places[1]:.6g} deg"
-                f"{' and in other phases' if len(arcs.gaps) > 1 else ''}."
-            )
-        yield Finding(
-            code="contact-ratio",
-            severity="error" if arcs.gaps else "warning",
-            message=message,
-            value=worst,
-            limit=limit,
-            where=f"driving {side}, wheel 1, tooth {tooth}",
-        )
-
-
 @check(
     "undercut",
     kind=KIND,
     doc="flanks that turn back on themselves, and whether the pair still drives",
-    limit=_CONTACT_RATIO,
+    limit=CONTACT_RATIO,
 )
 def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn of undercut teeth; an error where they no longer drive well enough."""
     ratio = subject.contact_ratio
-    driven = not any(arcs.gaps for arcs in subject.arcs)
+    driven = subject.driven
     severity: Severity = "warning" if driven and ratio >= limit else "error"
     left = f"the least contact ratio that is left is {ratio:.4g}"
     if not driven:
-        left += ", and in some phases nothing drives"
+        left += ", and in some phases no flanks touch"
     elif ratio < limit:
         left += f", below the limit {limit:.4g}"
     for gear in subject.gears:
@@ -213,13 +180,13 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
 )
 def no_backlash(subject: Subject, limit: float) -> Iterator[Finding]:
     """Note that the wheels are made without play."""
-    if subject.backlash < limit:
+    if subject.play < limit:
         yield Finding(
             code="no-backlash",
             severity="note",
-            message="The wheels are drawn without backlash: printed ones want some, and so do "
+            message="The wheels are made without backlash: printed ones want some, and so do "
             "shafts whose distance is not exact.",
-            value=subject.backlash,
+            value=max(subject.play, 0.0),
             limit=limit,
             unit="mm",
             where="pair",

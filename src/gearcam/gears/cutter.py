@@ -103,6 +103,7 @@ def choose_cutter(
     *,
     shift: float = 0.0,
     backlash: float = 0.0,
+    clearance: float = 0.0,
 ) -> Cutter:
     """Choose the cutter of a wheel.
 
@@ -120,6 +121,8 @@ def choose_cutter(
         Profile shift of this wheel, in modules.
     backlash : float, mm
         Play along the pitch curve; each wheel gives half of it.
+    clearance : float, mm
+        What is taken off the toothed edge, along its normal: a cutter larger all around by it.
 
     Returns
     -------
@@ -158,7 +161,31 @@ def choose_cutter(
             "teeth) or a smaller rack.dedendum",
             more_teeth=True,
         )
-    return cutter
+    return widened(cutter, clearance)
+
+
+def widened(cutter: Cutter, by: float) -> Cutter:
+    """Return a cutter that is larger all around, and so cuts a parallel of what `cutter` cuts.
+
+    Parameters
+    ----------
+    cutter : Cutter
+        The cutter.
+    by : float, mm
+        How much, along the normal of its edge. Its flanks move by ``by/cos(alpha)`` along the pitch
+        line, and the arcs of its tips keep their centres.
+
+    Returns
+    -------
+    Cutter
+    """
+    return replace(
+        cutter,
+        addendum=cutter.addendum - by,
+        dedendum=cutter.dedendum + by,
+        tip_radius=cutter.tip_radius + by,
+        half_space=cutter.half_space + by / math.cos(cutter.alpha),
+    )
 
 
 def _blunt(cutter: Cutter) -> Cutter:

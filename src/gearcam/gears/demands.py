@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from gearcam.errors import InfeasibleError
-from gearcam.gears.spec import PairSpec, Rack
+from gearcam.gears.spec import Finish, PairSpec, Rack
 
 _TIP_PART = 0.95
 """Largest tip radius over the dedendum: with its centre on the pitch line a tip arc would cut the
@@ -99,3 +99,40 @@ def demand_shift(rack: Rack, spec: PairSpec, module: float) -> None:
             unit="mm",
             nearest=f"up to {most:.10g} mm for a module of {module:.6g} mm",
         )
+
+
+def demand_clearance(
+    rack: Rack, spec: PairSpec, module: float, finish: tuple[Finish, Finish]
+) -> None:
+    """Refuse a clearance that leaves a wheel no teeth.
+
+    Parameters
+    ----------
+    rack : Rack
+        Basic rack.
+    spec : PairSpec
+        Shift and play.
+    module : float, mm
+        Module.
+    finish : (Finish, Finish)
+        What is taken off the edges of both wheels' teeth.
+
+    Raises
+    ------
+    InfeasibleError
+        Naming the largest.
+    """
+    alpha = rack.pressure_angle
+    for number, (wheel, shift) in enumerate(zip(finish, (spec.x, -spec.x), strict=True)):
+        half = (0.25 * math.pi + shift * math.tan(alpha)) * module - 0.25 * spec.backlash
+        height = (rack.addendum + shift - _LEAST_ADDENDUM) * module
+        most = min(0.5 * half * math.cos(alpha), height)
+        if wheel.clearance > most:
+            raise InfeasibleError(
+                "so much clearance leaves no teeth",
+                where=f"blank.clearance_mm[{number}]",
+                value=wheel.clearance,
+                limit=most,
+                unit="mm",
+                nearest=f"up to {most:.6g} mm for a module of {module:.6g} mm",
+            )

@@ -30,6 +30,7 @@ class Kind(IntEnum):
     FILLET = 1
     LAND = 2
     TIP = 3
+    ROUND = 4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -50,6 +51,8 @@ class Toothing:
         Whether its teeth go all around; else its blank ends half a pitch beyond them.
     moved : float, mm
         How far its teeth are moved on along its centrode.
+    rounding : float, mm
+        Radius of the rounded edges of its tips.
     """
 
     rolling: Rolling
@@ -58,6 +61,7 @@ class Toothing:
     cutter: Cutter
     closed: bool = True
     moved: float = 0.0
+    rounding: float = 0.0
 
     @property
     def turn(self) -> complex:
@@ -132,11 +136,14 @@ class Rows:
     kind : (n,) int array
         `Kind`.
     sf, sigma : (n,) arrays
-        Flank that a flank or fillet belongs to; unused for land and tip.
+        Flank that a flank or fillet belongs to; of a rounded edge the flank on which its centre
+        lies; unused for land and tip.
     start, end : (n,) arrays, rad
-        Driver angles at the ends, in the order of travel.
+        Driver angles at the ends, in the order of travel; of a rounded edge the one at its flank
+        (start for sigma = -1, end for +1), and a rad beyond it.
     low, high : (n,) arrays, mm
-        For tips: distance from the centrode at the ends; for lands: minus the dedendum.
+        For tips: distance from the centrode at the ends; for lands: minus the dedendum; for rounded
+        edges the directions of the outward normals at the ends, rad.
     corner : (n,) bool array
         Whether a corner precedes the row.
     tooth : (n,) int array
@@ -197,7 +204,18 @@ def trace(
         points[fillet] = frames.p + arm + cutter.tip_radius * unit
         tangents[fillet] = w * unit
 
-    parallel = np.flatnonzero(kind >= Kind.LAND)
+    rounded = np.flatnonzero(kind == Kind.ROUND)
+    if rounded.size:
+        row = index[rounded]
+        start, end, sigma = rows.start[row], rows.end[row], rows.sigma[row]
+        frames = toothing.frames(np.where(sigma < 0.0, start, end), curved=False)
+        share = (phi[rounded] - start) / (end - start)
+        normal = np.exp(1j * (rows.low[row] + share * (rows.high[row] - rows.low[row])))
+        center = toothing.flank_points(frames, rows.sf[row], sigma)
+        points[rounded] = center + toothing.rounding * normal
+        tangents[rounded] = normal / w
+
+    parallel = np.flatnonzero((kind == Kind.LAND) | (kind == Kind.TIP))
     if parallel.size:
         frames, row = toothing.frames(phi[parallel]), index[parallel]
         span = rows.end[row] - rows.start[row]

@@ -12,6 +12,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Kind, Rows, Toothing
+from gearcam.gears.rounding import round_tips
 from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
@@ -306,7 +307,16 @@ def _assemble(
     if not toothing.closed:
         joined = cut_ends(toothing, joined, flanks.tips)
     pointed = (joined.kind == Kind.TIP) & (joined.start == joined.end)
-    return select(joined, np.flatnonzero(~pointed)), replace(flanks, lowest=lowest)
+    joined = select(joined, np.flatnonzero(~pointed))
+    flanks = replace(flanks, lowest=lowest)
+    if not toothing.rounding:
+        return joined, flanks
+    joined, sf, sigma, reach = round_tips(toothing, joined)
+    highest = flanks.highest.copy()
+    tooth = np.rint((sf - sigma * toothing.half_tooth - toothing.tooth_places[0]) / toothing.pitch)
+    z = len(toothing.numbers)
+    highest[tooth.astype(np.int64) % z + np.where(sigma > 0, 0, z)] = reach
+    return joined, replace(flanks, highest=highest)
 
 
 def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossing]) -> None:

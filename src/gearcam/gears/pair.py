@@ -1,8 +1,4 @@
-"""The pair: two wheels on their shafts, and which of their flanks touch.
-
-Wheel 1's flank at `sf` with side `sigma` touches wheel 2's flank of the same `sf` and the opposite
-side, at every roll s that lies in the reach of both: ``w1 = sigma*(sf - s)`` and ``w2 = -w1``.
-"""
+"""The pair: two wheels on their shafts."""
 
 from __future__ import annotations
 
@@ -15,11 +11,11 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.cutter import choose_cutter
-from gearcam.gears.demands import demand_rack, demand_shift
+from gearcam.gears.demands import demand_clearance, demand_rack, demand_shift
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, Wheel, roll
-from gearcam.gears.spec import PairSpec, Rack
+from gearcam.gears.spec import Finish, PairSpec, Rack
 from gearcam.laws.base import RatioLaw
 from gearcam.laws.span import Lobes
 from gearcam.numeric.bulges import as_pairs
@@ -169,7 +165,13 @@ class Gear:
         return as_pairs(self.toothing.frames(phi).p)
 
 
-def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances) -> GearPair:
+def make_pair(
+    law: RatioLaw,
+    spec: PairSpec,
+    rack: Rack,
+    tolerances: Tolerances,
+    finish: tuple[Finish, Finish] = (Finish(), Finish()),
+) -> GearPair:
     """Put a law on two shafts.
 
     Parameters
@@ -182,6 +184,8 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
         Basic rack.
     tolerances : Tolerances
         Inner accuracy.
+    finish : (Finish, Finish)
+        What is taken off the edges of both wheels' teeth.
 
     Returns
     -------
@@ -211,6 +215,7 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
     module = spec.module or rolling.length(1) / (math.pi * spec.teeth[0])
     demand_rack(rack)
     demand_shift(rack, spec, module)
+    demand_clearance(rack, spec, module, finish)
 
     def toothing(wheel: Wheel) -> Toothing:
         concave = -float(rolling.curvature_extremes(wheel)[1].min())
@@ -221,6 +226,7 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
             f"wheel {wheel}",
             shift=spec.x if wheel == 1 else -spec.x,
             backlash=spec.backlash,
+            clearance=finish[wheel - 1].clearance,
         )
         return Toothing(
             rolling=rolling,
@@ -228,6 +234,7 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
             teeth=spec.teeth[wheel - 1],
             cutter=cutter,
             closed=law.lobes.closed and not (law.feeds and wheel == 2),
+            rounding=finish[wheel - 1].tip_rounding,
         )
 
     return GearPair(
@@ -271,104 +278,3 @@ def lobes_of(teeth: tuple[int, int]) -> Lobes:
     """Return the lobes of tooth counts: ``z1 : z2`` in lowest terms."""
     common = math.gcd(*teeth)
     return Lobes(teeth[0] // common, teeth[1] // common)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ContactArcs:
-    """Where the flanks of one side touch: one entry a flank of wheel 1's first lobe.
-
-    Parameters
-    ----------
-    start, end : (q,) arrays, mm
-        Roll s between which the flank is in contact, start < end; empty where start >= end.
-    tooth : (q,) int array
-        Number of its tooth.
-    pitch, lobe_length : float, mm
-        Pitch and length of the lobe, or of an open pair's centrode.
-    closed : bool
-        Whether it repeats.
-    """
-
-    start: Array
-    end: Array
-    tooth: NDArray[np.int64]
-    pitch: float
-    lobe_length: float
-    closed: bool
-
-    @property
-    def ratios(self) -> Array:
-        """Contact ratio of each flank: arc of contact over the pitch; 0 where there is none."""
-        return np.maximum(self.end - self.start, 0.0) / self.pitch
-
-    @cached_property
-    def gaps(self) -> tuple[tuple[float, float], ...]:
-        """Stretches of roll within the lobe on which no flank touches, mm."""
-        shifts = (-1, 0, 1) if self.closed else (0,)
-        lengths = np.concatenate([self.end - self.start] * len(shifts))
-        starts = np.concatenate([self.start + k * self.lobe_length for k in shifts])
-        if not self.closed:  # nothing is asked for beyond the ends
-            outside = self.lobe_length * np.array([-1.0, 1.0])
-            starts, lengths = np.append(starts, outside), np.append(lengths, [self.lobe_length] * 2)
-        alive = lengths > 0.0
-        order = np.argsort(starts[alive])
-        low, high = starts[alive][order], (starts + lengths)[alive][order]
-        if low.size == 0:
-            return ((0.0, self.lobe_length),)
-        covered = np.maximum.accumulate(high)
-        holes = np.flatnonzero(low[1:] > covered[:-1] + 1e-9 * self.pitch)
-        found = [(float(covered[k]), float(low[k + 1])) for k in holes]
-        return tuple(gap for gap in found if 0.0 <= gap[0] < self.lobe_length)
-
-
-def contact_arcs(gear1: Gear, gear2: Gear, sigma: int) -> ContactArcs:
-    """Return where the flanks of one side touch.
-
-    Parameters
-    ----------
-    gear1, gear2 : Gear
-        The wheels.
-    sigma : {+1, -1}
-        Side of wheel 1's flanks.
-
-    Returns
-    -------
-    ContactArcs
-        Over one lobe.
-    """
-    first, second = gear1.profile.flanks, gear2.profile.flanks
-    one, two = _mates(gear1, gear2, sigma)
-    sf = first.sf[one] if gear2.toothing.closed else second.sf[two]
-    low = np.maximum(first.lowest[one], -second.highest[two])
-    high = np.minimum(first.highest[one], -second.lowest[two])
-    ends = np.stack([sf - sigma * low, sf - sigma * high])
-    start, end = (ends[1], ends[0]) if sigma > 0 else (ends[0], ends[1])
-    numbers = np.array(gear1.toothing.numbers)
-    return ContactArcs(
-        start=start,
-        end=end,
-        tooth=numbers[one % len(numbers)],
-        pitch=gear1.toothing.pitch,
-        lobe_length=gear1.pair.rolling.lobe_length
-        if gear2.toothing.closed
-        else gear2.toothing.length,
-        closed=gear2.toothing.closed,
-    )
-
-
-def _mates(gear1: Gear, gear2: Gear, sigma: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Numbers of the flanks of both wheels that touch each other, by wheel 1's teeth."""
-    z1, z2 = len(gear1.toothing.numbers), len(gear2.toothing.numbers)
-    if gear2.toothing.closed:
-        count = math.gcd(z1, z2)
-        one = np.arange(count) + (0 if sigma > 0 else z1)
-        # sf = (j + sigma/4) pitches on wheel 1 is (k + 1/2 - sigma/4) pitches on wheel 2.
-        two = (np.arange(count) + (0 if sigma > 0 else -1)) % z2 + (z2 if sigma > 0 else 0)
-        return one, two
-    start, end = gear2.toothing.ends
-    two = np.arange(z2) + (z2 if sigma > 0 else 0)
-    places = gear2.profile.flanks.sf[two]
-    two = two[(places > start) & (places < end)]
-    tooth = np.rint(gear2.profile.flanks.sf[two] / gear2.toothing.pitch - 0.25 * sigma).astype(int)
-    one = tooth % z1 if gear1.toothing.closed else tooth + 1 - gear1.toothing.numbers[0]
-    return one + (0 if sigma > 0 else z1), two

@@ -26,6 +26,7 @@ from gearcam.tolerances import Tolerances
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]
 Wheel = Literal[1, 2]
+WHEELS: tuple[Wheel, Wheel] = (1, 2)
 
 _MARGIN = 2.0
 """Pitches beyond an open pair's end in which its last teeth are formed, fillets included."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.flank import Rows, Toothing, trace
+from gearcam.gears.flank import Kind, Rows, Toothing, trace
 from gearcam.gears.rolling import Plane
 
 Array = NDArray[np.float64]
@@ -51,7 +51,8 @@ class WheelCurves:
         law, rows = self.toothing.rolling.law, self.rows
         low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
         phi = law.knots_near(0.5 * (low + high))
-        row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]))
+        curved = rows.kind != Kind.ROUND  # an arc knows nothing of the law
+        row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]) & curved[:, None])
         return row, phi[row, knot]
 
     def at(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:

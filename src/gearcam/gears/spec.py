@@ -67,3 +67,19 @@ class PairSpec:
         LENGTH, default=0.0, ge=0, le=1e4, doc="play along the pitch curve, shared by both wheels"
     )
     face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="width of the wheels")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finish:
+    """What is taken off the toothed edge of a wheel as it is made.
+
+    Parameters
+    ----------
+    clearance : float, mm
+        Everywhere along the normal.
+    tip_rounding : float, mm
+        Radius of the rounded edges of the tips.
+    """
+
+    clearance: float = 0.0
+    tip_rounding: float = 0.0

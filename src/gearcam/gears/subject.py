@@ -8,12 +8,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.pair import ContactArcs, Gear, GearPair, contact_arcs
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
+from gearcam.gears.pair import Gear, GearPair
 from gearcam.numeric.piecewise import extremes
+from gearcam.quantities import NUMBER, Param
 
 Array = NDArray[np.float64]
 
 KIND = "gear-pair"
+
+CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
+"""Limit of the contact ratio, for all checks that ask for it."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -28,14 +33,11 @@ class Subject:
         Both wheels.
     bores : (float or None, float or None), mm
         Bore diameters.
-    backlash : float, mm
-        Backlash along the pitch curve.
     """
 
     pair: GearPair
     gears: tuple[Gear, Gear]
     bores: tuple[float | None, float | None]
-    backlash: float
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
@@ -68,11 +70,22 @@ class Subject:
         return places, values
 
     @cached_property
-    def arcs(self) -> tuple[ContactArcs, ContactArcs]:
-        """Contact arcs of both sides."""
-        return contact_arcs(*self.gears, 1), contact_arcs(*self.gears, -1)
+    def sides(self) -> tuple[FlankPairs, FlankPairs]:
+        """The pairs of flanks that hold back and those that drive, at the designed distance."""
+        return flank_pairs(self.gears, COAST), flank_pairs(self.gears, DRIVE)
 
     @property
     def contact_ratio(self) -> float:
         """Smallest contact ratio of any flank, both sides."""
-        return min(float(arcs.ratios.min()) for arcs in self.arcs)
+        return min(float(pairs.contact_ratios.min()) for pairs in self.sides)
+
+    @property
+    def driven(self) -> bool:
+        """Whether flanks touch in every phase, both sides."""
+        return all(bool(pairs.stretches[2].all()) for pairs in self.sides)
+
+    @property
+    def play(self) -> float:
+        """What the spaces are wider than the teeth along the pitch curve, both wheels', mm."""
+        one, two = (toothing.cutter for toothing in self.pair.toothings)
+        return 2.0 * (one.half_space + two.half_space) - one.pitch

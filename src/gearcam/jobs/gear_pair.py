@@ -25,9 +25,11 @@ from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.helix import leads, stepped
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
 from gearcam.gears.rolling import Wheel
+from gearcam.gears.spec import Finish
 from gearcam.jobs.job import Job, Progress
 from gearcam.jobs.written import Written, finish
 from gearcam.laws.base import RatioLaw
+from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 
@@ -40,6 +42,9 @@ MESHING = "meshing.csv"
 
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank")
 """Checks that can find something else in each step of stepped wheels."""
+
+_AS_MOUNTED = ("contact-ratio",)
+"""Checks of a pair as designed that a study repeats for the pair as mounted."""
 
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
@@ -109,7 +114,17 @@ class GearPairJob(Job):
         """The centrodes with their cutters."""
         law = self.law
         with self._stage("centrodes"), self._advised():
-            return make_pair(law, self.design.pair, self.design.rack, self.tolerances)
+            return make_pair(law, self.design.pair, self.design.rack, self.tolerances, self._finish)
+
+    @property
+    def _finish(self) -> tuple[Finish, Finish]:
+        """What is taken off the edges of both wheels' teeth."""
+        blanks = (self.design.blank.wheel(number) for number in (1, 2))
+        first, second = (
+            Finish(clearance=max(0.0, -blank.offset), tip_rounding=blank.tip_rounding)
+            for blank in blanks
+        )
+        return first, second
 
     @cached_property
     def gear1(self) -> Gear:
@@ -172,9 +187,7 @@ class GearPairJob(Job):
         return in_order(found)
 
     def _gear_findings(self, pair: GearPair, gears: tuple[Gear, Gear]) -> tuple[Finding, ...]:
-        subject = Subject(
-            pair=pair, gears=gears, bores=self.bores, backlash=self.design.pair.backlash
-        )
+        subject = Subject(pair=pair, gears=gears, bores=self.bores)
         with self._stage("checks"):
             return run_checks(KIND, subject, self.design.limits)
 
@@ -264,7 +277,9 @@ class GearPairJob(Job):
             raise KeyboardInterrupt
         with self._stage("checks"):
             extra = run_checks(MESHING_KIND, meshing, self.design.limits)
-        findings = in_order((*self.findings, *extra))
+        # of what drives the study knows, as mounted
+        told = [finding for finding in self.findings if finding.code not in _AS_MOUNTED]
+        findings = in_order((*told, *extra))
         folder = Path(directory) / self.design.name
         contents = {MESHING: table_bytes(meshing.columns)}
         others = [name for name in previous_files(folder) if name not in (MESHING, SUMMARY)]

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.checks import tooth_ranges
-from gearcam.gears.pair import Gear, contact_arcs
+from gearcam.gears.pair import Gear
 from gearcam.gears.rolling import Plane
-from gearcam.parts.blank import WheelBlank
-from gearcam.parts.checks import LostFlank, PartsSubject
+from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Place
@@ -23,9 +21,6 @@ if TYPE_CHECKING:
     from gearcam.jobs.gear_pair import GearPairJob
 
 Array = NDArray[np.float64]
-
-_PLACES = 65
-"""Places on each flank at which it is asked whether it is still there."""
 
 
 def make_parts(job: GearPairJob) -> tuple[Part, Part]:
@@ -90,38 +85,8 @@ def _mark(job: GearPairJob, gear: Gear) -> Mark:
 
 
 def parts_subject(job: GearPairJob) -> PartsSubject:
-    """Return what the checks of parts look at: the `job`'s parts and what its flanks lose."""
-    first, second = (_lost(job, number) for number in (1, 2))
-    return PartsSubject(parts=job.parts, lost=(first, second))
-
-
-def _lost(job: GearPairJob, number: int) -> LostFlank | None:
-    """Find what offset and rounding take off a wheel's flanks."""
-    gears, gear = job.gears, job.gears[number - 1]
-    blank, flanks, toothing = job.design.blank.wheel(number), gear.profile.flanks, gear.toothing
-    if not (blank.offset or blank.tip_rounding):
-        return None
-    low, high = kept_reach(gear, blank)
-    slope = math.sin(toothing.cutter.alpha) * math.cos(toothing.cutter.alpha)
-    height = slope * np.maximum(flanks.highest - high, low - flanks.lowest)
-    height = np.minimum(height, slope * (flanks.highest - flanks.lowest))
-    height[~whole_flanks(gear)] = 0.0
-    made = replace(
-        gear, profile=replace(gear.profile, flanks=replace(flanks, lowest=low, highest=high))
-    )
-    pair = (made, gears[1]) if number == 1 else (gears[0], made)
-    whole, ratio = (
-        min(float(contact_arcs(*wheels, sigma).ratios.min()) for sigma in (1, -1))
-        for wheels in (gears, pair)
-    )
-    worst = height > max(0.999 * float(height.max()), 1e-12)
-    numbers = np.unique(np.tile(np.array(toothing.numbers), 2)[worst]).tolist()
-    return LostFlank(
-        height=float(height.max()),
-        expected=max(-blank.offset, blank.tip_rounding, 0.0),
-        teeth=f"teeth {tooth_ranges(numbers)}",
-        contact_ratio=(whole, ratio),
-    )
+    """Return what the checks of parts look at: the `job`'s parts."""
+    return PartsSubject(parts=job.parts)
 
 
 def whole_flanks(gear: Gear) -> NDArray[np.bool_]:
@@ -129,38 +94,6 @@ def whole_flanks(gear: Gear) -> NDArray[np.bool_]:
     whole = np.zeros(len(gear.toothing.numbers), dtype=bool)
     whole[gear.toothing.whole] = True
     return np.tile(whole, 2)
-
-
-def kept_reach(gear: Gear, blank: WheelBlank) -> tuple[Array, Array]:
-    """Return between which reaches each flank is still there after rounding and offset.
-
-    Parameters
-    ----------
-    gear : Gear
-        The wheel.
-    blank : WheelBlank
-        With offset and rounding.
-
-    Returns
-    -------
-    lowest, highest : (2z,) arrays, mm
-        Reach w; found to a 64th of the flank. The lowest is above the highest where nothing is
-        left.
-    """
-    flanks = gear.profile.flanks
-    by = [value for value in (blank.offset, -blank.tip_rounding) if value]
-    if not by:
-        return flanks.lowest, flanks.highest
-    from gearcam.parts.parallel import touches
-
-    share = np.linspace(0.0, 1.0, _PLACES)[:, None]
-    reach = flanks.lowest + share * (flanks.highest - flanks.lowest)
-    points, normals = flank_places(gear, reach)
-    free = np.ones(points.size, dtype=bool)
-    for radius in by:
-        free &= touches(gear.profile.contour, points.ravel(), normals.ravel(), radius)
-    free = free.reshape(reach.shape)
-    return np.where(free, reach, np.inf).min(axis=0), np.where(free, reach, -np.inf).max(axis=0)
 
 
 def flank_places(gear: Gear, reach: Array) -> tuple[Plane, Plane]:
@@ -206,13 +139,13 @@ def inspection_rows(job: GearPairJob) -> dict[str, Array]:
     blocks: list[list[Array]] = []
     for step, gears in enumerate(job.steps, start=1):
         for gear in gears:
-            blank, flanks = job.design.blank.wheel(gear.wheel), gear.profile.flanks
-            low, high = kept_reach(gear, blank)
+            flanks = gear.profile.flanks
+            low, high = flanks.lowest, flanks.highest
             reach = low + share * (high - low)
             kept = whole_flanks(gear) & (high > low)
             reach = np.where(kept, reach, 0.0)
             points, normals = flank_places(gear, reach)
-            points = (points + blank.offset * normals)[:, kept].T.ravel()
+            points = points[:, kept].T.ravel()
             normals, count = normals[:, kept].T.ravel(), len(share)
             tooth = np.tile(np.array(gear.toothing.numbers), 2)[kept]
             order = np.lexsort((-flanks.sigma[kept], tooth))

@@ -12,11 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.findings import Finding, check
-from gearcam.meshing.contact import DRIVE, stretches
+from gearcam.gears.contact import DRIVE
+from gearcam.meshing import drive_checks
 from gearcam.meshing.rows import on_side
 from gearcam.meshing.settings import KIND
 from gearcam.meshing.study import Meshing, trespasses
 from gearcam.quantities import NUMBER, Param
+
+__all__ = ["KIND", "clearances", "drive_checks", "spans"]
 
 Array = NDArray[np.float64]
 
@@ -54,30 +57,8 @@ def spans(angles: Array, step: float) -> str:
 
 
 def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
-    spec = meshing.setup.spec
-    return spans(meshing.phi1[chosen], (spec.end - spec.start) / spec.steps)
-
-
-def _side(meshing: Meshing) -> str:
-    return "driving" if meshing.setup.side == DRIVE else "holding back"
-
-
-@check("nothing-drives", kind=KIND, doc="arcs of the driver's turn on which no pair carries")
-def nothing_drives(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
-    """Report the arcs on which nothing drives, as errors."""
-    start, end, carrying = stretches(meshing.setup.pairs[meshing.setup.side])
-    idle = np.flatnonzero(carrying == 0)
-    if idle.size:
-        arcs = [f"{math.degrees(start[k]):.6g} to {math.degrees(end[k]):.6g}" for k in idle[:3]]
-        more = f" and {idle.size - 3} more" if idle.size > 3 else ""
-        yield Finding(
-            code="nothing-drives",
-            severity="error",
-            message="On these arcs no flanks are in contact: the pair jumps or stops there.",
-            value=math.degrees(float((end - start)[idle].sum())),
-            unit="deg",
-            where=f"{_side(meshing)}, phi1 = {', '.join(arcs)} deg{more}",
-        )
+    start, end = meshing.setup.stretch
+    return spans(meshing.phi1[chosen], (end - start) / meshing.setup.spec.steps)
 
 
 @check("interference", kind=KIND, doc="overlap where none may be, or deeper than the advance")

@@ -1,135 +1,23 @@
-"""Exact contact: which flanks touch at a phase, where, and how they slide and roll.
+"""Contact: where flanks touch at a phase, how they slide and roll, and in which direction.
 
-Nothing is searched: at roll s a flank that crosses the pitch curve at `sf` touches its mate in the
-foot of the perpendicular from the pitch point, if its reach ``w = sigma*(sf - s)`` lies on both
-flanks. A *side* is the `sigma` of the driver's flank: -1 drives (the driver turns by ``-phi1``),
-+1 holds back. The pairs of a side are numbered without end by j, the driver's tooth counted from 0
-over all turns. Positions are those of the assembled pair: O1 at 0, O2 at (A, 0), as complex
-numbers.
+For the wheels as they are made and mounted (see `gearcam.gears.contact`): `points` of contact at
+phases, with sliding, curvature and force.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Plane, Wheel
-
-if TYPE_CHECKING:  # what cuts wheels needs more than numpy
-    from gearcam.gears.outline import Flanks
-    from gearcam.gears.pair import Gear
+from gearcam.gears.contact import FlankPairs
+from gearcam.gears.normals import normals, touch
+from gearcam.gears.rolling import WHEELS, Plane
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-DRIVE, COAST = -1, 1
-"""Sides of the driver's teeth: the one that drives, and the one that holds back."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class FlankPairs:
-    """The pairs of flanks of one side, numbered by j.
-
-    Parameters
-    ----------
-    toothings : (Toothing, Toothing)
-        Driver and driven wheel.
-    flanks : (Flanks, Flanks)
-        Their flanks as cut.
-    side : {-1, +1}
-        sigma of the driver's flanks.
-    """
-
-    toothings: tuple[Toothing, Toothing]
-    flanks: tuple[Flanks, Flanks]
-    side: int
-
-    def tooth(self, wheel: Wheel, j: Ints) -> Ints:
-        """Return tooth numbers, from 1, of a wheel in pairs `j` (see `FlankPairs`)."""
-        return self._count(wheel, j) % self.toothings[wheel - 1].teeth + 1
-
-    def _count(self, wheel: Wheel, j: Ints) -> Ints:
-        # sf = (j + side/4) pitches is (k + 1/2 - side/4) pitches on wheel 2.
-        return j if wheel == 1 or self.side > 0 else j - 1
-
-    def _flank(self, wheel: Wheel, j: Ints) -> Ints:
-        z, sigma = self.toothings[wheel - 1].teeth, self.side if wheel == 1 else -self.side
-        return self._count(wheel, j) % z + (0 if sigma > 0 else z)
-
-    def place(self, wheel: Wheel, j: Ints) -> Array:
-        """Return sf, mm, of the flank of a wheel in pairs `j` (see `FlankPairs`)."""
-        toothing = self.toothings[wheel - 1]
-        turns = self._count(wheel, j) // toothing.teeth
-        return self.flanks[wheel - 1].sf[self._flank(wheel, j)] + turns * (
-            toothing.pitch * toothing.teeth
-        )
-
-    def reach(self, wheel: Wheel, j: Ints) -> tuple[Array, Array]:
-        """Return the reach w, mm, at root and tip of a wheel's flank (see `FlankPairs`)."""
-        flanks, number = self.flanks[wheel - 1], self._flank(wheel, j)
-        return flanks.lowest[number], flanks.highest[number]
-
-    def active(self, j: Ints) -> tuple[Array, Array]:
-        """Return the reach w, mm, of the driver's flanks between which pairs `j` touch."""
-        (low1, high1), (low2, high2) = self.reach(1, j), self.reach(2, j)
-        return np.maximum(low1, -high2), np.minimum(high1, -low2)
-
-    @property
-    def pitch(self) -> float:
-        """Pitch, mm."""
-        return self.toothings[0].pitch
-
-    def near(self, s: Array) -> Ints:
-        """Return the pairs that may touch at rolls `s`, mm: (len(s), m)."""
-        longest = max(
-            float(np.abs(end).max()) for f in self.flanks for end in (f.lowest, f.highest)
-        )
-        width = math.ceil(longest / self.pitch + 0.5)
-        along = (s - self.toothings[0].moved) / self.pitch
-        middle = np.rint(along - 0.25 * self.side).astype(np.int64)
-        return middle[:, None] + np.arange(-width, width + 1)
-
-    @cached_property
-    def arcs(self) -> tuple[Array, Array]:
-        """Roll s, mm, between which each flank of the driver's first turn is in contact."""
-        j = np.arange(self.toothings[0].teeth)
-        low, high = self.active(j)
-        ends = self.place(1, j) - self.side * np.stack([low, high])
-        return (ends[1], ends[0]) if self.side > 0 else (ends[0], ends[1])
-
-    @property
-    def contact_ratios(self) -> Array:
-        """Contact ratio of each flank of the driver: arc of contact over the pitch."""
-        start, end = self.arcs
-        return np.maximum(end - start, 0.0) / self.pitch
-
-
-def flank_pairs(gears: tuple[Gear, Gear], side: int) -> FlankPairs:
-    """Return the pairs of flanks of one side.
-
-    Parameters
-    ----------
-    gears : (Gear, Gear)
-        Driver and driven wheel.
-    side : {-1, +1}
-        `DRIVE` or `COAST`.
-
-    Returns
-    -------
-    FlankPairs
-    """
-    first, second = gears
-    return FlankPairs(
-        toothings=(first.toothing, second.toothing),
-        flanks=(first.profile.flanks, second.profile.flanks),
-        side=side,
-    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -142,8 +30,8 @@ class Contacts:
         Index of the phase.
     pair : (n,) int array
         j.
-    reach : (n,) array, mm
-        w on the driver's flank; on the driven one it is ``-w``.
+    lag : (n,) array, rad
+        The driven wheel's turn from its nominal place when this pair touches; of a rack mm.
     point, force : (n,) complex arrays, mm and 1
         The point, and the unit direction in which the driver presses.
     pressure_angle : (n,) array, rad
@@ -157,12 +45,12 @@ class Contacts:
     curvature : (n,) array, 1/mm
         Relative curvature of the flanks.
     lever : (2, n) array, mm
-        Distance of the line of the force from both axes.
+        Distance of the line of the force from both axes; a rack has none.
     """
 
     step: Ints
     pair: Ints
-    reach: Array
+    lag: Array
     point: Plane
     force: Plane
     pressure_angle: Array
@@ -189,78 +77,55 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
 
     Notes
     -----
-    Along the flanks the contact moves by ``dS1 = -g1*ds`` and ``dS2 = g2*ds`` (design formula
-    ``g = sigma*sin(alpha) + u*kappa*cos(alpha)``, each with its wheel's sigma and kappa), so that
-    ``dS1 - dS2 = -u*cos(alpha)*(kappa1 + kappa2)*ds``: the pitch point's distance times the
-    relative turn.
+    A contact at the reach ``u = sf - s`` of both flanks moves along them by ``dS1 = -g1*ds1`` and
+    ``dS2 = g2*ds2`` with ``g1 = sigma*sin(alpha) + u1*kappa1*cos(alpha)`` and ``g2 =
+    -sigma*sin(alpha) + u2*kappa2*cos(alpha)``; as designed ds1 = ds2. Flanks have the curvatures
+    kappa/g.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-    one, two = (t.frames(phi1) for t in pairs.toothings)
-    alpha, side = pairs.toothings[0].cutter.alpha, pairs.side
-    candidates = pairs.near(one.s)
-    reach = side * (pairs.place(1, candidates) - one.s[:, None])
-    low, high = pairs.active(candidates)
-    step, column = np.nonzero((reach >= low) & (reach <= high))
-    w = reach[step, column]
-    turned = np.exp(-1j * phi1[step])
-    tangent = one.t[step] * turned
-    normal = tangent * (np.cos(alpha) + side * np.sin(alpha) * pairs.toothings[0].turn)
-    roll = side * w * np.cos(alpha)
-    point = one.p[step] * turned + roll * normal
+    rolling, side = pairs.toothings[0].rolling, pairs.side
+    alpha = pairs.toothings[0].cutter.alpha
+    candidates = pairs.near(rolling.arc_length(phi1))
+    step, column = np.nonzero(pairs.real(candidates))
+    pair = candidates[step, column]
+    pose, touching = touch(pairs, phi1[step], pairs.play(pair))
+    reach = [
+        sign * (pairs.place(wheel, pair) - rolling.arc_length(angle))
+        for wheel, sign, angle in zip(WHEELS, (side, -side), (pose.one, pose.two), strict=True)
+    ]
+    for wheel, w in zip(WHEELS, reach, strict=True):
+        low, high = pairs.reach(wheel, pair)
+        touching = touching & (w >= low) & (w <= high)
+    step, pair = step[touching], pair[touching]
+    pose = pose.take(touching)
+    at = normals(pairs, pose, pairs.play(pair))
+    first, second = at.frames
+    roll1, roll2 = (
+        sign * w[touching] * math.cos(alpha) for sign, w in zip((side, -side), reach, strict=True)
+    )
+    normal = at.normal[0]
+    point = at.foot[0] + roll1 * normal
+    by_one, by_two, _ = at.rates
+    g1 = side * math.sin(alpha) + roll1 * first.kappa
+    g2 = -side * math.sin(alpha) + roll2 * second.kappa
+    way1, way2 = g1 * by_one * first.speed, g2 * by_two * second.speed
     force = side * normal
-    g1 = side * np.sin(alpha) + roll * one.kappa[step]
-    g2 = -side * np.sin(alpha) + roll * two.kappa[step]
-    distance = pairs.toothings[0].rolling.center_distance
-    levers = [np.abs(np.imag(np.conj(point - axis) * force)) for axis in (0.0, distance)]
-    with np.errstate(divide="ignore"):
-        specific = np.stack([(g1 + g2) / g1, (g1 + g2) / g2])
-        curvature = side * (one.kappa[step] / g1 - two.kappa[step] / g2)
+    axes = (0.0, pairs.distance)
+    lever = np.abs(np.stack([np.imag(np.conj(point - axis) * force) for axis in axes]))
+    if rolling.law.feeds:
+        lever[1] = np.nan
+    with np.errstate(divide="ignore", invalid="ignore"):
+        specific = np.stack([(way1 + way2) / way1, (way1 + way2) / way2])
+        curvature = side * (first.kappa / g1 - second.kappa / g2)
     return Contacts(
         step=step,
-        pair=candidates[step, column],
-        reach=w,
+        pair=pair,
+        lag=pose.lag,
         point=point,
         force=force,
         pressure_angle=np.arctan2(force.real, side * force.imag),
-        sliding=-(g1 + g2) * one.speed[step],
+        sliding=-(way1 + way2),
         specific=specific,
         curvature=curvature,
-        lever=np.stack(levers),
+        lever=lever,
     )
-
-
-def count(pairs: FlankPairs, phi1: ArrayLike) -> Ints:
-    """Return how many pairs of a side carry at phases (see `contacts`)."""
-    phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-    s = pairs.toothings[0].rolling.arc_length(phi1)
-    candidates = pairs.near(s)
-    reach = pairs.side * (pairs.place(1, candidates) - s[:, None])
-    low, high = pairs.active(candidates)
-    return np.count_nonzero((reach >= low) & (reach <= high), axis=1)
-
-
-def stretches(pairs: FlankPairs) -> tuple[Array, Array, Ints]:
-    """Return the stretches of a turn of the driver on which the number of pairs is constant.
-
-    Parameters
-    ----------
-    pairs : FlankPairs
-        The side.
-
-    Returns
-    -------
-    start, end : (m,) arrays, rad
-        Driver angles within the first turn.
-    carrying : (m,) int array
-        Pairs that carry there: 1 on single-pair arcs, 2 on double-pair arcs, 0 where none drives.
-    """
-    rolling = pairs.toothings[0].rolling
-    turn = rolling.length(1)
-    start, end = pairs.arcs
-    alive = end > start
-    edges = np.mod(np.concatenate([start[alive], end[alive]]), turn)
-    edges = np.unique(np.concatenate([[0.0], edges, [turn]]))
-    edges = edges[np.append(np.diff(edges) > 1e-12 * turn, True)]
-    angles = rolling.angle(edges)
-    carrying = count(pairs, rolling.angle(0.5 * (edges[:-1] + edges[1:])))
-    return angles[:-1], angles[1:], carrying

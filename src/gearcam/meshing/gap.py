@@ -1,4 +1,7 @@
-"""The exact gap: how far the driven wheel can turn until flanks touch, for any mounting.
+"""The exact gap: how far the driven wheel can turn until flanks touch, edges included.
+
+Where flanks share a tangent, `gearcam.gears.contact` knows it without a search. This is for the
+phases in which none do, and for wheels whose teeth are not evenly spaced.
 
 With wheel 1 held at a phase, the points of a driver's flank and those of its mate are compared at
 equal distance rho from the driven axis: the angle between them is what the driven wheel may turn
@@ -18,8 +21,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.gears.rolling import Plane, Wheel
-from gearcam.meshing.contact import FlankPairs, Ints
+from gearcam.gears.contact import FlankPairs, Ints
+from gearcam.gears.rolling import Plane, Rolling, Wheel
+from gearcam.meshing.contact import Contacts
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -40,18 +44,12 @@ class Facing:
         Index of the phase; j.
     phi1 : (n,) array, rad
         Phase.
-    advance : float, rad
-        How far the driver is ahead of it.
-    distance : float, mm
-        Distance of the shafts as mounted.
     """
 
     pairs: FlankPairs
     step: Ints
     pair: Ints
     phi1: Array
-    advance: float
-    distance: float
 
     def select(self, index: NDArray[np.bool_] | Ints) -> Facing:
         """Return some of the pairs, by `index`."""
@@ -60,8 +58,6 @@ class Facing:
             step=self.step[index],
             pair=self.pair[index],
             phi1=self.phi1[index],
-            advance=self.advance,
-            distance=self.distance,
         )
 
     def end(self, wheel: Wheel, tip: bool) -> Array:
@@ -99,7 +95,7 @@ class Facing:
         if moving:
             direction = -(sine + ahead * frames.kappa) * frames.speed * direction
         turned = self._turned[wheel - 1]
-        shift = self.distance if wheel == 1 else 0.0
+        shift = self.pairs.distance if wheel == 1 else 0.0
         return point * turned - shift, direction * turned
 
     @cached_property
@@ -109,7 +105,7 @@ class Facing:
     @cached_property
     def _turned(self) -> tuple[Plane, Plane]:
         law = self.pairs.toothings[0].rolling.law
-        return np.exp(-1j * (self.phi1 + self.advance)), np.exp(1j * law.phi2(self.phi1))
+        return np.exp(-1j * self.phi1), np.exp(1j * law.phi2(self.phi1))
 
     def find(self, wheel: Wheel, radius: Array, low: Array, high: Array, start: Array) -> Array:
         """Return the driver angles, rad, of flank points at distances from the driven axis.
@@ -200,9 +196,7 @@ class Touches:
         return self.facing.pair
 
 
-def facing(
-    pairs: FlankPairs, phi1: ArrayLike, *, advance: float = 0.0, distance: float | None = None
-) -> tuple[Facing, Array, Array]:
+def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
     """Return the pairs that share a range of distance from the driven axis.
 
     Parameters
@@ -211,10 +205,6 @@ def facing(
         The side.
     phi1 : (n,) array, rad
         Phases.
-    advance : float, rad
-        How far the driver is ahead.
-    distance : float, mm, optional
-        Distance of the shafts as mounted; as designed if left out.
 
     Returns
     -------
@@ -226,15 +216,8 @@ def facing(
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     rolling = pairs.toothings[0].rolling
     candidates = pairs.near(rolling.arc_length(phi1))
-    step = np.repeat(np.arange(len(phi1)), candidates.shape[1])
-    every = Facing(
-        pairs=pairs,
-        step=step,
-        pair=candidates.ravel(),
-        phi1=phi1[step],
-        advance=advance,
-        distance=rolling.center_distance if distance is None else distance,
-    )
+    step, column = np.nonzero(pairs.real(candidates))
+    every = Facing(pairs=pairs, step=step, pair=candidates[step, column], phi1=phi1[step])
     ends = [every.end(1, tip=False), every.end(1, tip=True)]
     mates = [every.end(2, tip=True), every.end(2, tip=False)]
     far, near = (np.abs(every.flank(1, angle, moving=False)[0]) for angle in ends)
@@ -256,11 +239,9 @@ def facing(
     return found, cut[0], cut[1]
 
 
-def touches(
-    pairs: FlankPairs, phi1: ArrayLike, *, advance: float = 0.0, distance: float | None = None
-) -> Touches:
+def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     """Return where the flanks of a side come nearest at phases (see `facing`)."""
-    found, low, high = facing(pairs, phi1, advance=advance, distance=distance)
+    found, low, high = facing(pairs, phi1)
     root, tip = found.end(2, tip=False), found.end(2, tip=True)
     many = found.select(np.repeat(np.arange(len(low)), _SAMPLES))
     share = np.tile(np.linspace(0.0, 1.0, _SAMPLES), len(low))
@@ -295,3 +276,56 @@ def touches(
         low=low,
         high=high,
     )
+
+
+def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array, NDArray[np.bool_]]:
+    """Return how the driven wheel stands where a side touches first, and whether by an edge.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+    found : Contacts
+        The side's contacts at them.
+
+    Returns
+    -------
+    lag : (n,) array, rad
+        Turn from the nominal place (of a rack mm); infinite where nothing touches.
+    edge : (n,) bool array
+        Whether an end of a flank decides it.
+
+    Notes
+    -----
+    Evenly spaced flanks of a side are parts of curves that touch all together, so that none of
+    their ends can be ahead of a tangency. Elsewhere ends are searched.
+    """
+    outward = np.full(len(phi1), -np.inf)
+    np.maximum.at(outward, found.step, -pairs.side * found.lag)
+    searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
+    near = touches(pairs, phi1[searched])
+    ends = np.full(len(phi1), -np.inf)
+    np.maximum.at(ends, searched[near.step[near.edge]], -pairs.side * near.turn[near.edge])
+    return -pairs.side * np.maximum(outward, ends), ends > outward
+
+
+def to_pitch_line(rolling: Rolling, phi1: Array) -> Array:
+    """Return what turns of the driven wheel are along the pitch curve at phases, mm/rad.
+
+    Parameters
+    ----------
+    rolling : Rolling
+        The centrodes.
+    phi1 : (n,) array, rad
+        Phases.
+
+    Returns
+    -------
+    (n,) array
+        The driven radius times the cosine of the pitch line's slope; of a rack the cosine alone.
+    """
+    tangent = rolling.frames(1, phi1).t * np.exp(-1j * phi1)
+    radius = 1.0 if rolling.law.feeds else np.abs(rolling.frames(2, phi1).p)
+    return radius * tangent.imag

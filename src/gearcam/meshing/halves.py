@@ -17,10 +17,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from gearcam.gears.contact import Ints
 from gearcam.gears.flank import Kind
 from gearcam.gears.outline import Outline
 from gearcam.gears.rolling import Plane
-from gearcam.meshing.contact import Ints
 from gearcam.meshing.staircase import Edges
 
 Array = NDArray[np.float64]

@@ -1,26 +1,46 @@
 """The overlap that the exact flanks predict for a driver turned ahead: a lens on each pair.
 
-Seen from the driven axis both flanks are curves angle(rho), so the area between them is
-``integral of depth*rho d(rho)`` with the depth in rad, over the stretch on which it is positive.
-That holds also where an end of a flank or a knot of the law clips the lens; only what lies beyond
-the end of a flank, on a fillet or a tip, is left out. Inside smooth flanks the lens has the closed
-form ``(4/3)*delta*sqrt(2*delta/kr)`` with ``delta = advance*lever`` and the relative curvature kr.
+Where the driver's flank stands deeper in its mate than their common normal is long, both are graphs
+over their common tangent, and the area between them is the difference of two integrals, over the
+stretch on which the driver's is above. That holds also where an end of a flank or a knot of the law
+clips the lens; only what lies beyond the end of a flank, on a fillet or a tip, is left out. Inside
+smooth flanks the lens has the closed form ``(4/3)*delta*sqrt(2*delta/kr)`` with the penetration
+delta and the relative curvature kr.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.meshing.contact import FlankPairs, Ints, contacts
-from gearcam.meshing.gap import Facing, touches
-from gearcam.numeric.roots import bracketed_root
+from gearcam.gears.contact import FlankPairs
+from gearcam.gears.normals import Normals, Pose, normals
+from gearcam.gears.rolling import WHEELS, Plane, Wheel
+from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+_STEPS = 30
+"""Newton steps towards a common normal; as designed three serve."""
+
+_SMALL = 1e-9
+"""Step, in pitches, at which they end."""
+
+_MISS = 1e-9
+"""What they may miss of being one, in rad and pitches."""
+
+_CLOSE = 1e-6
+"""The same of the ends of lenses, in pitches."""
+
+_ANGLE = 1e-8
+"""Step of Newton's method, rad, after which the next would be below rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -36,7 +56,7 @@ class Lenses:
     closed : (n,) array, mm^2
         By the closed form; nan where the lens is clipped, holds a knot or lies near a cusp.
     depth : (n,) array, mm
-        Largest penetration, across the force.
+        Largest penetration, along the normal.
     radius : (2, n) array, mm
         Distances of the lens's ends from the driver's axis: towards its root, towards its tip.
     edge : (n,) bool array
@@ -49,16 +69,116 @@ class Lenses:
     closed: Array
     depth: Array
     radius: Array
-    edge: NDArray[np.bool_]
+    edge: Mask
 
 
-def lenses(
-    pairs: FlankPairs,
-    phi1: ArrayLike,
-    advance: float,
-    distance: float | None = None,
-    lead: ArrayLike = 0.0,
-) -> Lenses:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Graphs:
+    """Flanks of n pairs as graphs over the tangent at the normal that they share.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    pair : (n,) int array
+        j.
+    turned : (2, n) complex array
+        What turns the points of both wheels.
+    shift : (2, n) complex array, mm
+        What is added to them then; zero is the driver's point on the normal.
+    along : (n,) complex array
+        Unit tangent, towards the driver's tip; the driver presses along ``side*1j*along``.
+    center : (2, n) array, rad
+        Driver angles of the points on the normal.
+    """
+
+    pairs: FlankPairs
+    pair: Ints
+    turned: Plane
+    shift: Plane
+    along: Plane
+    center: Array
+
+    def select(self, index: Ints | Mask) -> Graphs:
+        """Return some of the pairs, by `index`."""
+        return Graphs(
+            pairs=self.pairs,
+            pair=self.pair[index],
+            turned=self.turned[:, index],
+            shift=self.shift[:, index],
+            along=self.along[index],
+            center=self.center[:, index],
+        )
+
+    @cached_property
+    def sf(self) -> Array:
+        """Place sf of both flanks, (2, n), mm."""
+        return np.stack([self.pairs.place(wheel, self.pair) for wheel in WHEELS])
+
+    def places(self, ends: tuple[Array, Array]) -> Array:
+        """Return x at the `ends` of what both flanks share, and between, nearest to 0: (3, n)."""
+        one, two = (
+            np.stack([self.at(wheel, angle)[0] for angle in angles])
+            for wheel, angles in zip(WHEELS, ends, strict=True)
+        )
+        low, high = np.maximum(one[0], two[0]), np.minimum(one[1], two[1])
+        return np.stack([low, np.clip(0.0, low, high), high])
+
+    def ends(self, wheel: Wheel) -> Array:
+        """Return the driver angles, rad, of a `wheel`'s flanks at the lower and upper end in x."""
+        low, high = self.pairs.reach(wheel, self.pair)
+        sigma, sf = self.pairs.side, self.sf[wheel - 1]
+        # x rises to the driver's tip, and so to the driven wheel's root
+        reach = np.stack([low, high] if wheel == 1 else [high, low])
+        return self.pairs.toothings[0].rolling.angle(sf - (sigma if wheel == 1 else -sigma) * reach)
+
+    def at(self, wheel: Wheel, angle: Array) -> tuple[Array, Array, Array]:
+        """Return x and y, mm, of a `wheel`'s flanks at driver angles, rad, and dx/dangle."""
+        toothing = self.pairs.toothings[wheel - 1]
+        sigma = self.pairs.side if wheel == 1 else -self.pairs.side
+        alpha = toothing.cutter.alpha
+        frames = toothing.frames(angle)
+        normal = frames.t * complex(np.cos(alpha), -self.pairs.side * np.sin(alpha))
+        ahead = (self.sf[wheel - 1] - frames.s) * np.cos(alpha)
+        point = (frames.p + ahead * normal) * self.turned[wheel - 1] + self.shift[wheel - 1]
+        seen = point * np.conj(self.along)
+        g = sigma * np.sin(alpha) + ahead * frames.kappa
+        sign = 1.0 if wheel == 1 else -1.0
+        tilt = np.real(normal * self.turned[wheel - 1] * -1j * np.conj(self.along))
+        return seen.real, self.pairs.side * seen.imag, -sign * g * frames.speed * tilt
+
+    def slope(self, wheel: Wheel, angle: Array) -> Array:
+        """Return dy/dx of a `wheel`'s flanks at driver angles `angle`, rad."""
+        toothing = self.pairs.toothings[wheel - 1]
+        tangents = toothing.frames(angle, curved=False).t * self.turned[wheel - 1]
+        alpha = toothing.cutter.alpha
+        tilt = complex(-self.pairs.side * np.sin(alpha), -np.cos(alpha))
+        direction = tangents * tilt * np.conj(self.along)
+        return self.pairs.side * direction.imag / direction.real
+
+    def find(self, wheel: Wheel, x: Array, ends: Array) -> Array:
+        """Return the driver angles, rad, at which a `wheel`'s flanks have an `x`, within `ends`."""
+
+        def miss(angle: Array) -> tuple[Array, Array]:
+            value, _, slope = self.at(wheel, angle)
+            return value - x, slope
+
+        start = self.center[wheel - 1] + x / self._rise[wheel - 1]
+        start = np.clip(start, ends.min(axis=0), ends.max(axis=0))
+        return newton_in_bracket(miss, ends[0], ends[1], start, _ANGLE)
+
+    @cached_property
+    def _rise(self) -> tuple[Array, Array]:
+        """dx/dangle of both flanks at the normal."""
+        return self.at(1, self.center[0])[2], self.at(2, self.center[1])[2]
+
+    def depth(self, x: Array, ends: tuple[Array, Array]) -> tuple[Array, Array, Array]:
+        """Return how deep the driver's flanks stand at `x`, mm, and both angles within `ends`."""
+        one, two = (self.find(wheel, x, ends[wheel - 1]) for wheel in WHEELS)
+        return self.at(1, one)[1] - self.at(2, two)[1], one, two
+
+
+def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike = 0.0) -> Lenses:
     """Predict the overlaps of a side.
 
     Parameters
@@ -69,10 +189,8 @@ def lenses(
         Phases.
     advance : float, rad
         How far the driver is ahead of them.
-    distance : float, mm, optional
-        Distance of the shafts as mounted; as designed if left out.
     lead : (n,) array or float, rad
-        How far the driven wheel is ahead.
+        How far the driven wheel is ahead of its nominal place; of a rack mm.
 
     Returns
     -------
@@ -80,78 +198,150 @@ def lenses(
         Only pairs that overlap.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-    found = touches(pairs, phi1, advance=advance, distance=distance)
-    lead = np.broadcast_to(lead, phi1.shape)
-    over = -pairs.side * (found.turn - lead[found.step]) > 0.0
-    some, middle = found.facing.select(over), found.angle[over]
-    root, tip = some.end(2, tip=False), some.end(2, tip=True)
-    ahead = lead[some.step]
-
-    def depth(angle: Array) -> Array:
-        return -pairs.side * (some.compare(angle, root, tip)[0] - ahead)
-
-    ends, clipped = [], []
-    for limit in (found.low[over], found.high[over]):
-        inside = depth(limit) > 0.0
-        # a bracket without a sign change is never asked for: its two ends are one
-        ends.append(bracketed_root(depth, middle, np.where(inside, middle, limit), 1e-12))
-        ends[-1][inside] = limit[inside]
-        clipped.append(inside)
-    low, high = ends
-    area = _areas(some, low, high, root, tip, ahead)
-    edge = clipped[0] | clipped[1]
-    axis = some.distance
-    radius = np.stack([np.abs(some.flank(1, v, moving=False)[0] + axis) for v in (low, high)])
-    point, _ = some.flank(1, middle, moving=False)
-    toothing = pairs.toothings[0]
-    alpha = toothing.cutter.alpha
-    tangent = toothing.frames(middle).t * np.exp(-1j * (some.phi1 + advance))
-    normal = tangent * (np.cos(alpha) + pairs.side * np.sin(alpha) * toothing.turn)
-    lever = np.abs(np.imag(np.conj(point) * normal))
-    closed = np.where(edge, np.nan, _closed(pairs, phi1, advance, some.step, some.pair))
-    if some.distance != toothing.rolling.center_distance:
-        closed[:] = np.nan
-    closed[_uneven(pairs, low, high)] = np.nan
+    rolling = pairs.toothings[0].rolling
+    candidates = pairs.near(rolling.arc_length(phi1))
+    step, column = np.nonzero(pairs.real(candidates))
+    pair = candidates[step, column]
+    lead = np.broadcast_to(lead, phi1.shape)[step]
+    some, deep, bend, graphs = _overlapping(pairs, pair, phi1[step], advance, lead)
+    ends = graphs.ends(1), graphs.ends(2)
+    places = graphs.places(ends)
+    # past a cusp the normal is not where the flanks are deepest: that is at an end then
+    values = np.stack([graphs.depth(place, ends)[0] for place in places])
+    best = np.where(values[1] >= values.max(axis=0), 1, values.argmax(axis=0))
+    real = np.flatnonzero((places[0] < places[2]) & (values.max(axis=0) > 0.0))
+    graphs, ends = graphs.select(real), (ends[0][:, real], ends[1][:, real])
+    step, pair, best = (numbers[real] for numbers in (step[some], pair[some], best))
+    deep, bend, places, values = deep[real], bend[real], places[:, real], values[:, real]
+    rows = np.arange(real.size)
+    top, value = places[best, rows], values[best, rows]
+    reach = np.sqrt(2.0 * deep / np.where(bend > 0.0, bend, np.inf))
+    sides = [
+        _end(graphs, ends, top, places[k], values[k] > 0.0, sign * reach)
+        for k, sign in ((0, -1.0), (2, 1.0))
+    ]
+    edge = sides[0][2] | sides[1][2]
+    one, two = (np.stack([side[0][k] for side in sides]) for k in (0, 1))
+    closed = np.where(edge, np.nan, (4.0 / 3.0) * deep * reach)
+    closed[_uneven(pairs, one[0], one[1]) | ~(bend > 0.0)] = np.nan
+    axis = graphs.shift[0]
+    radius = [
+        np.abs((x + 1j * pairs.side * y) * graphs.along - axis)
+        for x, y, _ in (graphs.at(1, angle) for angle in one)
+    ]
     return Lenses(
-        step=some.step,
-        pair=some.pair,
-        area=area,
+        step=step,
+        pair=pair,
+        area=np.maximum(_below(graphs, 1, one) - _below(graphs, 2, two), 0.0),
         closed=closed,
-        depth=-pairs.side * (found.turn[over] - ahead) * lever,
-        radius=radius,
+        depth=np.where(best == 1, np.where(edge, value, deep), value),
+        radius=np.stack(radius),
         edge=edge,
     )
 
 
-def _areas(some: Facing, low: Array, high: Array, root: Array, tip: Array, ahead: Array) -> Array:
-    """Integrate the gaps between driver angles `low` and `high`, mm^2."""
-    n, count = len(_NODES), len(low)
-    many = some.select(np.repeat(np.arange(count), n))
-    half = 0.5 * (high - low)
-    angle = (low[:, None] + half[:, None] * (1.0 + _NODES)).ravel()
-    point, motion = many.flank(1, angle, moving=True)
-    turn = many.compare(angle, np.repeat(root, n), np.repeat(tip, n))[0] - np.repeat(ahead, n)
-    values = (turn * np.real(np.conj(point) * motion)).reshape(count, n)
-    return np.abs(values @ _WEIGHTS * half)
+def _overlapping(
+    pairs: FlankPairs, pair: Ints, phi1: Array, advance: float, lead: Array
+) -> tuple[Ints, Array, Array, Graphs]:
+    """Find the normals that pairs share, and the pairs that overlap along them.
 
-
-def _closed(pairs: FlankPairs, phi1: Array, advance: float, step: Ints, pair: Ints) -> Array:
-    """Return closed forms, mm^2; nan for pairs that do not touch without the advance."""
-    exact = contacts(pairs, phi1)
-    delta = abs(advance) * exact.lever[0]
-    with np.errstate(invalid="ignore"):
-        area = (4.0 / 3.0) * delta * np.sqrt(2.0 * delta / exact.curvature)
-    known = dict(zip(zip(exact.step.tolist(), exact.pair.tolist(), strict=True), area, strict=True))
-    return np.array(
-        [known.get(key, np.nan) for key in zip(step.tolist(), pair.tolist(), strict=True)],
-        dtype=float,
+    Returns their places, penetrations, mm, relative curvatures, 1/mm, and graphs.
+    """
+    rolling, law, side = pairs.toothings[0].rolling, pairs.toothings[0].rolling.law, pairs.side
+    ahead, scale = phi1 + advance, rolling.center_distance if law.feeds else 1.0
+    lag = lead + scale * (law.phi2(phi1) - law.phi2(ahead))
+    pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lag), pairs.play(pair))
+    deep = -side * at.equations[1]
+    missed = np.abs(at.equations[0]) + np.abs(at.equations[2]) / pairs.pitch
+    some = np.flatnonzero((deep > 0.0) & (missed < _MISS))
+    first, second = at.frames
+    alpha = pairs.toothings[0].cutter.alpha
+    cosine, sine = np.cos(alpha), side * np.sin(alpha)
+    roll1, roll2 = (
+        (pairs.place(wheel, pair) - frames.s) * cosine
+        for wheel, frames in zip(WHEELS, at.frames, strict=True)
     )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bend = side * (
+            first.kappa / (sine + roll1 * first.kappa)
+            - second.kappa / (roll2 * second.kappa - sine)
+        )
+    turns = np.zeros(phi1.shape) if law.feeds else law.phi2(ahead) + lag
+    turned = np.exp(1j * np.stack([-ahead, turns]))
+    origin = at.foot[0] + roll1 * at.normal[0]
+    graphs = Graphs(
+        pairs=pairs,
+        pair=pair,
+        turned=turned,
+        shift=at.foot - np.stack([first.p, second.p]) * turned - origin,
+        along=-1j * at.normal[0],
+        center=np.stack([pose.one, pose.two]),
+    )
+    return some, deep[some], bend[some], graphs.select(some)
 
 
-def _uneven(pairs: FlankPairs, low: Array, high: Array) -> NDArray[np.bool_]:
+def _shared(pairs: FlankPairs, pose: Pose, play: Array) -> tuple[Pose, Normals]:
+    """Find the rolls at which two flanks of a given pose have one normal, at any distance."""
+    at = normals(pairs, pose, play)
+    for _ in range(_STEPS):
+        (a, b), (c, d) = at.slopes[0, 1:3], at.slopes[2, 1:3]
+        turn, across = at.equations[0], at.equations[2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            steps = np.stack([b * across - d * turn, c * turn - a * across]) / (a * d - b * c)
+            size = np.abs(steps).max(axis=0) * at.frames[0].speed
+            steps = steps * np.minimum(1.0, 0.5 * pairs.pitch / size)
+        steps = np.where(np.isfinite(steps), steps, 0.0)
+        pose = pose._replace(one=pose.one + steps[0], two=pose.two + steps[1])
+        at = normals(pairs, pose, play)
+        if not np.any(size > _SMALL * pairs.pitch):
+            break
+    return pose, at
+
+
+def _end(
+    graphs: Graphs,
+    ends: tuple[Array, Array],
+    top: Array,
+    limit: Array,
+    cut: Mask,
+    guess: Array,
+) -> tuple[tuple[Array, Array], Array, Mask]:
+    """Find where lenses end between their deepest place and a limit, in x; `cut` at the limit.
+
+    Returns the driver angles on both flanks, x, and whether the limit cuts the lens off.
+    """
+    x = limit.copy()
+    at = np.flatnonzero(~cut)
+    some, inner = graphs.select(at), (ends[0][:, at], ends[1][:, at])
+
+    def depth(place: Array) -> tuple[Array, Array]:
+        deep, first, second = some.depth(place, inner)
+        return -deep, some.slope(2, second) - some.slope(1, first)
+
+    low, high = np.minimum(top, limit)[at], np.maximum(top, limit)[at]
+    start = np.clip(guess[at], low, high)
+    x[at] = newton_in_bracket(depth, top[at], limit[at], start, _CLOSE * graphs.pairs.pitch)
+    _, one, two = graphs.depth(x, ends)
+    return (one, two), x, cut
+
+
+def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
+    """Integrate flanks over x between driver angles, (2, n), rad: mm^2."""
+    n, count = len(_NODES), angles.shape[1]
+    many = graphs.select(np.repeat(np.arange(count), n))
+    half = 0.5 * (angles[1] - angles[0])
+    place = (angles[0][:, None] + half[:, None] * (1.0 + _NODES)).ravel()
+    _, y, slope = many.at(wheel, place)
+    return (y * slope).reshape(count, n) @ _WEIGHTS * half
+
+
+def _uneven(pairs: FlankPairs, low: Array, high: Array) -> Mask:
     """Whether stretches of flank, by driver angle, hold a knot of the law."""
     law = pairs.toothings[0].rolling.law
     start, end = np.minimum(low, high), np.maximum(low, high)
+    if not law.lobes.closed:
+        inside = (law.knots > start[:, None]) & (law.knots < end[:, None])
+        return np.any(inside, axis=1)
     # a smooth law has no knots but the ends of its lobe
     knots = law.knots[:-1] if len(law.knots) > 2 else law.knots[:0]
     first = np.floor((start[:, None] - knots) / law.lobes.period)

@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.meshing.contact import stretches
 from gearcam.meshing.rows import on_side, stepwise_pairs
 
 if TYPE_CHECKING:
     from gearcam.meshing.study import Meshing
 
 Array = NDArray[np.float64]
+
+LEAST_STEPS = 8
+"""Steps a tooth below which harmonics are not told."""
+
+MOST_ORDERS = 3
+"""Harmonics that are told, in harmonics of the mesh."""
 
 
 def numbers(meshing: Meshing) -> dict[str, Any]:
@@ -32,7 +37,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
     setup = meshing.setup
     pairs = setup.pairs[setup.side]
     turning = setup.turning
-    start, end, carrying = stretches(pairs)
+    start, end, carrying = pairs.stretches
     result = {
         "complete": meshing.complete,
         "steps": meshing.asked,
@@ -49,25 +54,113 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
     }
     if not meshing.blocks:
         return result
-    error, stepwise = meshing.every("error"), pairs_in_contact(meshing)
-    touching = np.isfinite(error)
+    stepwise = pairs_in_contact(meshing)
     result |= {
         "pairs_in_contact": extent(stepwise, int),
         "interference_steps": int(np.count_nonzero(meshing.every("interferes"))),
+        "edge_steps": int(np.count_nonzero(meshing.every("edge"))),
         "agreement": agreement(meshing, stepwise),
+        **motion(meshing),
     }
-    if touching.any():
-        result |= {
-            "transmission_error_rad_max": float(np.abs(error[touching]).max()),
-            "transmission_error_rad_peak_to_peak": float(np.ptp(error[touching])),
-        }
-    backlash = meshing.every("backlash")
-    if np.isfinite(backlash).any():
-        result["backlash_mm"] = extent(backlash[np.isfinite(backlash)])
-    held = meshing.every("held_back")
-    if np.isfinite(held).any():
-        result["held_back_gap_mm"] = extent(held[np.isfinite(held)])
+    for name in ("backlash", "held_back"):
+        found = meshing.every(name)
+        if np.isfinite(found).any():
+            result[f"{name.replace('held_back', 'held_back_gap')}_mm"] = extent(
+                found[np.isfinite(found)]
+            )
     return result
+
+
+def motion(meshing: Meshing) -> dict[str, Any]:
+    """Return what the driven wheel lags behind: on the whole, and by how much that changes.
+
+    Parameters
+    ----------
+    meshing : Meshing
+        A study.
+
+    Returns
+    -------
+    dict
+        ``lag_mm``, taken up along the pitch curve before the driver is turned ahead, and
+        ``transmission_error``: the deviation of the lag from its mean over the phases.
+    """
+    lag, along = meshing.every("lag"), meshing.every("along")
+    touching = np.isfinite(lag)
+    if not touching.any():
+        return {}
+    unit = "mm" if meshing.setup.turning.rolling.law.feeds else "rad"
+    error: dict[str, Any] = {
+        "unit": unit,
+        "mean_lag": float(lag[touching].mean()),
+        "peak_to_peak": float(np.ptp(lag[touching])),
+    }
+    reason = without_harmonics(meshing, touching)
+    if reason:
+        error["no_harmonics"] = reason
+    else:
+        error["harmonics"] = harmonics(meshing, lag)
+    return {"lag_mm": extent((lag * along)[touching]), "transmission_error": error}
+
+
+def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
+    """Return why a study has no harmonics, or nothing.
+
+    Parameters
+    ----------
+    meshing : Meshing
+        A study.
+    touching : (n,) bool array
+        Phases at which anything touches.
+
+    Returns
+    -------
+    str
+        With what would give them.
+    """
+    spec, pairs = meshing.setup.spec, meshing.setup.sides[1]
+    teeth = pairs.toothings[0].teeth
+    turns = (meshing.setup.stretch[1] - meshing.setup.stretch[0]) / (2.0 * np.pi)
+    if not pairs.closed:
+        return "the driver does not turn for ever"
+    if round(turns) < 1 or abs(turns - round(turns)) > 1e-9:
+        return "the study is not of whole turns of the driver"
+    if spec.teeth is not None or not meshing.complete:
+        return "not every phase was studied"
+    if not touching.all():
+        return "in some phases nothing touches"
+    if meshing.asked < LEAST_STEPS * teeth * round(turns):
+        return (
+            f"{meshing.asked / (teeth * turns):.3g} steps a tooth, {LEAST_STEPS} are needed: "
+            f"steps = {LEAST_STEPS * teeth * round(turns)}"
+        )
+    return ""
+
+
+def harmonics(meshing: Meshing, lag: Array) -> list[dict[str, float]]:
+    """Return the harmonics of a driver turn in the driven wheel's lag, the first to 3*z1.
+
+    Parameters
+    ----------
+    meshing : Meshing
+        A study of whole turns.
+    lag : (n,) array, rad
+        At its phases.
+
+    Returns
+    -------
+    list of dict
+        ``order``, ``amplitude`` in the unit of `lag`, ``phase_deg``: the lag is its mean and the
+        sum of ``amplitude*cos(order*phi1 + phase)``.
+    """
+    start, end = meshing.setup.stretch
+    turns = round((end - start) / (2.0 * np.pi))
+    orders = np.arange(1, MOST_ORDERS * meshing.setup.sides[1].toothings[0].teeth + 1)
+    parts = 2.0 / len(lag) * np.fft.rfft(lag)[orders * turns] * np.exp(-1j * orders * start)
+    return [
+        {"order": int(order), "amplitude": float(abs(part)), "phase_deg": float(np.degrees(angle))}
+        for order, part, angle in zip(orders, parts, np.angle(parts), strict=True)
+    ]
 
 
 def extent(values: Array | NDArray[np.int64], kind: type = float) -> dict[str, Any]:

@@ -18,8 +18,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from gearcam.gears.contact import Ints
 from gearcam.gears.rolling import Plane, Rolling
-from gearcam.meshing.contact import Ints
 from gearcam.meshing.halves import Halves, as_polygons
 from gearcam.meshing.staircase import Facing, overlap
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.meshing.contact import Contacts, Ints
+from gearcam.gears.contact import Ints
+from gearcam.meshing.contact import Contacts
 from gearcam.meshing.lens import Lenses
 from gearcam.meshing.overlap import Overlaps, Turning
 
@@ -27,9 +28,11 @@ class Block:
         Driver and nominal driven angles.
     side : {-1, +1}
         sigma of the driver's flanks that the advance presses together.
-    error : (n,) array, rad
-        The driven wheel's turn from its nominal place at first touch on that side; not finite
-        where no flanks face each other.
+    lag : (n,) array, rad
+        The driven wheel's turn from its nominal place at first touch on that side (of a rack its
+        way, mm); not finite where nothing touches.
+    along : (n,) array, mm/rad
+        What such turns are along the pitch curve.
     play : (n,) array, rad
         What the driven wheel can turn between both touches.
     backlash : (n,) array, mm
@@ -52,7 +55,8 @@ class Block:
     phi1: Array
     phi2: Array
     side: int
-    error: Array
+    lag: Array
+    along: Array
     play: Array
     backlash: Array
     edge: Mask
@@ -147,7 +151,7 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     area[rows[0]] = found.area
     carries = np.zeros(size)
     carries[rows[1]] = 1.0
-    axis = turning.rolling.center_distance
+    axis = turning.distance
     return {
         "step": (block.first + step).astype(float),
         "phi1_deg": np.degrees(block.phi1[step]),
@@ -171,7 +175,7 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         "specific_sliding1": column(1, exact.specific[0]),
         "specific_sliding2": column(1, exact.specific[1]),
         "relative_curvature_per_mm": column(1, exact.curvature),
-        "transmission_error_rad": np.ma.masked_invalid(block.error[step]),
+        "lag_rad": np.ma.masked_invalid(block.lag[step]),
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back[step],
     }

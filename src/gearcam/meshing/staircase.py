@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.meshing.contact import Ints
+from gearcam.gears.contact import Ints
 
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]

@@ -1,10 +1,10 @@
 """The meshing study: exact contact, exact gap and stepwise overlap side by side, phase by phase.
 
-At every phase the driver is turned ahead by a small angle, and the outlines are intersected; the
-exact flanks say which pairs must overlap, how much, and how far the driven wheel could turn. Off
-the designed centre distance the driven wheel is first turned until it touches, as in a machine.
-The outlines are made anew, so fine that the chord errors of both together are at most a hundredth
-of the penetration. An interruption keeps the phases done.
+At every phase the driven wheel is first turned until it touches, as in a machine: this takes up the
+play. Then the driver is turned ahead by a small angle, and the outlines are intersected; the exact
+flanks say which pairs must overlap, how much, and how far the driven wheel could turn. The outlines
+are made anew, so fine that the chord errors of both together are at most a hundredth of the
+penetration. An interruption keeps the phases done.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import FINEST, Gear
-from gearcam.meshing.contact import COAST, DRIVE, FlankPairs, contacts, flank_pairs
-from gearcam.meshing.gap import touches
+from gearcam.meshing.contact import contacts
+from gearcam.meshing.gap import first_touch, to_pitch_line
 from gearcam.meshing.halves import halve
 from gearcam.meshing.lens import lenses
 from gearcam.meshing.overlap import Overlaps, Turning
@@ -58,8 +59,6 @@ class Setup:
         Smallest penetration of a full contact: advance times lever.
     lever : float, mm
         Largest lever of the driver.
-    shift : float, mm
-        Centre distance as mounted less that as designed.
     """
 
     spec: MeshingSpec
@@ -67,7 +66,22 @@ class Setup:
     turning: Turning
     penetration: float
     lever: float
-    shift: float
+
+    @property
+    def sides(self) -> tuple[FlankPairs, FlankPairs]:
+        """The pairs of flanks that hold back and those that drive."""
+        return self.pairs[COAST], self.pairs[DRIVE]
+
+    @property
+    def stretch(self) -> tuple[float, float]:
+        """Driver angles between which the pair is studied, rad."""
+        spec, way = self.spec, self.pairs[DRIVE].way
+        return spec.start, spec.start + way if spec.end is None else spec.end
+
+    @property
+    def closed(self) -> bool:
+        """Whether both wheels go all around."""
+        return self.pairs[DRIVE].closed
 
     @property
     def side(self) -> int:
@@ -100,6 +114,11 @@ class Meshing:
     phi1: Array
     asked: int
     blocks: list[Block] = field(default_factory=list)
+
+    @property
+    def sides(self) -> tuple[FlankPairs, FlankPairs]:
+        """The pairs of flanks that hold back and those that drive."""
+        return self.setup.sides
 
     @property
     def complete(self) -> bool:
@@ -200,12 +219,12 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
             unit="mm",
             nearest=f"between {near:.6g} and {far:.6g} mm",
         )
-    pairs = {side: flank_pairs(gears, side) for side in (DRIVE, COAST)}
+    pairs = {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
     side = DRIVE if spec.advance > 0.0 else COAST
-    turn = pair.law.lobes.n1 * pair.law.lobes.period
-    levers = contacts(pairs[side], np.linspace(0.0, turn, 20 * pair.teeth[0])).lever[0]
+    grid = np.linspace(0.0, pairs[side].way, 20 * pair.teeth[0])
+    levers = contacts(pairs[side], grid).lever[0]
     if not levers.size:
-        levers = np.array([pair.rolling.frames(1, np.zeros(1)).p.real[0]])
+        levers = np.abs(pair.rolling.frames(1, np.zeros(1)).p.real)
     penetration = abs(spec.advance) * float(levers.min())
     tolerance = min(_SHARE * penetration, pair.chord_tolerance(None))
     if tolerance < FINEST * pair.module:
@@ -240,7 +259,6 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         turning=turning,
         penetration=penetration,
         lever=float(levers.max()),
-        shift=shift,
     )
 
 
@@ -263,18 +281,21 @@ def phases(setup: Setup) -> Array:
         If there is none.
     """
     spec = setup.spec
-    phi1 = spec.start + (spec.end - spec.start) * np.arange(spec.steps) / spec.steps
+    phi1 = np.linspace(*setup.stretch, spec.steps, endpoint=not setup.closed)
     if spec.teeth is None:
         return phi1
     pairs = setup.pairs[setup.side]
-    start, end = (edge[np.array(spec.teeth) - 1] for edge in pairs.arcs)
-    turn = pairs.toothings[0].rolling.length(1)
-    s = pairs.toothings[0].rolling.arc_length(phi1)[:, None]
+    rolling = pairs.toothings[0].rolling
+    wanted = np.isin(pairs.tooth(1, pairs.numbers), spec.teeth)
+    start, end = (rolling.arc_length(edge[wanted]) for edge in pairs.arcs)
+    apart = rolling.arc_length(phi1)[:, None] - start
     margin = _BESIDE * pairs.pitch
-    inside = np.mod(s - start + margin, turn) <= end - start + 2.0 * margin
+    if pairs.closed:
+        apart = np.mod(apart + margin, rolling.length(1)) - margin
+    inside = (apart >= -margin) & (apart <= end - start + margin)
     chosen = phi1[inside.any(axis=1)]
     if not chosen.size:
-        angles = np.degrees(pairs.toothings[0].rolling.angle(0.5 * (start + end)))
+        angles = np.degrees(rolling.angle(0.5 * (start + end)))
         raise InfeasibleError(
             "none of the phases has one of these teeth in contact",
             where="meshing.teeth",
@@ -288,24 +309,18 @@ def phases(setup: Setup) -> Array:
 def _block(setup: Setup, phi1: Array, first: int) -> Block:
     """Study some phases; `first` is the number of the first of them."""
     spec, turning, side = setup.spec, setup.turning, setup.side
-    distance = turning.distance
-    turns = {s: touches(setup.pairs[s], phi1, distance=distance) for s in (DRIVE, COAST)}
-    extreme: dict[int, Array] = {}
-    edge = np.zeros(len(phi1), dtype=bool)
-    for s, found in turns.items():
-        outward = np.full(len(phi1), -np.inf)
-        np.maximum.at(outward, found.step, -s * found.turn)
-        extreme[s] = -s * outward
+    touching = {s: contacts(setup.pairs[s], phi1) for s in (DRIVE, COAST)}
+    extreme, edge = {}, np.zeros(len(phi1), dtype=bool)
+    for s, found in touching.items():
+        extreme[s], by_edge = first_touch(setup.pairs[s], phi1, found)
         if s == side:
-            deciding = found.edge & (-s * found.turn >= outward[found.step])
-            edge[found.step[deciding]] = True
-    lead = np.where(np.isfinite(extreme[side]), extreme[side], 0.0) if setup.shift else 0.0
+            edge = by_edge
+    lead = np.where(np.isfinite(extreme[side]), extreme[side], 0.0)
     ahead = turning.overlaps(phi1, spec.advance, lead)
     held = turning.gaps(side, phi1, -spec.advance, lead)
-    r2 = np.abs(turning.rolling.frames(2, phi1).p)
-    tangent = turning.rolling.frames(1, phi1).t * np.exp(-1j * phi1)
     play = extreme[COAST] - extreme[DRIVE]
-    backlash = play * r2 * tangent.imag
+    along = to_pitch_line(turning.rolling, phi1)
+    backlash = play * along
     # too little room for both sides is hidden from the outlines by the advance
     interferes = backlash < -setup.noise
     interferes[ahead.step[trespasses(setup, ahead)]] = True
@@ -314,14 +329,15 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
         phi1=phi1,
         phi2=turning.rolling.law.phi2(phi1),
         side=side,
-        error=extreme[side],
+        lag=extreme[side],
+        along=along,
         backlash=backlash,
         play=play,
         edge=edge,
         held_back=held,
         overlaps=ahead,
-        contacts=contacts(setup.pairs[side], phi1),
-        lenses=lenses(setup.pairs[side], phi1, spec.advance, distance, lead),
+        contacts=touching[side],
+        lenses=lenses(setup.pairs[side], phi1, spec.advance, lead),
         interferes=interferes,
     )
 

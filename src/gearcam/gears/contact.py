@@ -1,0 +1,240 @@
+"""Which flanks of a pair touch, and when: as the wheels are made, and as they are mounted.
+
+A *side* is the `sigma` of the driver's flanks: -1 drives (the driver turns by ``-phi1``), +1 holds
+back. The pairs of flanks of a side are numbered without end by j, the driver's tooth counted from
+0 over all turns; an open pair has as many as lie in both blanks. How two flanks touch is told in
+`gearcam.gears.normals`.
+
+Refused: nothing. Where flanks cannot touch there is no pair. Depends on flanks and rolling.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.gears.flank import Toothing
+from gearcam.gears.normals import touch
+from gearcam.gears.rolling import WHEELS, Wheel
+
+if TYPE_CHECKING:  # what cuts wheels needs more than numpy
+    from gearcam.gears.outline import Flanks
+    from gearcam.gears.pair import Gear
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+DRIVE, COAST = -1, 1
+"""Sides of the driver's teeth: the one that drives, and the one that holds back."""
+
+_EVEN = 1e-12
+"""Difference of the places of flanks, in pitches, that is rounding."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FlankPairs:
+    """The pairs of flanks of one side, numbered by j.
+
+    Parameters
+    ----------
+    toothings : (Toothing, Toothing)
+        Driver and driven wheel.
+    flanks : (Flanks, Flanks)
+        Their flanks as made.
+    side : {-1, +1}
+        sigma of the driver's flanks.
+    distance : float, mm
+        Distance of the shafts as mounted; of a rack the designed one and what it stands off.
+    """
+
+    toothings: tuple[Toothing, Toothing]
+    flanks: tuple[Flanks, Flanks]
+    side: int
+    distance: float
+
+    @property
+    def pitch(self) -> float:
+        """Pitch, mm."""
+        return self.toothings[0].pitch
+
+    @property
+    def closed(self) -> bool:
+        """Whether both wheels go all around."""
+        return all(toothing.closed for toothing in self.toothings)
+
+    @cached_property
+    def way(self) -> float:
+        """Driver angle of a turn, of an open pair's travel, or along a rack, rad."""
+        rolling, lobes = self.toothings[0].rolling, self.toothings[0].rolling.law.lobes
+        if rolling.law.feeds:
+            return float(rolling.angle(self.toothings[1].length))
+        return lobes.period * lobes.n1
+
+    def tooth(self, wheel: Wheel, j: Ints) -> Ints:
+        """Return tooth numbers of a wheel in pairs `j` (see `FlankPairs`)."""
+        toothing, count = self.toothings[wheel - 1], self._count(wheel, j)
+        return count % toothing.teeth + 1 if toothing.closed else count + 1
+
+    def _count(self, wheel: Wheel, j: Ints) -> Ints:
+        # sf = (j + side/4) pitches is (k + 1/2 - side/4) pitches on wheel 2.
+        return j if wheel == 1 or self.side > 0 else j - 1
+
+    def _flank(self, wheel: Wheel, j: Ints) -> Ints:
+        """Return the places of flanks in the wheel's arrays; of those it has not, the nearest."""
+        toothing, sigma = self.toothings[wheel - 1], self.side if wheel == 1 else -self.side
+        size, tooth = len(toothing.numbers), self._count(wheel, j)
+        index = tooth % size if toothing.closed else tooth + 1 - toothing.numbers[0]
+        return np.clip(index, 0, size - 1) + (0 if sigma > 0 else size)
+
+    def real(self, j: Ints) -> Mask:
+        """Return whether both wheels have the flanks of pairs `j` (see `FlankPairs`)."""
+        result = np.ones(np.shape(j), dtype=bool)
+        for wheel, toothing in zip(WHEELS, self.toothings, strict=True):
+            if not toothing.closed:
+                number, (low, high) = self.tooth(wheel, j), toothing.ends
+                place = self.place(wheel, j)
+                result &= (number >= toothing.numbers[0]) & (number <= toothing.numbers[-1])
+                result &= (place > low) & (place < high)
+        return result
+
+    def place(self, wheel: Wheel, j: Ints) -> Array:
+        """Return sf, mm, of the flank of a wheel in pairs `j` (see `FlankPairs`)."""
+        toothing = self.toothings[wheel - 1]
+        places = self.flanks[wheel - 1].sf[self._flank(wheel, j)]
+        if not toothing.closed:
+            return places
+        return places + self._count(wheel, j) // toothing.teeth * (toothing.pitch * toothing.teeth)
+
+    def reach(self, wheel: Wheel, j: Ints) -> tuple[Array, Array]:
+        """Return the reach w, mm, at root and tip of a wheel's flank (see `FlankPairs`)."""
+        flanks, number = self.flanks[wheel - 1], self._flank(wheel, j)
+        return flanks.lowest[number], flanks.highest[number]
+
+    def play(self, j: Ints) -> Array:
+        """Return how far the driven flanks of pairs `j` lie behind the driver's, mm: sf2 - sf1."""
+        return self.place(2, j) - self.place(1, j)
+
+    @cached_property
+    def even(self) -> bool:
+        """Whether all pairs of the side touch together."""
+        plays = self.play(self.numbers)
+        return plays.size == 0 or bool(np.ptp(plays) <= _EVEN * self.pitch)
+
+    @cached_property
+    def numbers(self) -> Ints:
+        """Numbers j of the pairs of a turn of the driver, or of the way of an open pair."""
+        if self.closed:
+            return np.arange(self.toothings[0].teeth)
+        open_one = next(toothing for toothing in self.toothings if not toothing.closed)
+        j = np.arange(-3, open_one.teeth + 4)
+        return j[self.real(j)]
+
+    def near(self, s: Array) -> Ints:
+        """Return the pairs that may touch at nominal rolls `s`, mm: (len(s), m)."""
+        longest = max(
+            float(np.abs(end).max()) for f in self.flanks for end in (f.lowest, f.highest)
+        )
+        width = math.ceil(longest / self.pitch + 0.5)
+        along = (s - self.toothings[0].moved) / self.pitch
+        middle = np.rint(along - 0.25 * self.side).astype(np.int64)
+        return middle[:, None] + np.arange(-width, width + 1)
+
+    @cached_property
+    def _lobe(self) -> int:
+        """How many pairs there are until the same ones come again."""
+        one, two = self.toothings
+        return math.gcd(one.teeth, two.teeth) if self.closed and self.even else len(self.numbers)
+
+    @cached_property
+    def arcs(self) -> tuple[Array, Array]:
+        """Driver angles, rad, between which the pairs `numbers` touch; start >= end for none."""
+        j, rolling = self.numbers[: self._lobe], self.toothings[0].rolling
+        if j.size == 0:
+            return np.empty(0), np.empty(0)
+        known, places = [], []
+        for wheel in WHEELS:
+            sigma = self.side if wheel == 1 else -self.side
+            for reach in self.reach(wheel, j):
+                places.append(rolling.angle(self.place(wheel, j) - sigma * reach))
+                known.append(np.full(j.shape, wheel))
+        start = np.concatenate(places)
+        ends, found = touch(self, start, np.tile(self.play(j), 4), np.concatenate(known))
+        low1, high1, low2, high2 = ends.phi1.reshape(4, -1)
+        first, last = np.maximum(low1, high2), np.minimum(high1, low2)
+        if self.side == COAST:
+            first, last = np.maximum(high1, low2), np.minimum(low1, high2)
+        # where an end is not found these teeth do not mesh at all
+        lost = ~found.reshape(4, -1).all(axis=0)
+        first[lost] = last[lost] = rolling.angle(self.place(1, j[lost]))
+        again: Array = np.arange(len(self.numbers) // self._lobe, dtype=float)[:, None]
+        lobes = rolling.law.lobes.period * again
+        return (first + lobes).ravel(), (last + lobes).ravel()
+
+    @cached_property
+    def contact_ratios(self) -> Array:
+        """Contact ratio of each of the pairs `numbers`: arc of contact over the pitch.
+
+        The driver's arc between the ends of tangency, along its pitch curve.
+        """
+        rolling = self.toothings[0].rolling
+        start, end = (rolling.arc_length(edge) for edge in self.arcs)
+        return np.maximum(end - start, 0.0) / self.pitch
+
+    @cached_property
+    def stretches(self) -> tuple[Array, Array, Ints]:
+        """Stretches of a turn of the driver, or of an open pair's way, by the pairs that carry.
+
+        Driver angles of start and end, rad, and how many pairs carry there: 1 on single-pair arcs,
+        2 on double-pair arcs, 0 where no flanks touch.
+        """
+        turn = self.way
+        start, end = (edge[self.arcs[1] > self.arcs[0]] for edge in self.arcs)
+        turns = np.arange(-1, 2)[:, None] if self.closed else np.zeros((1, 1))
+        start, end = ((edge + turn * turns).ravel() for edge in (start, end))
+        edges = np.clip(np.concatenate([start, end]), 0.0, turn)
+        edges = np.unique(np.concatenate([[0.0], edges, [turn]]))
+        edges = edges[np.append(np.diff(edges) > 1e-12 * turn, True)]
+        edges[0] = 0.0
+        return edges[:-1], edges[1:], self._carrying(0.5 * (edges[:-1] + edges[1:]), start, end)
+
+    def _carrying(self, phi1: Array, start: Array, end: Array) -> Ints:
+        begun = np.searchsorted(np.sort(start), phi1, side="right")
+        return begun - np.searchsorted(np.sort(end), phi1, side="left")
+
+    def carrying(self, phi1: ArrayLike) -> Ints:
+        """Return how many pairs carry at phases `phi1`, rad."""
+        phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
+        start, end, pairs = self.stretches
+        x = np.mod(phi1, end[-1]) if self.closed else phi1
+        return pairs[np.clip(np.searchsorted(start, x, side="right") - 1, 0, len(pairs) - 1)]
+
+
+def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = None) -> FlankPairs:
+    """Return the pairs of flanks of one side.
+
+    Parameters
+    ----------
+    gears : (Gear, Gear)
+        Driver and driven wheel.
+    side : {-1, +1}
+        `DRIVE` or `COAST`.
+    distance : float, mm, optional
+        Distance of the shafts as mounted; as designed if left out.
+
+    Returns
+    -------
+    FlankPairs
+    """
+    first, second = gears
+    return FlankPairs(
+        toothings=(first.toothing, second.toothing),
+        flanks=(first.profile.flanks, second.profile.flanks),
+        side=side,
+        distance=first.pair.center_distance if distance is None else distance,
+    )

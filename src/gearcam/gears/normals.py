@@ -1,0 +1,225 @@
+"""Where two flanks touch: at a common normal, with no distance along it.
+
+A flank's normal at roll s passes through the pitch point of that roll, whatever its place `sf`: the
+flanks of one side are parallel curves, involutes of one base curve. So at a phase of the driver
+three equations say at which rolls of both wheels a pair touches, and how far the driven wheel has
+then turned from its nominal place, its *lag*: equal directions of the normals, and two coordinates.
+As designed the rolls are equal and the lag is 0. It is the same for all pairs of evenly spaced
+flanks: they touch together at any distance of the shafts.
+
+Positions are those of the mounted pair: O1 at 0, O2 at the distance of the shafts, as complex
+numbers. A rack has no O2; its lag is a way, mm, in the direction in which it is driven.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.gears.rolling import Frames, Plane
+
+if TYPE_CHECKING:
+    from gearcam.gears.contact import FlankPairs
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+_STEPS = 40
+"""Newton steps; five serve at a changed distance, one as designed."""
+
+_SMALL = 1e-7
+"""Step, in pitches, after which the next one is below rounding."""
+
+_MISS = 1e-9
+"""What may be left of the equations, in pitches and rad."""
+
+_FAR = 3.0
+"""Rolls this many pitches from the nominal one belong to no pair of teeth that mesh."""
+
+_FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
+"""Unknowns among phase, roll of both wheels and lag, by which of the first three is known."""
+
+
+class Pose(NamedTuple):
+    """How pairs of flanks stand: arrays of one shape.
+
+    Parameters
+    ----------
+    phi1 : array, rad
+        Phase of the driver.
+    one, two : arrays, rad
+        Driver angles that name the rolls of driver and driven wheel.
+    lag : array, rad
+        The driven wheel's turn from its nominal place; of a rack its way, mm.
+    """
+
+    phi1: Array
+    one: Array
+    two: Array
+    lag: Array
+
+    def take(self, index: Ints | Mask) -> Pose:
+        """Return some of them, by `index`."""
+        return Pose(*(values[index] for values in self))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Normals:
+    """A normal of a driver's flank and one of a driven flank, n of each, in the mounted pair.
+
+    Parameters
+    ----------
+    frames : (Frames, Frames)
+        At the rolls of driver and driven wheel.
+    foot : (2, n) complex array, mm
+        Pitch points of these rolls.
+    normal : (2, n) complex array
+        Unit normals of the flanks.
+    equations : (3, n) array, rad and mm
+        Angle between the normals; distance of the flanks along the driver's, and across it.
+    slopes : (3, 4, n) array
+        Their derivatives by phase, roll of the driver, roll of the driven wheel (as driver
+        angles) and lag.
+    """
+
+    frames: tuple[Frames, Frames]
+    foot: Plane
+    normal: Plane
+    equations: Array
+    slopes: Array
+
+    @property
+    def rates(self) -> Array:
+        """Derivatives of both rolls (as driver angles) and the lag by the phase, (3, n)."""
+        return -_solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
+
+
+def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
+    """Return normals of both wheels' flanks, and what they miss of being one.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    pose : Pose
+        Of n pairs.
+    play : (n,) array, mm
+        sf2 - sf1.
+
+    Returns
+    -------
+    Normals
+
+    Notes
+    -----
+    With n the driver's unit normal and P the pitch points, flanks touch where the normals are
+    parallel and ``conj(n)*(P2 - P1) + (s1 - s2 + sf2 - sf1)*cos(alpha) = 0``. Derivatives by s
+    from ``dn/ds = +-1j*kappa*n`` (+ on wheel 1) and ``dP/ds = T``.
+    """
+    phi1, one, two, lag = pose
+    first, second = (
+        toothing.frames(angle) for toothing, angle in zip(pairs.toothings, (one, two), strict=True)
+    )
+    rolling, alpha = pairs.toothings[0].rolling, pairs.toothings[0].cutter.alpha
+    law, size = rolling.law, rolling.center_distance
+    cosine, tilt = math.cos(alpha), complex(math.cos(alpha), -pairs.side * math.sin(alpha))
+    turned = np.exp(-1j * phi1)
+    foot1, n1 = first.p * turned, first.t * (tilt * turned)
+    nominal, ratio = law.phi2(phi1), law.derivatives(phi1, 0)[0]
+    if law.feeds:
+        foot2 = second.p - 1j * (size * nominal + lag) + (pairs.distance - size)
+        tangent2, carried, turns = second.t, np.full(phi1.shape, -1j), 0.0
+        ratio = size * ratio
+    else:
+        back = np.exp(1j * (nominal + lag))
+        foot2, tangent2, turns = second.p * back, second.t * back, 1.0
+        carried = 1j * foot2
+        foot2 = foot2 + pairs.distance
+    n2 = tangent2 * tilt
+    across = np.conj(n1) * (foot2 - foot1)
+    aligned = np.conj(n2) * n1
+    distance = across.real + (first.s - second.s + play) * cosine
+    by_lag = np.conj(n1) * carried
+    by_one = -1j * (first.kappa * across + pairs.side * math.sin(alpha))
+    by_two = np.conj(n1) * tangent2 - cosine
+    # the driver turns by -phi1, the driven wheel as with the lag
+    by_phase = 1j * np.conj(n1) * foot2 + ratio * by_lag
+    angle = [
+        -aligned.real * (1.0 + turns * ratio),
+        aligned.real * first.kappa * first.speed,
+        aligned.real * second.kappa * second.speed,
+        -aligned.real * turns,
+    ]
+    moves = [by_phase, by_one * first.speed, by_two * second.speed, by_lag]
+    return Normals(
+        frames=(first, second),
+        foot=np.stack([foot1, foot2]),
+        normal=np.stack([n1, n2]),
+        equations=np.stack([aligned.imag, distance, across.imag]),
+        slopes=np.stack([np.stack(angle), np.real(moves), np.imag(moves)]),
+    )
+
+
+def touch(pairs: FlankPairs, start: Array, play: Array, known: Ints | int = 0) -> tuple[Pose, Mask]:
+    """Find where flanks touch.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    start : (n,) array, rad
+        What is known: the phase, or the driver angle that names the roll of a wheel. As designed
+        all three are equal, so that the search begins there.
+    play : (n,) array, mm
+        sf2 - sf1.
+    known : int or (n,) int array
+        Which it is: 0 the phase, 1 the driver's roll, 2 the driven wheel's.
+
+    Returns
+    -------
+    pose : Pose
+        By Newton's method with steps of half a pitch at most.
+    found : (n,) bool array
+        Whether that led to a contact within `_FAR` pitches of the nominal roll.
+    """
+    x = np.stack([start, start, start, np.zeros(start.shape)])
+    free = _FREE[np.broadcast_to(known, start.shape)].T
+    rows = np.arange(start.size)
+    speed = np.maximum(pairs.toothings[0].frames(start, curved=False).speed, 1e-300)
+    longest = 0.5 * pairs.pitch
+    at = normals(pairs, Pose(*x), play)
+    for _ in range(_STEPS):
+        step = -_solve(at.slopes[:, free, rows], at.equations)
+        size = np.abs(step[:2]).max(axis=0) * speed
+        with np.errstate(invalid="ignore", divide="ignore"):
+            step = step * np.minimum(1.0, longest / size)
+        x[free, rows] += np.where(np.isfinite(step), step, 0.0)
+        at = normals(pairs, Pose(*x), play)
+        if not np.any(size > _SMALL * pairs.pitch):
+            break
+    found = np.abs(at.equations[0]) <= _MISS
+    found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * pairs.pitch
+    found &= np.abs(x[:3] - start).max(axis=0) * speed <= _FAR * pairs.pitch
+    return Pose(*x), found
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """Solve systems of three equations, (3, 3, n) and (3, n), by determinants."""
+    a, b, c = matrix[:, 0], matrix[:, 1], matrix[:, 2]
+
+    def triple(p: Array, q: Array, r: Array) -> Array:
+        return (
+            p[0] * (q[1] * r[2] - q[2] * r[1])
+            + p[1] * (q[2] * r[0] - q[0] * r[2])
+            + p[2] * (q[0] * r[1] - q[1] * r[0])
+        )
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.stack([triple(right, b, c), triple(a, right, c), triple(a, b, right)]) / triple(
+            a, b, c
+        )

@@ -1,0 +1,105 @@
+"""The checks of what drives: of a pair as designed and, in a study, as mounted.
+
+A check sees what has `sides`: the pairs of flanks that hold back and those that drive. Importing
+this room registers them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Protocol
+
+from gearcam.findings import Finding, check
+from gearcam.gears.contact import DRIVE, FlankPairs
+from gearcam.gears.subject import CONTACT_RATIO
+from gearcam.gears.subject import KIND as PAIR_KIND
+from gearcam.meshing.idle import Idle, idle
+from gearcam.meshing.settings import KIND
+
+_SHOWN = 3
+"""Stretches that a finding names."""
+
+
+class Sided(Protocol):
+    """What these checks look at."""
+
+    @property
+    def sides(self) -> tuple[FlankPairs, ...]:
+        """The pairs of flanks of each side."""
+        ...
+
+
+def arcs_text(found: list[Idle]) -> str:
+    """Return the stretches as angles in degrees, with the number of those left out."""
+    shown = [f"{math.degrees(a.start):.6g} to {math.degrees(a.end):.6g}" for a in found[:_SHOWN]]
+    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+    return f"phi1 = {', '.join(shown)} deg{more}"
+
+
+def side_name(pairs: FlankPairs) -> str:
+    """Return what the flanks of a side do."""
+    return "driving forward" if pairs.side == DRIVE else "driving backward"
+
+
+def _repeats(pairs: FlankPairs) -> str:
+    lobes = pairs.toothings[0].rolling.law.lobes
+    return ", in each lobe" if pairs.closed and pairs.even and lobes.n1 > 1 else ""
+
+
+@check(
+    "contact-ratio",
+    kind=(PAIR_KIND, KIND),
+    doc="smallest contact ratio of any flank, both sides; what drives where no flanks touch",
+    limit=CONTACT_RATIO,
+)
+def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
+    """Warn of a low contact ratio; below 1, or where no flanks touch, it is an error."""
+    for pairs in subject.sides:
+        worst, found = float(pairs.contact_ratios.min()), list(idle(pairs))
+        if worst >= limit and not found:
+            continue
+        tooth = int(pairs.tooth(1, pairs.numbers)[pairs.contact_ratios.argmin()])
+        message = "Few teeth carry at a time; a larger rack.addendum or more teeth help."
+        if found and all(stretch.edges for stretch in found):
+            apart = max(stretch.apart for stretch in found)
+            message = (
+                f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}. Meanwhile ends of flanks "
+                f"drive: they scratch, and the driven wheel is up to {apart:.3g} mm off its place "
+                "along the pitch curve."
+            )
+        elif found:
+            message = (
+                f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}, and in part of this "
+                "nothing drives at all."
+            )
+        elif worst < 1.0:
+            message = (
+                "This flank carries for less than a pitch; its neighbours drive meanwhile. A "
+                "larger rack.addendum or more teeth help."
+            )
+        yield Finding(
+            code="contact-ratio",
+            severity="error" if found or worst < 1.0 else "warning",
+            message=message,
+            value=worst,
+            limit=limit,
+            where=f"{side_name(pairs)}, wheel 1, tooth {tooth}",
+        )
+
+
+@check("nothing-drives", kind=KIND, doc="arcs of the driver's turn on which nothing touches")
+def nothing_drives(subject: Sided, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+    """Report the arcs on which neither flanks nor their ends touch, as errors."""
+    for pairs in subject.sides:
+        empty = [stretch for stretch in idle(pairs) if not stretch.edges]
+        if empty:
+            yield Finding(
+                code="nothing-drives",
+                severity="error",
+                message="On these arcs neither flanks nor their ends reach the mate all along: "
+                "the pair jumps or stops there.",
+                value=math.degrees(sum(stretch.end - stretch.start for stretch in empty)),
+                unit="deg",
+                where=f"{side_name(pairs)}, {arcs_text(empty)}{_repeats(pairs)}",
+            )
