@@ -235,9 +235,11 @@ def test_the_makefile_has_the_targets() -> None:
         for name in re.findall(r"make (\w+)  |`make (\w+)`", page.read_text("utf-8"))
     }
     targets = {first or second for first, second in named}
-    assert {"demo", "test", "bench"} <= targets
+    (phony,) = re.findall(r"^\.PHONY: (.+)$", makefile, re.MULTILINE)
+    assert set(phony.split()) == targets
     for target in targets:
         assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
+        assert re.search(rf"make {target}\b", section("Start")), target
 
 
 def keys(document: Any) -> Iterator[str]:
