@@ -66,9 +66,10 @@ $(VENV)/.made:
 	      >/dev/null 2>&1; then python="$$candidate"; break; fi; \
 	done; \
 	if [ -z "$$python" ]; then \
-	  echo "gearcam needs Python 3.11 or later with its venv module, and none was found." >&2; \
+	  echo "gearcam needs Python 3.11 or later with its venv module, and" \
+	    "$(if $(PYTHON),$(PYTHON) is none or does not run,none was found)." >&2; \
 	  echo "Install one (Debian, Ubuntu: apt install python3 python3-venv)," >&2; \
-	  echo "or name it: make PYTHON=/path/to/python demo" >&2; exit 1; \
+	  echo "or name one that runs: make PYTHON=/path/to/python demo" >&2; exit 1; \
 	fi; \
 	echo "making $(VENV) with $$("$$python" --version)"; \
 	"$$python" -m venv --clear $(VENV)
