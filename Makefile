@@ -1,8 +1,10 @@
 # make demo    build the nail machine's gears into output/ (installs into .venv first)
-# make test    everything that CI runs (installs the extra for STEP files, 380 MB, too)
+# make test    every test that is not slow (installs the extra for STEP files, 380 MB, too)
+# make lint    style, types, import contracts
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
 # make peers   compare flanks with those of another package
-# make lint    style, types, import contracts    make clean   remove .venv, caches and output
+# make matrix  the tests with every supported Python found, and with the lowest and the newest versions
+# make lock    renew requirements.lock    make clean   remove environments, caches and output
 #
 # Needs Python 3.11 or later and a network for the first call. `make PYTHON=/path/to/python demo` chooses one.
 
@@ -13,8 +15,12 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 DEMO   := profiles/nail_machine_two_phase.toml
 PYTHON ?=
 
+# Sections of the lock that an environment takes; `make matrix` takes others.
+RUN    := run install
+TEST   := $(RUN) step test
+
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench peers clean help
+.PHONY: demo test lint slow bench peers matrix lock clean help
 
 help:
 	@sed -n 's/^# //p' Makefile
@@ -22,16 +28,16 @@ help:
 demo: $(VENV)/.run
 	$(BIN)/gearcam build $(DEMO) -o output
 
-test: lint
+test: $(VENV)/.test
 	$(BIN)/python -m pytest -n 2 -m "not slow"
 
-lint: $(VENV)/.dev
+lint: $(VENV)/.lint
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
-slow: $(VENV)/.dev
+slow: $(VENV)/.test
 	$(BIN)/python -m pytest -m slow
 
 bench: $(VENV)/.bench
@@ -40,9 +46,15 @@ bench: $(VENV)/.bench
 peers: $(VENV)/.bench
 	$(BIN)/python benchmarks/agreement.py
 
+matrix:
+	@MAKE="$(MAKE)" tools/matrix
+
+lock: $(VENV)/.lock
+	$(BIN)/python tools/lock.py
+
 clean:
-	rm -rf $(VENV) .pytest_cache .ruff_cache .hypothesis .import_linter_cache build dist
-	find src tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+	rm -rf $(VENV) .matrix .pytest_cache .ruff_cache .hypothesis .import_linter_cache build dist
+	find src tests benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +
 	find output -mindepth 1 ! -name .gitkeep -delete
 
 # The stamps: a second call finds them fresh and needs neither pip nor network.
@@ -54,23 +66,38 @@ $(VENV)/.made:
 	      >/dev/null 2>&1; then python="$$candidate"; break; fi; \
 	done; \
 	if [ -z "$$python" ]; then \
-	  echo "gearcam needs Python 3.11 or later with its venv module, and none was found." >&2; \
+	  echo "gearcam needs Python 3.11 or later with its venv module, and" \
+	    "$(if $(PYTHON),$(PYTHON) is none or does not run,none was found)." >&2; \
 	  echo "Install one (Debian, Ubuntu: apt install python3 python3-venv)," >&2; \
-	  echo "or name it: make PYTHON=/path/to/python demo" >&2; exit 1; \
+	  echo "or name one that runs: make PYTHON=/path/to/python demo" >&2; exit 1; \
 	fi; \
 	echo "making $(VENV) with $$("$$python" --version)"; \
 	"$$python" -m venv --clear $(VENV)
-	$(PIP) install --upgrade "pip>=25.1"   # the first that knows dependency groups
 	@touch $@
 
-$(VENV)/.run: pyproject.toml $(VENV)/.made
-	$(PIP) install --editable .
+# Only what the lock holds, by its hashes; wheels only, since what builds them would not be locked.
+define locked
+	@awk -v wanted=" $(1) " '/^# for /{on = index(wanted, " " $$3 " ")} on' requirements.lock > $@.txt
+	$(PIP) install --only-binary :all: --require-hashes --requirement $@.txt
+endef
+
+$(VENV)/.run: pyproject.toml requirements.lock $(VENV)/.made
+	$(call locked,$(RUN))
+	$(PIP) install --no-deps --no-build-isolation --editable .
 	@touch $@
 
-$(VENV)/.dev: pyproject.toml $(VENV)/.run
-	$(PIP) install --editable ".[step]" --group dev
+$(VENV)/.test: $(VENV)/.run
+	$(call locked,$(TEST))
 	@touch $@
 
-$(VENV)/.bench: pyproject.toml $(VENV)/.dev
-	$(PIP) install --editable . --group test --group bench
+$(VENV)/.lint: $(VENV)/.test
+	$(call locked,$(TEST) lint)
+	@touch $@
+
+$(VENV)/.bench: $(VENV)/.test
+	$(call locked,$(TEST) bench)
+	@touch $@
+
+$(VENV)/.lock: requirements.lock $(VENV)/.made
+	$(call locked,lock)
 	@touch $@

@@ -8,7 +8,7 @@ import pytest
 
 from arch import rules
 
-EVERYTHING = [rules.SOURCE, rules.ROOT / "tests", rules.ROOT / "benchmarks"]
+EVERYTHING = [rules.SOURCE, rules.ROOT / "tests", rules.ROOT / "benchmarks", rules.ROOT / "tools"]
 
 
 def test_the_package_is_looked_at() -> None:

@@ -258,7 +258,7 @@ def demand_advice(refused: InfeasibleError, given: Given) -> None:
 def demand(given: Given) -> bool:
     """Build a design and demand all that is promised; whether it was built."""
     law, teeth, x = given
-    start = time.perf_counter()
+    start = time.process_time()
     made = job(law, teeth, module=MODULE, x=x)
     try:
         _ = made.gears
@@ -266,7 +266,7 @@ def demand(given: Given) -> bool:
         refused: InfeasibleError | None = error
     else:
         refused = None
-    assert time.perf_counter() - start < 10.0
+    assert time.process_time() - start < 10.0
     if refused is not None:
         demand_advice(refused, given)
         return False

@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.design import load, loads
@@ -120,6 +120,7 @@ def _paths(value: object, path: tuple[str | int, ...] = ()) -> list[tuple[str | 
     return found
 
 
+@settings(deadline=None)
 @given(st.lists(st.tuples(TOML_VALUES, st.booleans()), min_size=1, max_size=4))
 def test_every_place_of_a_document_has_its_line(values: list[tuple[object, bool]]) -> None:
     text = "".join(

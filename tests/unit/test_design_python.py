@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.design import GearPairDesign, OutputSpec, document_of, loads
@@ -90,6 +90,7 @@ def test_numbers_from_numpy_serve_in_python() -> None:
     assert document_of(design)["law"]["knots_deg"] == [0.0, 160.0, 360.0]
 
 
+@settings(deadline=None)
 @given(st.floats(min_value=5, max_value=35))
 def test_degrees_keep_their_range_through_radians(angle: float) -> None:
     rack = f"\n[rack]\npressure_angle_deg = {angle!r}\n"

@@ -28,13 +28,14 @@ TOP = [
     "kind",
     "pair",
     "gears",
+    "design",
     "files",
     "findings",
     "accuracy",
     "timings_s",
     "versions",
 ]
-"""Keys of every summary; ``solids`` comes with meshes."""
+"""Keys of every summary; ``solids`` comes with meshes, ``stale`` with old files."""
 
 PAIR = {"center_distance_mm", "module_mm", "teeth", "face_width_mm", "ratio", "solved"}
 PAIR |= {"x", "backlash_mm"}
@@ -123,13 +124,14 @@ def test_a_job_with_a_bad_law_says_so_when_asked_and_not_before() -> None:
 
 
 def test_a_summary_holds_what_is_promised() -> None:
-    summary = small().summary(("a.csv",))
+    made = small()
+    summary = made.summary({"a.csv": made.design_hash})
     assert list(summary) == TOP
-    assert summary["format"] == 1
+    assert summary["format"] == 2
     assert (summary["name"], summary["kind"]) == ("sample", "gear-pair")
     assert set(summary["pair"]) == PAIR
     assert summary["pair"]["teeth"] == [22, 22]
-    assert summary["files"] == ["a.csv"]
+    assert summary["files"] == {"a.csv": summary["design"]}
     assert [gear["name"] for gear in summary["gears"]] == ["gear1", "gear2"]
     for gear in summary["gears"]:
         assert set(gear["centrode"]) == CENTRODE
@@ -246,7 +248,7 @@ def test_a_check_removes_nothing_and_keeps_the_list(tmp_path: Path) -> None:
 def test_a_check_of_a_new_design_writes_the_summary_only(tmp_path: Path) -> None:
     checked = small().check(tmp_path)
     assert set(contents(checked.directory)) == {"summary.json"}
-    assert checked.summary["files"] == []
+    assert checked.summary["files"] == {}
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {

@@ -127,7 +127,7 @@ def test_the_files_of_a_build_stay_and_a_build_removes_the_rows(design: str) -> 
     _, folder = run(design)
     assert (folder / "gear1_outline.csv").exists()
     listed = summary(folder)["files"]
-    assert isinstance(listed, list)
+    assert isinstance(listed, dict)
     assert {"gear1_outline.csv", "meshing.csv"} <= set(listed)
     assert main(["check", design, "-o", out]) == 0
     assert (folder / "meshing.csv").exists()

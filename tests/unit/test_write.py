@@ -15,7 +15,7 @@ from gearcam.export.write import is_plain, previous_files, write_all
 
 
 def summary(*names: object) -> bytes:
-    return json.dumps({"format": 1, "files": list(names)}).encode()
+    return json.dumps({"files": {str(name): "of a design" for name in names}}).encode()
 
 
 def build(folder: Path, files: dict[str, bytes]) -> tuple[str, ...]:
@@ -62,6 +62,8 @@ STRANGE = {
     "no text": b"\xff\xfe",
     "deep": b"[" * 100_000,
     "elsewhere": summary(*ELSEWHERE),
+    "names elsewhere": json.dumps({"files": ELSEWHERE}).encode(),
+    "name too long": summary("a" * 5000),
 }
 
 
@@ -234,7 +236,21 @@ def test_names_that_are_not_plain_are_refused(tmp_path: Path, name: str) -> None
         write_all(tmp_path, {name: b""})
 
 
-def test_previous_files_are_read_once_each(tmp_path: Path) -> None:
-    (tmp_path / "summary.json").write_bytes(summary("a.dxf", "b.dxf", "a.dxf", "summary.json"))
-    assert previous_files(tmp_path) == ("a.dxf", "b.dxf")
-    assert previous_files(tmp_path / "none") == ()
+def test_previous_files_are_those_that_are_there(tmp_path: Path) -> None:
+    listed = {
+        "files": {"a.dxf": "1", "gone.dxf": "1", "summary.json": "1", "wrong.dxf": 1},
+        "stale": {"b.dxf": "2", "c.dxf": None, "folder": "2"},
+    }
+    for name in ("a.dxf", "b.dxf", "c.dxf", "mine.txt", "wrong.dxf"):
+        (tmp_path / name).write_bytes(b"")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "summary.json").write_text(json.dumps(listed), encoding="utf-8")
+    assert previous_files(tmp_path) == {"a.dxf": "1", "b.dxf": "2", "c.dxf": None}
+    assert previous_files(tmp_path / "none") == {}
+
+
+def test_names_of_the_first_layout_are_known_without_a_design(tmp_path: Path) -> None:
+    first = {"format": 1, "files": ["a.dxf", "gone.dxf", "a.dxf", "summary.json"]}
+    (tmp_path / "summary.json").write_text(json.dumps(first), encoding="utf-8")
+    (tmp_path / "a.dxf").write_bytes(b"")
+    assert previous_files(tmp_path) == {"a.dxf": None}

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Iterable, Mapping
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from gearcam.design.examine import examine
 from gearcam.design.kinds import KINDS
 from gearcam.design.wording import MISSING, dotted
-from gearcam.errors import DesignError, Problem
+from gearcam.errors import DesignError, InfeasibleError, Problem
+
+HASH_DIGITS: Final = 16
+"""Hexadecimal digits of a design's hash: two of a thousand million million are alike by chance."""
 
 Wanted = tuple[str, Any, tuple[type, ...]]
 """Key of a part, the part, and of which types it may be."""
@@ -114,3 +119,54 @@ def document_of(design: DesignLike) -> dict[str, Any]:
             for name, value in design.limits.items()
         }
     return document
+
+
+def hash_of(design: DesignLike) -> str:
+    """Return the hash of a design: designs of the same hash give the same files.
+
+    It is taken from the values of all keys, defaults included, and from the rows of the CSV files
+    that the design names; not from comments, spaces, the order of keys, or where these files
+    lie; degrees count with 13 digits. What changes the content of no file of a build is left out:
+    ``[limits]``, ``[meshing]`` and which files are wanted.
+
+    Parameters
+    ----------
+    design : DesignLike
+        A design of any kind.
+
+    Returns
+    -------
+    str
+        The first `HASH_DIGITS` hexadecimal digits of SHA-256.
+
+    Raises
+    ------
+    InfeasibleError
+        If such a CSV file cannot be read any more.
+    """
+    document = document_of(design)
+    for title in ("limits", "meshing"):
+        document.pop(title, None)
+    del document["output"]["files"]
+    text = json.dumps(_with_rows(document), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
+
+
+def _with_rows(value: Any) -> Any:
+    """Return a part of a document with rows instead of files, and numbers of one type."""
+    if isinstance(value, Mapping):
+        return {
+            key: _rows(item) if key == "file" else _with_rows(item) for key, item in value.items()
+        }
+    if isinstance(value, list):
+        return [_with_rows(item) for item in value]
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _rows(file: str) -> list[list[str]]:
+    from gearcam.laws.columns import ColumnsError, read_rows
+
+    try:
+        return [cells for _, cells in read_rows(file)]
+    except ColumnsError as error:
+        raise InfeasibleError(str(error), where=file) from error

@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from gearcam.errors import WriteError
 
@@ -42,8 +42,7 @@ def write_all(
     directory : path
         The folder; made where it does not exist.
     files : mapping of str to bytes
-        Plain file names and contents. ``summary.json`` among them lists the others under
-        ``"files"``.
+        Plain file names and contents. ``summary.json`` among them lists the others.
     keep : bool
         Keep the stale files: what is written is no build, only a summary.
 
@@ -75,7 +74,7 @@ def _write(folder: Path, files: Mapping[str, bytes], keep: bool) -> tuple[str, .
     made = _make(folder)
     change = _Change(folder)
     try:
-        before = () if keep else previous_files(folder)
+        before = {} if keep else previous_files(folder)
         stale = [name for name in before if name not in files]
         for name, content in files.items():
             change.stage(name, content)
@@ -113,8 +112,8 @@ def is_plain(name: str) -> bool:
     return bool(name) and not name.startswith(".") and not set(name) & set("/\\:\0")
 
 
-def previous_files(folder: str | os.PathLike[str]) -> tuple[str, ...]:
-    """Return the plain names that the summary in a folder lists under ``"files"``.
+def previous_files(folder: str | os.PathLike[str]) -> dict[str, str | None]:
+    """Return the files that the summary in a folder lists, current and stale, if they are there.
 
     Parameters
     ----------
@@ -123,16 +122,39 @@ def previous_files(folder: str | os.PathLike[str]) -> tuple[str, ...]:
 
     Returns
     -------
-    tuple of str
-        In order, each once, without the summary; empty where there is no summary that can be read.
+    dict of str to str or None
+        By plain name the hash of the design that a file was made from, None where the summary does
+        not tell it; without the summary itself. Empty where there is no summary that can be read.
     """
+    place = Path(folder)
     try:
-        content = json.loads((Path(folder) / SUMMARY).read_text(encoding="utf-8"))
+        content = json.loads((place / SUMMARY).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
-        return ()
-    listed = content.get("files") if isinstance(content, dict) else None
-    names = [name for name in listed if isinstance(name, str)] if isinstance(listed, list) else []
-    return tuple(name for name in dict.fromkeys(names) if is_plain(name) and name != SUMMARY)
+        return {}
+    found: dict[str, str | None] = {}
+    for key in ("files", "stale") if isinstance(content, dict) else ():
+        found |= _listed(content.get(key))
+    return {
+        name: made
+        for name, made in found.items()
+        if is_plain(name) and name != SUMMARY and _is_there(place / name)
+    }
+
+
+def _listed(entries: Any) -> dict[str, str | None]:
+    """Return names with hashes; the first layout listed names only."""
+    if isinstance(entries, list):
+        return {name: None for name in entries if isinstance(name, str)}
+    known = entries.items() if isinstance(entries, dict) else ()
+    return {name: made for name, made in known if made is None or isinstance(made, str)}
+
+
+def _is_there(place: Path) -> bool:
+    """Return whether a listed name is a file or a link; one that no disk can hold is none."""
+    try:
+        return place.is_symlink() or place.is_file()
+    except OSError:
+        return False
 
 
 @dataclass
@@ -178,12 +200,11 @@ class _Change:
         written = [self.folder / name for name in self.staged]
         for name in names:
             target = self.folder / name
-            if not target.is_symlink():
-                if not target.is_file():
-                    continue
-                # Where case does not matter, an old name may be a new file.
-                if any(path.exists() and path.samefile(target) for path in written):
-                    continue
+            # Where case does not matter, an old name may be a new file.
+            if not target.is_symlink() and any(
+                path.exists() and path.samefile(target) for path in written
+            ):
+                continue
             self.kept[name] = self._spare()
             target.replace(self.kept[name])
             self.removed.append(name)

@@ -6,7 +6,7 @@ file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -57,11 +57,13 @@ class CamJob(Job):
     def program(self) -> Program:
         """The lift over a turn."""
         with self._stage("program"):
-            return make_program(
+            program = make_program(
                 self.design.phases,
                 self.tolerances,
                 oscillating=self.design.follower.oscillating,
             )
+            _ = self.design_hash  # now: points that a rise has read may change
+            return program
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -127,12 +129,14 @@ class CamJob(Job):
         return in_order(found)
 
     def summary(
-        self, files: Sequence[str] = (), extras: dict[str, Any] | None = None
+        self,
+        files: Mapping[str, str | None] | None = None,
+        extras: dict[str, Any] | None = None,
     ) -> dict[str, Any]:
         """Return the summary of the build (see `Job.summary`): `files`, `extras`."""
         from gearcam.jobs.cam_summary import summarize
 
-        return summarize(self, files, extras or {})
+        return summarize(self, files or {}, extras or {})
 
     def _export(self, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
         from gearcam.jobs.cam_files import export
@@ -169,7 +173,6 @@ class CamJob(Job):
             If the file cannot be read.
         """
         from gearcam.export.table import table_bytes
-        from gearcam.export.write import SUMMARY, previous_files
         from gearcam.jobs.followed import followed, read_profile
 
         if progress is not None:
@@ -180,7 +183,6 @@ class CamJob(Job):
         if progress is not None:
             progress("writing", 1, 2)
         folder = Path(directory) / self.design.name
-        others = [name for name in previous_files(folder) if name not in (FOLLOWED, SUMMARY)]
-        summary = self.summary((*others, FOLLOWED), {"followed": facts})
+        summary = self.summary(self._beside(folder, FOLLOWED), {"followed": facts})
         contents = {FOLLOWED: table_bytes(columns)}
         return finish(folder, contents, summary, self.findings, keep=True)

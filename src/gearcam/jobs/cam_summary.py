@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearcam.cams.measures import Range
-from gearcam.jobs.summary import CHORD_HOW, FORMAT, versions
+from gearcam.jobs.summary import CHORD_HOW, FORMAT, listed, versions
 
 if TYPE_CHECKING:
     from gearcam.jobs.cam import CamJob
 
 
-def summarize(job: CamJob, files: Sequence[str], extras: dict[str, Any]) -> dict[str, Any]:
+def summarize(
+    job: CamJob, files: Mapping[str, str | None], extras: dict[str, Any]
+) -> dict[str, Any]:
     """Return the summary of a job.
 
     Parameters
     ----------
     job : CamJob
         A built design.
-    files : sequence of str
-        Files written beside the summary.
+    files : mapping of str to str or None
+        Files beside the summary, each with the hash of the design that it was made from.
     extras : dict
         What exporters measured: ``dxf``, ``solids``, ``curvature``, ``followed``.
 
@@ -40,7 +42,7 @@ def summarize(job: CamJob, files: Sequence[str], extras: dict[str, Any]) -> dict
         "motion": _motion(job),
         "cam": _cam(job),
         **_part(job),
-        "files": list(files),
+        **listed(job.design_hash, files),
         "findings": findings,
         "accuracy": _accuracy(job, extras),
         **{name: extras[name] for name in ("solids", "curvature", "followed") if name in extras},

@@ -7,7 +7,7 @@ each file. Every stage is timed once. Nothing is imported that the asked-for fil
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -107,7 +107,9 @@ class GearPairJob(Job):
     def law(self) -> RatioLaw:
         """The ratio law."""
         with self._stage("law"):
-            return self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
+            law = self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
+            _ = self.design_hash  # now: a table that the law has read may change
+            return law
 
     @cached_property
     def pair(self) -> GearPair:
@@ -225,12 +227,14 @@ class GearPairJob(Job):
         return np.linspace(0.0, turns * lobes.period, count + 1)
 
     def summary(
-        self, files: Sequence[str] = (), extras: dict[str, Any] | None = None
+        self,
+        files: Mapping[str, str | None] | None = None,
+        extras: dict[str, Any] | None = None,
     ) -> dict[str, Any]:
         """Return the summary of the build (see `Job.summary`): `files`, `extras`."""
         from gearcam.jobs.summary import summarize
 
-        return summarize(self, files, extras or {})
+        return summarize(self, files or {}, extras or {})
 
     def _export(self, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
         from gearcam.jobs.files import export
@@ -260,7 +264,6 @@ class GearPairJob(Job):
             If the disk refuses.
         """
         from gearcam.export.table import table_bytes
-        from gearcam.export.write import SUMMARY, previous_files
         from gearcam.meshing.checks import KIND as MESHING_KIND
         from gearcam.meshing.study import study
 
@@ -282,8 +285,7 @@ class GearPairJob(Job):
         findings = in_order((*told, *extra))
         folder = Path(directory) / self.design.name
         contents = {MESHING: table_bytes(meshing.columns)}
-        others = [name for name in previous_files(folder) if name not in (MESHING, SUMMARY)]
-        summary = self.summary((*others, MESHING), {"meshing": meshing.summary})
+        summary = self.summary(self._beside(folder, MESHING), {"meshing": meshing.summary})
         summary["findings"] = [finding.as_dict() for finding in findings]
         written = finish(folder, contents, summary, findings, keep=True)
         return replace(written, complete=meshing.complete)

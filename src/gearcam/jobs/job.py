@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
-from gearcam.design import KINDS
+from gearcam.design import KINDS, hash_of
 from gearcam.errors import DesignError, Problem
 from gearcam.findings import Finding
 from gearcam.jobs.written import Written, finish
@@ -57,14 +57,16 @@ class Job(ABC):
 
     @abstractmethod
     def summary(
-        self, files: Sequence[str] = (), extras: dict[str, Any] | None = None
+        self,
+        files: Mapping[str, str | None] | None = None,
+        extras: dict[str, Any] | None = None,
     ) -> dict[str, Any]:
         """Return the summary of the build, for JSON: what does not exist is left out.
 
         Parameters
         ----------
-        files : sequence of str
-            Names of the files written beside it.
+        files : mapping of str to str or None, optional
+            Files beside it, each with the hash of the design that it was made from.
         extras : dict, optional
             What the exporters measured.
 
@@ -77,6 +79,17 @@ class Job(ABC):
     @abstractmethod
     def _export(self, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
         """Return the files of one kind."""
+
+    @cached_property
+    def design_hash(self) -> str:
+        """The hash of the design as it was when its law or program was made."""
+        return hash_of(self.design)
+
+    def _beside(self, folder: Path, *made: str) -> dict[str, str | None]:
+        """Return the files of a folder after this job has made some, with their designs' hashes."""
+        from gearcam.export.write import previous_files
+
+        return previous_files(folder) | dict.fromkeys(made, self.design_hash)
 
     def _demand_formats(self, kinds: Sequence[str]) -> None:
         known = KINDS[self.design.kind].formats
@@ -95,7 +108,9 @@ class Job(ABC):
             raise DesignError(problems)
 
     def check(self, directory: str | Path = "output") -> Written:
-        """Run the checks and write the summary only; files of an earlier build stay listed in it.
+        """Run the checks and write the summary only; files of an earlier build stay.
+
+        They stay listed, under ``stale`` if they were made from another state of the design.
 
         Parameters
         ----------
@@ -107,10 +122,8 @@ class Job(ABC):
         Written
             With the summary as its only file.
         """
-        from gearcam.export.write import previous_files
-
         folder = Path(directory) / self.design.name
-        summary = self.summary(previous_files(folder))
+        summary = self.summary(self._beside(folder))
         return finish(folder, {}, summary, self.findings, keep=True)
 
     def write(
@@ -163,5 +176,5 @@ class Job(ABC):
                 contents |= self._export(kind, extras)
         tell("writing")
         folder = Path(directory) / self.design.name
-        summary = self.summary(tuple(contents), extras)
+        summary = self.summary(dict.fromkeys(contents, self.design_hash), extras)
         return finish(folder, contents, summary, self.findings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import platform
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from gearcam.jobs.gear_pair import GearPairJob
 
 
-FORMAT = 1
+FORMAT = 2
 """Version of the summary's layout."""
 
 CHORD_HOW = (
@@ -27,15 +27,17 @@ CHORD_HOW = (
 """How a sampler knows its chord error."""
 
 
-def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) -> dict[str, Any]:
+def summarize(
+    job: GearPairJob, files: Mapping[str, str | None], extras: dict[str, Any]
+) -> dict[str, Any]:
     """Return the summary of a job.
 
     Parameters
     ----------
     job : GearPairJob
         A built design.
-    files : sequence of str
-        Files written beside the summary.
+    files : mapping of str to str or None
+        Files beside the summary, each with the hash of the design that it was made from.
     extras : dict
         What exporters measured: ``dxf``, ``solids``; the numbers of a ``meshing`` study.
 
@@ -73,7 +75,7 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
             "solved": solved,
         },
         "gears": [_gear(job, gear) for gear in job.gears],
-        "files": list(files),
+        **listed(job.design_hash, files),
         "findings": findings,
         "accuracy": _accuracy(job, extras),
         **_helix(job),
@@ -81,6 +83,26 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
         "timings_s": {name: round(value, 6) for name, value in job.timings.items()},
         "versions": versions(),
     }
+
+
+def listed(design: str, files: Mapping[str, str | None]) -> dict[str, Any]:
+    """Return what a summary says of the files beside it: those of its own design, and stale ones.
+
+    Parameters
+    ----------
+    design : str
+        Hash of the design that the summary describes.
+    files : mapping of str to str or None
+        By name the hash of the design that each was made from; None where it is not known.
+
+    Returns
+    -------
+    dict
+        ``design``, ``files``, and ``stale`` if there are any.
+    """
+    stale = {name: made for name, made in files.items() if made != design}
+    current = {name: design for name in files if name not in stale}
+    return {"design": design, "files": current, **({"stale": stale} if stale else {})}
 
 
 def _helix(job: GearPairJob) -> dict[str, Any]:

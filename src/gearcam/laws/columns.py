@@ -42,6 +42,34 @@ def read_columns(file: str, names: Names) -> tuple[NDArray[np.float64], list[int
     ColumnsError
         With the line that is wrong.
     """
+    rows = read_rows(file)
+    first, head = rows[0]
+    names = names(head) if callable(names) else names
+    if not names or any(head.count(name) != 1 for name in names):
+        raise ColumnsError(f"line {first}: the columns are {', '.join(head)}")
+    places = [head.index(name) for name in names]
+    found = [_numbers(row, places, line) for line, row in rows[1:]]
+    return np.array(found).reshape(-1, len(names)), [line for line, _ in rows[1:]]
+
+
+def read_rows(file: str) -> list[tuple[int, list[str]]]:
+    """Read the rows of a CSV file, without comments and empty lines.
+
+    Parameters
+    ----------
+    file : str
+        Path of a CSV file in UTF-8.
+
+    Returns
+    -------
+    list of (int, list of str)
+        One row or more: its number in the file, and its cells without the spaces around them.
+
+    Raises
+    ------
+    ColumnsError
+        If the file cannot be read or is empty.
+    """
     try:
         text = Path(file).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError, ValueError) as error:
@@ -50,21 +78,10 @@ def read_columns(file: str, names: Names) -> tuple[NDArray[np.float64], list[int
     rows = [(k, row) for k, row in enumerate(text, start=1) if row.strip() and row[0] != "#"]
     if not rows:
         raise ColumnsError("is empty")
-    head = _cells(rows[0][1])
-    names = names(head) if callable(names) else names
-    if not names or any(head.count(name) != 1 for name in names):
-        raise ColumnsError(f"line {rows[0][0]}: the columns are {', '.join(head)}")
-    places = [head.index(name) for name in names]
-    found = [_numbers(row, places, line) for line, row in rows[1:]]
-    return np.array(found).reshape(-1, len(names)), [line for line, _ in rows[1:]]
+    return [(line, [cell.strip() for cell in next(csv.reader([row]))]) for line, row in rows]
 
 
-def _cells(row: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([row]))]
-
-
-def _numbers(row: str, places: Sequence[int], line: int) -> list[float]:
-    cells = _cells(row)
+def _numbers(cells: Sequence[str], places: Sequence[int], line: int) -> list[float]:
     found = []
     for place in places:
         text = cells[place] if place < len(cells) else ""

@@ -253,7 +253,8 @@ def _across(first: _Graph, second: _Graph) -> tuple[tuple[Array, Ints], tuple[Ar
     """
     low = min(first.u.min(), second.u.min())
     span = max(first.u.max(), second.u.max()) - low + 1.0
-    after = np.searchsorted(*(g.owner * span + (g.u - low) for g in (second, first)))
+    places, wanted = (graph.owner * span + (graph.u - low) for graph in (second, first))
+    after = np.searchsorted(places, wanted)
     # a vertex comes before all that come after it
     before = np.cumsum(np.bincount(after, minlength=len(second.u) + 1))[:-1]
     return (_height(second, after, first.u), after), (_height(first, before, second.u), before)

@@ -1,0 +1,275 @@
+"""A summary never tells sizes that the files beside it do not have: it names what is stale."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import gearcam
+from gearcam.cli import main
+from gearcam.design import GearPairDesign, hash_of, loads
+from gearcam.errors import InfeasibleError
+from gearcam.jobs import make_job
+
+PAIR = """
+kind = "gear-pair"
+name = "sample"
+
+[law]
+type = "ellipse"
+eccentricity = 0.2
+
+[pair]
+module_mm = 2
+teeth = [22, 22]
+
+[rack]
+pressure_angle_deg = 20
+
+[meshing]
+steps = 12
+
+[limits]
+tool_diameter_mm = 1
+
+[output]
+files = ["csv", "svg"]
+chord_tolerance_mm = 0.01
+"""
+
+CAM = """
+kind = "cam"
+name = "cam"
+
+[[motion]]
+type = "rise"
+law = "cycloidal"
+angle_deg = 180
+lift_mm = 5
+
+[[motion]]
+type = "return"
+law = "cycloidal"
+angle_deg = 180
+lift_mm = 5
+
+[follower]
+type = "roller"
+roller_radius_mm = 6
+
+[cam]
+prime_radius_mm = 40
+
+[output]
+files = ["csv"]
+"""
+
+
+def changed(text: str, old: str, new: str) -> str:
+    assert text.count(old) == 1
+    return text.replace(old, new)
+
+
+def design_hash(text: str) -> str:
+    return hash_of(loads(text))
+
+
+MEANS_THE_SAME = {
+    "comment": ("[rack]", "# the rack\n[rack]   # of it"),
+    "number written otherwise": ("module_mm = 2\n", "module_mm = 2.0e0\n"),
+    "order of keys": ("module_mm = 2\nteeth = [22, 22]", "teeth = [22, 22]\nmodule_mm = 2"),
+    "default written out": ("pressure_angle_deg = 20", "pressure_angle_deg = 20\naddendum = 1"),
+    "default left out": ("[rack]\npressure_angle_deg = 20\n", ""),
+    "which files": ('["csv", "svg"]', '["stl"]'),
+    "meshing": ("steps = 12", "steps = 90\nadvance_deg = 0.01"),
+    "limits": ("tool_diameter_mm = 1", "tool_diameter_mm = 3"),
+}
+MEANS_ANOTHER = {
+    "law": ("eccentricity = 0.2", "eccentricity = 0.2000000001"),
+    "teeth": ("[22, 22]", "[23, 23]"),
+    "module": ("module_mm = 2\n", "module_mm = 2.0000000000000004\n"),
+    "rack": ("pressure_angle_deg = 20", "pressure_angle_deg = 20.00000001"),
+    "blank": ("[rack]", "[blank]\nbore_diameter_mm = [0, 8]\n[rack]"),
+    "helix": ("[rack]", "[helix]\nsteps = 2\n[rack]"),
+    "tolerance": ("chord_tolerance_mm = 0.01", "chord_tolerance_mm = 0.02"),
+    "curves": ("chord_tolerance_mm = 0.01", 'dxf_curves = "lines"'),
+}
+
+
+@pytest.mark.parametrize(("old", "new"), MEANS_THE_SAME.values(), ids=MEANS_THE_SAME)
+def test_what_means_the_same_has_the_same_hash(old: str, new: str) -> None:
+    assert design_hash(changed(PAIR, old, new)) == design_hash(PAIR)
+
+
+@pytest.mark.parametrize(("old", "new"), MEANS_ANOTHER.values(), ids=MEANS_ANOTHER)
+def test_what_means_another_thing_has_another_hash(old: str, new: str) -> None:
+    assert design_hash(changed(PAIR, old, new)) != design_hash(PAIR)
+
+
+def test_one_value_for_both_wheels_is_two() -> None:
+    one, two = (
+        changed(PAIR, "[rack]", f"[blank]\nbore_diameter_mm = {bore}\n[rack]")
+        for bore in ("8", "[8.0, 8]")
+    )
+    assert design_hash(one) == design_hash(two) != design_hash(PAIR)
+
+
+def test_a_cam_has_a_hash_of_its_motion() -> None:
+    first, later = CAM, changed(CAM, "roller_radius_mm = 6", "roller_radius_mm = 7")
+    assert design_hash(first) == design_hash(first + "motion_step_deg = 1\n")
+    assert design_hash(first) != design_hash(later)
+    assert design_hash(first) != design_hash(first.replace("lift_mm = 5", "lift_mm = 5.5"))
+    assert design_hash(first) != design_hash(first.replace('law = "cycloidal"', 'law = "harmonic"'))
+
+
+TABLE = "phi1_deg,ratio\n" + "".join(
+    f"{k * 30},{1 + 0.1 * (k % 12 in (1, 2, 3, 4, 5))}\n" for k in range(13)
+)
+"""Thirteen points of a ratio that rises and falls."""
+
+
+def with_table(folder: Path, table: str) -> GearPairDesign:
+    folder.mkdir(exist_ok=True)
+    (folder / "points.csv").write_text(table, encoding="utf-8")
+    text = changed(
+        PAIR, 'type = "ellipse"\neccentricity = 0.2', 'type = "table"\nfile = "points.csv"'
+    )
+    (folder / "sample.toml").write_text(text, encoding="utf-8")
+    design = gearcam.load(folder / "sample.toml")
+    assert isinstance(design, GearPairDesign)
+    return design
+
+
+def test_a_table_counts_by_its_rows_not_by_its_place(tmp_path: Path) -> None:
+    here = hash_of(with_table(tmp_path / "here", TABLE))
+    same = "# measured\n" + TABLE.replace(",", " , ")
+    assert hash_of(with_table(tmp_path / "there", same)) == here
+    assert hash_of(with_table(tmp_path / "here", TABLE.replace("1.1", "1.2"))) != here
+
+
+def test_files_are_told_by_the_table_that_their_law_has_read(tmp_path: Path) -> None:
+    design = with_table(tmp_path, TABLE)
+    before = hash_of(design)
+    job = make_job(design)
+    assert job.law is not None  # type: ignore[union-attr]
+    (tmp_path / "points.csv").write_text(TABLE.replace("1.1", "1.2"), encoding="utf-8")
+    assert job.write(tmp_path, files=["csv"]).summary["design"] == before
+    assert set(make_job(design).check(tmp_path).summary["stale"].values()) == {before}
+
+
+def test_a_table_that_is_gone_is_named(tmp_path: Path) -> None:
+    design = with_table(tmp_path, TABLE)
+    (tmp_path / "points.csv").unlink()
+    with pytest.raises(InfeasibleError, match=r"cannot be read.*points\.csv"):
+        hash_of(design)
+
+
+class Desk:
+    """A design file and the folder of its files."""
+
+    def __init__(self, place: Path, text: str) -> None:
+        self.file, self.out = place / "design.toml", place / "out"
+        self.folder = self.out / str(loads(text).name)
+        self.put(text)
+
+    def put(self, text: str) -> None:
+        self.text = text
+        self.file.write_text(text, encoding="utf-8")
+
+    def edit(self, old: str, new: str) -> None:
+        self.put(changed(self.text, old, new))
+
+    def run(self, command: str, *options: str) -> dict[str, Any]:
+        assert main([command, str(self.file), *options, "-o", str(self.out)]) == 0
+        found = json.loads((self.folder / "summary.json").read_text("utf-8"))
+        assert found["design"] == design_hash(self.text)
+        there = {place.name for place in self.folder.iterdir()} - {"summary.json", "mine.txt"}
+        assert {*found["files"], *found.get("stale", {})} == there
+        return found
+
+
+OUTLINES = {"gear1_outline.csv", "gear2_outline.csv", "centrodes.csv"}
+
+
+def test_files_of_the_design_as_it_is_are_not_stale(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, PAIR)
+    now = design_hash(PAIR)
+    assert desk.run("build")["files"] == dict.fromkeys({*OUTLINES, "pair.svg"}, now)
+    desk.edit("steps = 12", "steps = 24")
+    for found in (desk.run("check"), desk.run("mesh"), desk.run("check")):
+        assert "stale" not in found
+        assert set(found["files"].values()) == {now}
+    assert "meshing.csv" in found["files"]
+
+
+def test_a_check_names_the_files_of_another_state(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    desk = Desk(tmp_path, PAIR)
+    built = desk.run("build", "--only", "csv")
+    assert "stale" not in capsys.readouterr().out
+    desk.edit("[22, 22]", "[24, 24]")
+    checked = desk.run("check")
+    assert (checked["files"], checked["stale"]) == ({}, built["files"])
+    told = " ".join(capsys.readouterr().out.split())
+    names = ", ".join(built["files"])
+    assert f"stale: {names}: made from another state of the design; build again" in told
+    desk.edit("[24, 24]", "[22, 22]")
+    assert desk.run("check")["files"] == built["files"]
+    assert "stale" not in capsys.readouterr().out
+
+
+def test_a_study_is_new_and_the_build_stale_and_later_the_study_too(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, PAIR)
+    first = desk.run("build", "--only", "csv")["design"]
+    desk.edit("eccentricity = 0.2", "eccentricity = 0.21")
+    meshed = desk.run("mesh")
+    assert meshed["files"] == {"meshing.csv": meshed["design"]}
+    assert meshed["stale"] == dict.fromkeys(OUTLINES, first)
+    desk.edit("eccentricity = 0.21", "eccentricity = 0.22")
+    stale = {**dict.fromkeys(OUTLINES, first), "meshing.csv": meshed["design"]}
+    assert desk.run("check")["stale"] == stale
+    built = desk.run("build", "--only", "csv")
+    assert "stale" not in built
+    assert set(built["files"]) == OUTLINES
+
+
+def test_a_followed_profile_is_new_and_the_cam_stale(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, CAM)
+    first = desk.run("build")
+    profile = tmp_path / "profile.csv"
+    profile.write_bytes((desk.folder / "profile.csv").read_bytes())
+    desk.edit("prime_radius_mm = 40", "prime_radius_mm = 41")
+    followed = desk.run("follow", str(profile))
+    assert followed["files"] == {"followed.csv": followed["design"]}
+    assert followed["stale"] == first["files"]
+
+
+def test_a_file_that_was_deleted_is_not_listed(tmp_path: Path) -> None:
+    desk = Desk(tmp_path, PAIR)
+    desk.run("build")
+    (desk.folder / "pair.svg").unlink()
+    assert set(desk.run("check")["files"]) == OUTLINES
+
+
+def test_files_of_the_first_layout_are_stale_until_they_are_built(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    desk = Desk(tmp_path, PAIR)
+    desk.run("build")
+    old = {"format": 1, "files": ["pair.svg", *sorted(OUTLINES)]}
+    (desk.folder / "summary.json").write_text(json.dumps(old), encoding="utf-8")
+    (desk.folder / "mine.txt").write_text("keep", encoding="utf-8")
+    capsys.readouterr()
+    checked = desk.run("check")
+    assert (checked["files"], checked["stale"]) == ({}, dict.fromkeys(old["files"]))
+    told = " ".join(capsys.readouterr().out.split())
+    assert "stale: pair.svg, centrodes.csv" in told
+    assert "by an earlier gearcam, from a design not recorded; build again" in told
+    built = desk.run("build", "--only", "csv")
+    assert "stale" not in built
+    assert set(built["files"]) == OUTLINES
+    assert (desk.folder / "mine.txt").exists()
