@@ -185,12 +185,14 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Finding]:
 )
 def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn of a rim below 1.2 tooth depths (2.7 modules for the common rack)."""
-    for gear, bore in zip(subject.gears, subject.bores, strict=True):
+    rows = zip(subject.gears, subject.bores, subject.thinner, strict=True)
+    for gear, bore, thinner in rows:
         if bore is None:
             continue
-        rim = gear.least_radius - 0.5 * bore
+        root = gear.least_radius - thinner
+        rim = root - 0.5 * bore
         if rim < limit * subject.pair.module:
-            largest = 2.0 * (gear.least_radius - limit * subject.pair.module)
+            largest = 2.0 * (root - limit * subject.pair.module)
             hint = (
                 f"a bore up to {largest:.6g} mm keeps the limit" if largest > 0 else "no bore does"
             )

@@ -30,12 +30,15 @@ class Subject:
         Bore diameters.
     backlash : float, mm
         Backlash along the pitch curve.
+    thinner : (float, float), mm
+        What clearance takes off the rims between bores and roots.
     """
 
     pair: GearPair
     gears: tuple[Gear, Gear]
     bores: tuple[float | None, float | None]
     backlash: float
+    thinner: tuple[float, float] = (0.0, 0.0)
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:

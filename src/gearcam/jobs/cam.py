@@ -107,12 +107,18 @@ class CamJob(Job):
             place = Place(wheel=None, module=_RIM_PART * thickness / RIM)
             return make_part(NAME, [profile], thickness, self.design.blank, place)
 
+    @property
+    def contour(self) -> Contour:
+        """The profile as made: with its clearance."""
+        return self.part.contour if self.ordered else self.profile
+
     @cached_property
     def part_subject(self) -> PartsSubject:
         """What the checks of parts look at."""
         from gearcam.parts.checks import PartsSubject
 
-        return PartsSubject(parts=(self.part,), names=("cam",), lost=(None,))
+        kerf = self.design.output.kerf
+        return PartsSubject(parts=(self.part,), names=("cam",), lost=(None,), kerf=kerf)
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:

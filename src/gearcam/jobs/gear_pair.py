@@ -32,6 +32,8 @@ from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 
 if TYPE_CHECKING:
+    from gearcam.drawings import Drawing
+    from gearcam.numeric.contour import Contour
     from gearcam.parts.checks import PartsSubject
     from gearcam.parts.part import Part
 
@@ -155,6 +157,15 @@ class GearPairJob(Job):
         first, second = (2.0 * self.design.blank.wheel(number).bore_reach for number in (1, 2))
         return first or None, None if self.law.feeds else second or None
 
+    @property
+    def _thinner(self) -> tuple[float, float]:
+        """What clearance takes off the rims between bores and roots, mm."""
+        blanks = (self.design.blank.wheel(number) for number in (1, 2))
+        first, second = (
+            blank.clearance + blank.widened.bore_reach - blank.bore_reach for blank in blanks
+        )
+        return first, second
+
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What the checks found: errors first."""
@@ -173,7 +184,11 @@ class GearPairJob(Job):
 
     def _gear_findings(self, pair: GearPair, gears: tuple[Gear, Gear]) -> tuple[Finding, ...]:
         subject = Subject(
-            pair=pair, gears=gears, bores=self.bores, backlash=self.design.pair.backlash
+            pair=pair,
+            gears=gears,
+            bores=self.bores,
+            backlash=self.design.pair.backlash,
+            thinner=self._thinner,
         )
         with self._stage("checks"):
             return run_checks(KIND, subject, self.design.limits)
@@ -198,6 +213,24 @@ class GearPairJob(Job):
         _ = self.steps  # timed for themselves
         with self._stage("parts"):
             return make_parts(self)
+
+    @property
+    def contours(self) -> tuple[Contour, Contour]:
+        """The outlines as made, of stepped wheels the lowest, driver first."""
+        made = self.parts if self.ordered else [gear.profile for gear in self.gears]
+        first, second = (one.contour for one in made)
+        return first, second
+
+    @cached_property
+    def to_cut(self) -> tuple[Drawing, ...]:
+        """What a cutter follows: both wheels, step by step, as parts or as paths with the kerf."""
+        from gearcam.drawings import cut_drawing, wheel_drawing
+
+        return tuple(
+            cut_drawing(wheel_drawing(part, step), self.design.output.kerf)
+            for part in self.parts
+            for step in range(len(part.contours))
+        )
 
     def centrode_angles(self) -> NDArray[np.float64]:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""

@@ -76,12 +76,12 @@ def _mark(job: GearPairJob, gear: Gear) -> Mark:
     frames = job.pair.rolling.frames(gear.wheel, np.zeros(1))
     radius = complex(frames.p[0])
     normal = complex(frames.t[0]) * gear.toothing.turn
-    blank = job.design.blank.wheel(gear.wheel)
+    blank = job.design.blank.wheel(gear.wheel).widened
     return timing_mark(
         abs(radius),
         0.0 if gear.wheel == 1 else math.pi,
         job.pair.module,
-        gear.toothing.cutter.dedendum,
+        gear.toothing.cutter.dedendum + blank.clearance,
         job.design.pair.face_width,
         bore_reach=max(blank.bore_reach, 0.5 * blank.hub_diameter),
         tilt=abs(float(np.angle(normal / radius))),
@@ -92,14 +92,15 @@ def _mark(job: GearPairJob, gear: Gear) -> Mark:
 def parts_subject(job: GearPairJob) -> PartsSubject:
     """Return what the checks of parts look at: the `job`'s parts and what its flanks lose."""
     first, second = (_lost(job, number) for number in (1, 2))
-    return PartsSubject(parts=job.parts, lost=(first, second))
+    return PartsSubject(parts=job.parts, lost=(first, second), kerf=job.design.output.kerf)
 
 
 def _lost(job: GearPairJob, number: int) -> LostFlank | None:
-    """Find what offset and rounding take off a wheel's flanks."""
+    """Find what clearance and rounding take off a wheel's flanks."""
     gears, gear = job.gears, job.gears[number - 1]
     blank, flanks, toothing = job.design.blank.wheel(number), gear.profile.flanks, gear.toothing
-    if not (blank.offset or blank.tip_rounding):
+    taken = blank.clearance + blank.tip_rounding
+    if not taken:
         return None
     low, high = kept_reach(gear, blank)
     slope = math.sin(toothing.cutter.alpha) * math.cos(toothing.cutter.alpha)
@@ -118,7 +119,7 @@ def _lost(job: GearPairJob, number: int) -> LostFlank | None:
     numbers = np.unique(np.tile(np.array(toothing.numbers), 2)[worst]).tolist()
     return LostFlank(
         height=float(height.max()),
-        expected=max(-blank.offset, blank.tip_rounding, 0.0),
+        expected=taken,
         teeth=f"teeth {tooth_ranges(numbers)}",
         contact_ratio=(whole, ratio),
     )
@@ -132,14 +133,14 @@ def whole_flanks(gear: Gear) -> NDArray[np.bool_]:
 
 
 def kept_reach(gear: Gear, blank: WheelBlank) -> tuple[Array, Array]:
-    """Return between which reaches each flank is still there after rounding and offset.
+    """Return between which reaches each flank is still there after clearance and rounding.
 
     Parameters
     ----------
     gear : Gear
         The wheel.
     blank : WheelBlank
-        With offset and rounding.
+        With clearance and rounding.
 
     Returns
     -------
@@ -148,17 +149,16 @@ def kept_reach(gear: Gear, blank: WheelBlank) -> tuple[Array, Array]:
         left.
     """
     flanks = gear.profile.flanks
-    by = [value for value in (blank.offset, -blank.tip_rounding) if value]
-    if not by:
+    # what is rounded after it was moved keeps what a disc of both together touches
+    taken = blank.clearance + blank.tip_rounding
+    if not taken:
         return flanks.lowest, flanks.highest
     from gearcam.parts.parallel import touches
 
     share = np.linspace(0.0, 1.0, _PLACES)[:, None]
     reach = flanks.lowest + share * (flanks.highest - flanks.lowest)
     points, normals = flank_places(gear, reach)
-    free = np.ones(points.size, dtype=bool)
-    for radius in by:
-        free &= touches(gear.profile.contour, points.ravel(), normals.ravel(), radius)
+    free = touches(gear.profile.contour, points.ravel(), normals.ravel(), -taken)
     free = free.reshape(reach.shape)
     return np.where(free, reach, np.inf).min(axis=0), np.where(free, reach, -np.inf).max(axis=0)
 
@@ -212,7 +212,7 @@ def inspection_rows(job: GearPairJob) -> dict[str, Array]:
             kept = whole_flanks(gear) & (high > low)
             reach = np.where(kept, reach, 0.0)
             points, normals = flank_places(gear, reach)
-            points = (points + blank.offset * normals)[:, kept].T.ravel()
+            points = (points - blank.clearance * normals)[:, kept].T.ravel()
             normals, count = normals[:, kept].T.ravel(), len(share)
             tooth = np.tile(np.array(gear.toothing.numbers), 2)[kept]
             order = np.lexsort((-flanks.sigma[kept], tooth))

@@ -72,6 +72,7 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
             **facts,
             "solved": solved,
         },
+        **kerf_entry(job.design.output.kerf),
         "gears": [_gear(job, gear) for gear in job.gears],
         "files": list(files),
         "findings": findings,
@@ -83,6 +84,11 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
     }
 
 
+def kerf_entry(kerf: float) -> dict[str, float]:
+    """Return what a summary says of the `kerf`, mm, that paths of cutting files allow for."""
+    return {"kerf_mm": kerf} if kerf else {}
+
+
 def _helix(job: GearPairJob) -> dict[str, Any]:
     from gearcam.gears.helix import leads
 
@@ -92,7 +98,8 @@ def _helix(job: GearPairJob) -> dict[str, Any]:
 
 def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
     cutter, radius = gear.toothing.cutter, gear.convex_radius
-    blank = job.design.blank.wheel(gear.wheel)
+    blank, contour = job.design.blank.wheel(gear.wheel), job.contours[gear.wheel - 1]
+    whole = not (blank.clearance or blank.tip_rounding)
     tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
     tool["cutter_tip_radius_mm"] = cutter.tip_radius
     return {
@@ -107,14 +114,15 @@ def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
         "cutter": cutter.kind,
         **tool,
         "undercut_teeth": list(gear.profile.undercut_teeth),
-        "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
-        "root_radius_min_mm": gear.least_radius,
+        **({"tip_thickness_min_mm": float(gear.profile.tip_thickness.min())} if whole else {}),
+        "root_radius_min_mm": float(np.hypot(*contour.vertices.T).min()),
         **({"bore_diameter_mm": blank.bore} if job.bores[gear.wheel - 1] else {}),
+        **({"clearance_mm": blank.clearance} if blank.clearance else {}),
         "outline": {
-            "vertices": len(gear.outline),
-            "least_vertices": gear.profile.sampler.least,
-            "area_mm2": gear.profile.area,
-            "chord_error_mm": gear.profile.chord_error,
+            "vertices": len(contour.vertices),
+            **({"least_vertices": gear.profile.sampler.least} if whole else {}),
+            "area_mm2": contour.area,
+            "chord_error_mm": contour.chord_error,
         },
         **_part(job, gear),
     }
@@ -138,14 +146,14 @@ def _part(job: GearPairJob, gear: Gear) -> dict[str, Any]:
 def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
     """Error estimates, and how each was made."""
     rolling, law = job.pair.rolling, job.law
-    reach = max(float(np.hypot(*gear.outline.T).max()) for gear in job.gears)
+    reach = max(float(np.hypot(*contour.vertices.T).max()) for contour in job.contours)
     dxf = extras.get("dxf")
     values: dict[str, Any] = {
         "law": law.error,
         "closure_rad": abs(law.closure_error),
         "arc_length_mm": rolling.arc_error,
         "flank_mm": rolling.arc_error + reach * law.error + 8.0 * np.finfo(float).eps * reach,
-        "chord_mm": max(gear.profile.chord_error for gear in job.gears),
+        "chord_mm": max(contour.chord_error for contour in job.contours),
     }
     how = {
         "law": "rad of the driven angle: against Gauss-Legendre quadrature of the ratio",
@@ -156,8 +164,14 @@ def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
     }
     if dxf is not None:
         values["dxf_mm"] = dxf["error_mm"]
-        how["dxf_mm"] = f"files read back ({dxf['curves']}), against the curve, both ways"
+        how["dxf_mm"] = dxf_how(job.design.output.kerf, dxf["curves"])
     return {**values, "how": how}
+
+
+def dxf_how(kerf: float, curves: str) -> str:
+    """Return how the errors of DXF files were found: with a `kerf`, mm, and of which `curves`."""
+    what = "the edge, or its parallel at half the kerf" if kerf else "the curve"
+    return f"files read back ({curves}), against {what}, both ways"
 
 
 def versions() -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""The checks of parts: walls between openings, flanks that an offset takes away, tools too large.
+"""The checks of parts: walls between openings, flanks that clearance takes away, tools too large.
 
 Importing this room registers them. A check sees a `PartsSubject` and yields findings.
 """
@@ -23,7 +23,7 @@ _ROUNDING: Final = 1e-9
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LostFlank:
-    """What rounding or an offset takes off the flanks that touch the mate.
+    """What clearance or rounding takes off the flanks that touch the mate.
 
     Parameters
     ----------
@@ -60,11 +60,14 @@ class PartsSubject:
         What a person calls them.
     lost : tuple of LostFlank or None
         What each wheel's flanks lose; None where edges are neither moved nor rounded.
+    kerf : float, mm
+        What the cutter burns away; 0 where nothing is said of it.
     """
 
     parts: tuple[Part, ...]
     names: tuple[str, ...] = ("wheel 1", "wheel 2")
     lost: tuple[LostFlank | None, ...] = (None, None)
+    kerf: float = 0.0
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
@@ -123,7 +126,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
 @check(
     "lost-flank",
     kind=KIND,
-    doc="flank that an offset or rounded tips take away, and the contact ratio that is left",
+    doc="flank that clearance or rounded tips take away, and the contact ratio that is left",
     limit=("contact_ratio", Param(doc="least contact ratio", ge=1, le=3), 1.1),
 )
 def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
@@ -135,12 +138,35 @@ def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
         yield Finding(
             code="lost-flank",
             severity="warning" if left >= limit else "error",
-            message=f"Offset and rounding take up to {lost.height:.4g} mm of the height of flanks; "
-            f"the contact ratio falls from {whole:.4g} to {left:.4g}.",
+            message=f"Clearance and rounding take up to {lost.height:.4g} mm of the height of "
+            f"flanks; the contact ratio falls from {whole:.4g} to {left:.4g}.",
             value=lost.height,
             limit=lost.expected,
             unit="mm",
             where=f"{name}, {lost.teeth}",
+        )
+
+
+@check(
+    "wide-kerf",
+    kind=(KIND, CAM_KIND),
+    doc="whether what the cutter burns away fits into every place of an outline",
+)
+def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
+    """Warn of a kerf that is wider than an inner corner, an inner radius or a slot."""
+    for name, tools in zip(subject.names, subject.tools, strict=True):
+        if tools.diameter >= subject.kerf:
+            continue
+        what, where = _tightest(tools)
+        yield Finding(
+            code="wide-kerf",
+            severity="warning",
+            message=f"A cutter that burns {subject.kerf:.4g} mm does not get into {what}{where}, "
+            f"which takes {tools.diameter:.4g} mm: metal is left there.",
+            value=subject.kerf,
+            limit=tools.diameter,
+            unit="mm",
+            where=name,
         )
 
 
@@ -155,10 +181,7 @@ def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
     for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
             continue
-        narrow = tools.slot < 2.0 * tools.inner_radius
-        place = tools.slot_place if narrow else tools.inner_place
-        what = "a slot" if narrow else "an inner corner or radius"
-        where = "" if place is None else f" at x = {place[0]:.4f}, y = {place[1]:.4f} mm"
+        what, where = _tightest(tools)
         yield Finding(
             code="large-tool",
             severity="note",
@@ -169,3 +192,11 @@ def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
             unit="mm",
             where=name,
         )
+
+
+def _tightest(tools: ToolLimits) -> tuple[str, str]:
+    """Return what limits a tool, and where."""
+    narrow = tools.slot < 2.0 * tools.inner_radius
+    place = tools.slot_place if narrow else tools.inner_place
+    what = "a slot" if narrow else "an inner corner or radius"
+    return what, "" if place is None else f" at x = {place[0]:.4f}, y = {place[1]:.4f} mm"
