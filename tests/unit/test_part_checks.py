@@ -56,18 +56,36 @@ def test_the_tool_at_hand_is_compared_with_the_sharpest_fillet() -> None:
 
 def test_rounded_tips_cost_what_moved_tips_cost() -> None:
     assert not found("lost-flank", tip_rounding=(0.15, 0.15))
-    assert not found("lost-flank", offset=(-0.1, -0.1))
-    assert not found("lost-flank", offset=(0.1, 0.1))
+    assert not found("lost-flank", clearance=(0.1, 0.1))
 
 
-def test_a_kerf_that_eats_flanks_is_reported() -> None:
-    """A beam of 1.2 mm does not get to the bottom of spaces of module 1: their flanks are lost."""
-    heard = found("lost-flank", offset=(0.6, 0.0))
-    assert [finding.where[:7] for finding in heard] == ["wheel 1"]
-    assert heard[0].limit == 0.0
-    assert heard[0].value is not None
-    assert 0.1 < heard[0].value < 2.0
-    assert "contact ratio falls from 1.705 to" in heard[0].message
+@pytest.mark.parametrize(("part", "speaks"), [(0.999, False), (1.001, True)])
+def test_a_kerf_wider_than_the_sharpest_fillet_is_reported(part: float, speaks: bool) -> None:
+    """The largest tool that reaches every place is the widest kerf that does."""
+    plain = replace(profile("ellipse").design, blank=Blank(density=(1.0, 1.0)))
+    widest = GearPairJob(plain).parts_subject.tools[0].diameter
+    output = replace(plain.output, kerf=part * widest)
+    heard = [one for one in GearPairJob(replace(plain, output=output)).findings
+             if one.code == "wide-kerf" and one.where == "wheel 1"]  # fmt: skip
+    assert bool(heard) == speaks
+    if speaks:
+        assert heard[0].limit == pytest.approx(widest)
+        assert "metal is left there" in heard[0].message
+
+
+def test_the_rim_is_what_clearance_leaves() -> None:
+    """Clearance takes the root down, and the bore's wall up where bores follow it."""
+    plain = found("thin-rim", limits={"rim_thickness": 50.0}, bore_diameter=(10.0, 10.0))
+    module = profile("ellipse").pair.module
+    for bores, off in ((False, 0.1), (True, 0.2)):
+        made = found(
+            "thin-rim", limits={"rim_thickness": 50.0}, bore_diameter=(10.0, 10.0),
+            clearance=(0.1, 0.0), clearance_bores=bores,
+        )  # fmt: skip
+        assert plain[0].value is not None
+        assert made[0].value is not None
+        assert (plain[0].value - made[0].value) * module == pytest.approx(off, abs=1e-9)
+        assert made[1].value == plain[1].value
 
 
 @pytest.mark.parametrize("rounding", [0.1, 0.2, 0.3])

@@ -1,9 +1,9 @@
 """Nesting: parts side by side on a sheet, each with its name.
 
 A name stands where a part has most room, or below it. Parts stand in rows, the tallest first, as
-many to a row as make the sheet with the shortest edge around. Within a row each is pushed to the left until its hull is
-a gap away from the hulls beside it: as hulls keep apart, outlines do. Nothing is turned over, and
-nothing is turned.
+many to a row as make the sheet with the shortest edge around. Within a row each is pushed to the
+left until its hull is a gap away from the hulls beside it: as hulls keep apart, outlines do. Parts
+are shifted, and neither turned nor turned over.
 
 Depends on drawings and lettering; shapely inside the functions.
 """
@@ -35,7 +35,7 @@ _HIGHEST: Final = 5.0
 _LOWEST: Final = 1.5
 """Heights of letters, mm: as high as there is room, or below the part where that is too low."""
 
-_FREE: Final = 0.5
+_FREE: Final = 1.0
 """What a name keeps from every edge, mm."""
 
 _COARSE: Final = 0.05
@@ -84,7 +84,7 @@ def nested(drawings: Sequence[Drawing]) -> tuple[Drawing, ...]:
     """Return `drawings` of parts shifted so that they stand side by side, first ones first."""
     hulls = [_hull(one) for one in drawings]
     sizes = np.array([np.subtract(hull.bounds[2:], hull.bounds[:2]) for hull in hulls])
-    order = np.argsort(-sizes[:, 1], kind="stable").tolist()
+    order = np.argsort(-np.round(sizes[:, 1]), kind="stable").tolist()
     widths = accumulate(float(sizes[k, 0]) + GAP for k in order)
     rows = min((_rows(order, sizes, width) for width in widths), key=lambda it: _around(it, sizes))
     shifts: dict[int, tuple[float, float]] = {}
