@@ -202,7 +202,8 @@ def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
     Raises
     ------
     InfeasibleError
-        If an opening is no wider than the kerf, or an outline's spaces are closed by it.
+        If an opening, or its keyway, is no wider than the kerf, or if no way around an outline is
+        left by it. A path that cannot follow an outline into every place is one nevertheless.
     """
     if not kerf:
         return drawing
@@ -221,12 +222,13 @@ def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
 
 def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
     """Return the way of the middle of a cutter that leaves an edge."""
-    from gearcam.parts.parallel import moved, sized
+    from gearcam.parts.parallel import followed, moved, sized
 
     match feature.shape:
         case Circle(diameter=diameter) as circle if diameter > kerf:
             return replace(circle, diameter=diameter - kerf)
-        case Circle(center=(x, y), diameter=diameter):
+        case Circle(center=center, diameter=diameter):
+            x, y = center.tolist()
             raise InfeasibleError(
                 f"the {feature.kind.lower()} at x = {x:.6g}, y = {y:.6g} mm is no wider than "
                 "what the cutter burns away",
@@ -238,11 +240,12 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
             )
         case Loop() as loop:
             inner = loop.contour(tolerance)
-            return sized(lambda size: moved(inner, -0.5 * size), kerf, where, "kerf")
+            there = f"{feature.kind.lower()} of {where}"
+            return sized(lambda size: followed(inner, -0.5 * size), kerf, there, "kerf")
         case Contour() as outer:
             return sized(lambda size: moved(outer, 0.5 * size), kerf, where, "kerf")
         case shape:
-            return shape
+            raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")
 
 
 def wheel_drawing(part: Part, step: int = 0) -> Drawing:

@@ -118,7 +118,9 @@ class CamJob(Job):
         from gearcam.parts.checks import PartsSubject
 
         kerf = self.design.output.kerf
-        return PartsSubject(parts=(self.part,), names=("cam",), lost=(None,), kerf=kerf)
+        return PartsSubject(
+            parts=(self.part,), names=("cam",), lost=(None,), kerf=kerf, uncut=(False,)
+        )
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:

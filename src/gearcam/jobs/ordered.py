@@ -92,7 +92,23 @@ def _mark(job: GearPairJob, gear: Gear) -> Mark:
 def parts_subject(job: GearPairJob) -> PartsSubject:
     """Return what the checks of parts look at: the `job`'s parts and what its flanks lose."""
     first, second = (_lost(job, number) for number in (1, 2))
-    return PartsSubject(parts=job.parts, lost=(first, second), kerf=job.design.output.kerf)
+    kerf = job.design.output.kerf
+    uncut = tuple(bool(kerf) and _uncut(job, number, kerf) for number in (1, 2))
+    return PartsSubject(parts=job.parts, lost=(first, second), kerf=kerf, uncut=uncut)
+
+
+def _uncut(job: GearPairJob, number: int, kerf: float) -> bool:
+    """Return whether a cutter does not get to some place of a wheel's flanks as made."""
+    from gearcam.parts.parallel import touches
+
+    gear, blank = job.gears[number - 1], job.design.blank.wheel(number)
+    low, high = kept_reach(gear, blank)
+    reach = low + np.linspace(0.0, 1.0, _PLACES)[:, None] * (high - low)
+    points, normals = flank_places(gear, np.where(high > low, reach, gear.profile.flanks.lowest))
+    points = points - blank.clearance * normals
+    kept = whole_flanks(gear) & (high > low)
+    contour = job.parts[number - 1].contour
+    return not touches(contour, points[:, kept].ravel(), normals[:, kept].ravel(), 0.5 * kerf).all()
 
 
 def _lost(job: GearPairJob, number: int) -> LostFlank | None:

@@ -62,12 +62,15 @@ class PartsSubject:
         What each wheel's flanks lose; None where edges are neither moved nor rounded.
     kerf : float, mm
         What the cutter burns away; 0 where nothing is said of it.
+    uncut : tuple of bool
+        Whether a cutter that burns so much does not get to some flank of each wheel.
     """
 
     parts: tuple[Part, ...]
     names: tuple[str, ...] = ("wheel 1", "wheel 2")
     lost: tuple[LostFlank | None, ...] = (None, None)
     kerf: float = 0.0
+    uncut: tuple[bool, ...] = (False, False)
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
@@ -153,16 +156,18 @@ def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
     doc="whether what the cutter burns away fits into every place of an outline",
 )
 def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
-    """Warn of a kerf that is wider than an inner corner, an inner radius or a slot."""
-    for name, tools in zip(subject.names, subject.tools, strict=True):
+    """Warn of a kerf wider than an inner corner or a slot, an error where flanks stay uncut."""
+    rows = zip(subject.names, subject.tools, subject.uncut, strict=True)
+    for name, tools, uncut in rows:
         if tools.diameter >= subject.kerf:
             continue
         what, where = _tightest(tools)
+        left = "metal is left there, on flanks too" if uncut else "metal is left there"
         yield Finding(
             code="wide-kerf",
-            severity="warning",
+            severity="error" if uncut else "warning",
             message=f"A cutter that burns {subject.kerf:.4g} mm does not get into {what}{where}, "
-            f"which takes {tools.diameter:.4g} mm: metal is left there.",
+            f"which takes {tools.diameter:.4g} mm: {left}.",
             value=subject.kerf,
             limit=tools.diameter,
             unit="mm",

@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.bulges import Complex, as_pairs
+from gearcam.numeric.bulges import Complex, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.cubics import on_cubics
 from gearcam.parts.rolled import Stretch, arc_run, roll, too_far
 
 Array = NDArray[np.float64]
@@ -35,6 +36,9 @@ _VERTICES: Final = 0.95
 
 _POINT: Final = 1e-9
 """Length in tolerances below which a stretch is a point."""
+
+_PLACES: Final = 65
+"""Places on each run at which it is asked whether a parallel follows it."""
 
 _HALVINGS: Final = 8
 """How often the range of a size that leaves an outline is halved for a refusal."""
@@ -64,6 +68,37 @@ def moved(contour: Contour, by: float) -> Contour:
         return contour
     runs = [stretch.as_run(stretch.by) for stretch, _, _ in roll(contour, by).pairs]
     return _contour(runs, contour, by)
+
+
+def followed(contour: Contour, by: float) -> Contour:
+    """Return a parallel that follows every run of a contour, or refuse.
+
+    Parameters
+    ----------
+    contour : Contour
+        The outline.
+    by : float, mm
+        As of `moved`.
+
+    Returns
+    -------
+    Contour
+        With the same tolerance.
+
+    Raises
+    ------
+    InfeasibleError
+        If no simple outline is left, or one that passes a run by, such as a keyway's wall.
+    """
+    made = moved(contour, by)
+    for run in contour.runs:
+        p, t = as_complex(run.points), as_complex(run.tangents)
+        at = np.linspace(0.0, len(p) - 1.0, _PLACES)
+        step = np.minimum(at.astype(np.int64), len(p) - 2)
+        points, tangents = on_cubics(p, t, step, at - step)
+        if not touches(contour, points, -1j * tangents, by).any():
+            raise too_far(contour, by)
+    return made
 
 
 def rounded(contour: Contour, radius: float) -> Contour:
