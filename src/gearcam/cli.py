@@ -21,18 +21,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.console import (
+    DEBUG,
     cam_lines,
     complain,
+    fault_text,
     finding_lines,
     infeasible_text,
+    law_lines,
     meshing_lines,
     pair_lines,
     progress_bar,
     say,
-    wrapped,
     written_lines,
 )
-from gearcam.design import FORMATS, KINDS, load
+from gearcam.design import FORMATS, KINDS, demand_kind, load
 from gearcam.errors import (
     DesignError,
     InfeasibleError,
@@ -51,8 +53,6 @@ WRONG: Final = 2
 IMPOSSIBLE: Final = 3
 FAULT: Final = 4
 INTERRUPTED: Final = 130
-
-_DEBUG: Final = "GEARCAM_DEBUG"
 
 _ABOUT: Final = "Non-circular gears and cams from a description of the motion."
 _CODES: Final = (
@@ -92,7 +92,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    functions = (_build, _check, _mesh, _follow, _laws, _new, _schema)
+    functions = (_build, _check, _mesh, _follow, _laws, _new, _migrate, _schema)
     commands = {function.__name__.lstrip("_"): function for function in functions}
     top = argparse.ArgumentParser(
         prog="gearcam",
@@ -108,7 +108,9 @@ def _dispatch(words: list[str]) -> None:
         return
     given = top.parse_args(words[:1])
     if given.version:
-        say(f"gearcam {_version()}")
+        from gearcam import __version__
+
+        say(f"gearcam {__version__}")
     elif given.command is None:
         top.print_help(sys.stderr)
         raise SystemExit(WRONG)
@@ -124,7 +126,7 @@ def _dispatch(words: list[str]) -> None:
 def _parser(name: str, command: Callable[..., None]) -> argparse.ArgumentParser:
     """Return the parser of a command; its help is the function's docstring."""
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
-    if command in (_build, _check, _mesh):
+    if command in (_build, _check, _mesh, _migrate):
         parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
     if command is _follow:
         parser.add_argument("file", metavar="FILE", help="design file (TOML) of a cam")
@@ -135,7 +137,7 @@ def _parser(name: str, command: Callable[..., None]) -> argparse.ArgumentParser:
             "-o", "--output", metavar="DIR", default="output", help="where to write"
         )
         parser.add_argument(
-            "--debug", action="store_true", help=f"show tracebacks (or set {_DEBUG})"
+            "--debug", action="store_true", help=f"show tracebacks (or set {DEBUG})"
         )
     if command is _build:
         words = f"write only these: {','.join(FORMATS)}"
@@ -177,12 +179,6 @@ def _command_help(commands: Mapping[str, Callable[..., None]]) -> str:
     return "commands:\n" + "".join(rows) + "\n"
 
 
-def _version() -> str:
-    from gearcam import __version__
-
-    return __version__
-
-
 def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -> None:
     """Build designs into DIR/<name>/."""
     kinds = _kinds(only)
@@ -190,7 +186,7 @@ def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -
     def action(job: Job, progress: Progress | None) -> Written:
         return job.write(output, files=kinds, progress=progress)
 
-    _each(files, "built", action, debug=debug)
+    _jobs(files, "built", action, debug=debug)
 
 
 def _check(files: list[str], output: str, debug: bool) -> None:
@@ -199,7 +195,7 @@ def _check(files: list[str], output: str, debug: bool) -> None:
     def action(job: Job, progress: Progress | None) -> Written:  # noqa: ARG001
         return job.check(output)
 
-    _each(files, "checked", action, debug=debug)
+    _jobs(files, "checked", action, debug=debug)
 
 
 def _mesh(files: list[str], output: str, debug: bool, **settings: Any) -> None:
@@ -209,12 +205,12 @@ def _mesh(files: list[str], output: str, debug: bool, **settings: Any) -> None:
     given = {key: value for key, value in settings.items() if value is not None}
 
     def adapt(design: Design) -> Design:
-        return with_meshing(_demand_kind(design, "gear-pair"), given)
+        return with_meshing(demand_kind(design, "gear-pair"), given)
 
     def action(job: Any, progress: Progress | None) -> Written:
         return job.mesh(output, progress=progress)
 
-    _each(files, "meshed", action, debug=debug, adapt=adapt)
+    _jobs(files, "meshed", action, debug=debug, adapt=adapt)
 
 
 def _follow(file: str, profile: str, output: str, debug: bool) -> None:
@@ -223,15 +219,7 @@ def _follow(file: str, profile: str, output: str, debug: bool) -> None:
     def action(job: Any, progress: Progress | None) -> Written:
         return job.follow(profile, output, progress=progress)
 
-    _each([file], "followed", action, debug=debug, adapt=lambda d: _demand_kind(d, "cam"))
-
-
-def _demand_kind(design: Design, kind: str) -> Any:
-    """Refuse a design of another kind."""
-    if design.kind != kind:
-        message = f"this command is for designs of kind {kind}"
-        raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
-    return design
+    _jobs([file], "followed", action, debug=debug, adapt=lambda d: demand_kind(d, "cam"))
 
 
 def _laws() -> None:
@@ -241,11 +229,7 @@ def _laws() -> None:
     for heading, laws in law_groups():
         say(f"{heading}\n")
         for law in laws:
-            say(f"{law.name}\n{wrapped(law.doc)}\n    {law.line}")
-            width = 2 + max(len(key) for key, _ in law.rows)
-            for key, words in law.rows:
-                say(wrapped(words, first=f"    {key:<{width}}", rest=" " * (4 + width)))
-            say("")
+            say("\n".join(law_lines(law)))
 
 
 def _new(kind: str, file: str | None) -> None:
@@ -268,6 +252,21 @@ def _new(kind: str, file: str | None) -> None:
         reason = getattr(error, "strerror", None) or str(error)
         _refuse([Problem(f"cannot be written: {reason}", file=file)])
     say(f"{file}: written; build it with: gearcam build {shlex.quote(file)}")
+
+
+def _migrate(files: list[str]) -> None:
+    """Rewrite design files with keys that are no longer known; comments stay."""
+    from gearcam.design.migrate import migrate
+    from gearcam.export.rewrite import rewrite
+
+    def one(file: str) -> int:
+        content, changes = migrate(file)
+        if changes:
+            rewrite(file, content)
+        say("\n  ".join([f"{file}: {'migrated' if changes else 'nothing to change'}", *changes]))
+        return GOOD
+
+    _each(files, "migrated", one)
 
 
 def _schema() -> None:
@@ -308,15 +307,22 @@ Action = Callable[["Job", Progress | None], "Written"]
 Adapt = Callable[["Design"], "Design"]
 
 
-def _each(
+def _jobs(
     files: Sequence[str], done: str, action: Action, *, debug: bool, adapt: Adapt | None = None
 ) -> None:
-    """Do something with every file, adapted where asked, and end with the largest code."""
+    """Do something with the job of every file, its design adapted where asked."""
     names: dict[str, str] = {}
+    _each(files, done, lambda file: _one(file, names, done, action, adapt), debug=debug)
+
+
+def _each(
+    files: Sequence[str], done: str, work: Callable[[str], int], *, debug: bool = False
+) -> None:
+    """Do some work with every file, and end with the largest code."""
     codes = []
     for file in files:
         try:
-            codes.append(_one(file, names, done, action, adapt))
+            codes.append(work(file))
             if codes[-1] == INTERRUPTED:
                 break
         except KeyboardInterrupt:
@@ -376,13 +382,9 @@ def _demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:
 
 def _fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
     """Say that the program is at fault; the traceback only where it is asked for."""
-    place = f"{file}: " if file else ""
-    if debug or os.environ.get(_DEBUG):
+    if debug or os.environ.get(DEBUG):
         complain("".join(traceback.format_exception(error)).rstrip())
-    complain(
-        f"{place}this is a fault of gearcam, not of your design: {type(error).__name__}: {error}\n"
-        f"  please report it with the design file; {_DEBUG}=1 or --debug shows where it happened"
-    )
+    complain(fault_text(error, file))
     return FAULT
 
 

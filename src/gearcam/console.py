@@ -14,9 +14,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TextIO
 
 if TYPE_CHECKING:
+    from gearcam.design.listing import Listed
     from gearcam.errors import InfeasibleError
     from gearcam.findings import Finding
     from gearcam.jobs import Written
+
+DEBUG: Final = "GEARCAM_DEBUG"
+"""The variable that asks for tracebacks."""
 
 _WIDTH: Final = 96
 
@@ -104,6 +108,15 @@ def _small(value: float) -> str:
     return f"{0.0 if abs(value) < 1e-9 else value:.4g}"
 
 
+def law_lines(law: Listed) -> Iterator[str]:
+    """Yield what is told of a `law`: its name, its meaning, a line of facts, its keys."""
+    yield f"{law.name}\n{wrapped(law.doc)}\n    {law.line}"
+    width = 2 + max(len(key) for key, _ in law.rows)
+    for key, words in law.rows:
+        yield wrapped(words, first=f"    {key:<{width}}", rest=" " * (4 + width))
+    yield ""
+
+
 def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
     """Lay out findings as a table, each with its message below."""
     if not findings:
@@ -159,6 +172,15 @@ def _size(path: Path) -> str:
     if count < 1000:
         return f"{count} B"
     return f"{count / 1e3:.1f} kB" if count < 1e6 else f"{count / 1e6:.1f} MB"
+
+
+def fault_text(error: Exception, file: str) -> str:
+    """Return that the program is at fault, not the design in `file`, with the `error`."""
+    place = f"{file}: " if file else ""
+    return (
+        f"{place}this is a fault of gearcam, not of your design: {type(error).__name__}: {error}\n"
+        f"  please report it with the design file; {DEBUG}=1 or --debug shows where it happened"
+    )
 
 
 def infeasible_text(error: InfeasibleError) -> str:

@@ -3,10 +3,13 @@
 A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the kind of
 what they hold: OUTLINE, BORE, HOLE, SLOT, MARK, CENTRODE, CENTER; a pair's layers begin with the
 wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME and FOLLOWER show
-what it is for, and TOOL is the way of a cutter's centre. *Placing* turns and shifts shapes without
-changing them otherwise.
+what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name. *Placing* turns and
+shifts shapes without changing them otherwise.
 
-Refused: a pair of other than two parts.
+What a cutter burns away, its *kerf*, is nothing of the part's: it moves the paths of a drawing to
+be cut, whose layers then end in ``_KERF``.
+
+Refused: a pair of other than two parts; a kerf that an edge leaves no room for.
 
 Depends on parts and numeric, numpy only.
 """
@@ -21,6 +24,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.part import Part
 from gearcam.parts.shapes import Circle, Loop
@@ -39,9 +43,17 @@ PITCH: Final = "PITCH"
 PRIME: Final = "PRIME"
 FOLLOWER: Final = "FOLLOWER"
 TOOL: Final = "TOOL"
+LABEL: Final = "LABEL"
 
-CLOSED: Final = (OUTLINE, PROFILE, PITCH, TOOL)
-"""Kinds whose shapes are contours."""
+OUTER: Final = (OUTLINE, PROFILE)
+INNER: Final = (BORE, HOLE, SLOT)
+"""Kinds that are cut: around the part, and right through it."""
+
+KERF: Final = "_KERF"
+"""End of layers that hold paths of a cutter, not edges of the part."""
+
+CLOSED: Final = (*OUTER, PITCH, TOOL, *(kind + KERF for kind in (*OUTER, BORE, SLOT)))
+"""Ends of layers whose closed curves are contours."""
 
 CROSS_SIZE: Final = 0.04
 """Size of a centre's cross, in centre distances."""
@@ -78,8 +90,8 @@ class Feature:
 
     @property
     def kind(self) -> str:
-        """What the layer holds: its name without the wheel."""
-        return self.layer.rpartition("_")[2]
+        """What the layer holds: its name without the wheel and the kerf."""
+        return self.layer.removesuffix(KERF).rpartition("_")[2]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -169,6 +181,71 @@ def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Fe
         *(Feature(layer=opening.kind, shape=opening.shape) for opening in part.openings),
         *(Feature(layer=MARK, shape=mark.circle) for mark in part.marks),
     )
+
+
+def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
+    """Return a drawing with the paths of a cutter in place of the edges that it cuts.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        Of one part.
+    kerf : float, mm
+        Width of what the cutter burns away; 0 leaves the drawing as it is.
+
+    Returns
+    -------
+    Drawing
+        Outlines moved outwards and openings inwards by half the kerf, true parallels, on layers
+        that end in ``_KERF``; the rest as it is.
+
+    Raises
+    ------
+    InfeasibleError
+        If an opening, or its keyway, is no wider than the kerf, or if no way around an outline is
+        left by it. A path that cannot follow an outline into every place is one nevertheless.
+    """
+    if not kerf:
+        return drawing
+    where = f"{drawing.name}, output.kerf_mm"
+    tolerance = drawing.contours[0].tolerance
+    return replace(
+        drawing,
+        features=tuple(
+            Feature(layer=one.layer + KERF, shape=_path(one, kerf, tolerance, where))
+            if one.kind in (*OUTER, *INNER)
+            else one
+            for one in drawing.features
+        ),
+    )
+
+
+def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
+    """Return the way of the middle of a cutter that leaves an edge."""
+    from gearcam.parts.parallel import followed, moved, sized
+
+    match feature.shape:
+        case Circle(diameter=diameter) as circle if diameter > kerf:
+            return replace(circle, diameter=diameter - kerf)
+        case Circle(center=center, diameter=diameter):
+            x, y = center.tolist()
+            raise InfeasibleError(
+                f"the {feature.kind.lower()} at x = {x:.6g}, y = {y:.6g} mm is no wider than "
+                "what the cutter burns away",
+                where=where,
+                value=kerf,
+                limit=diameter,
+                unit="mm",
+                nearest=f"a kerf below {diameter:.6g} mm, or a larger {feature.kind.lower()}",
+            )
+        case Loop() as loop:
+            inner = loop.contour(tolerance)
+            there = f"{feature.kind.lower()} of {where}"
+            return sized(lambda size: followed(inner, -0.5 * size), kerf, there, "kerf")
+        case Contour() as outer:
+            return sized(lambda size: moved(outer, 0.5 * size), kerf, where, "kerf")
+        case shape:
+            raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")
 
 
 def wheel_drawing(part: Part, step: int = 0) -> Drawing:

@@ -180,7 +180,7 @@ def wheel() -> Part:
     blank = WheelBlank(
         bore_diameter=14.0, keyway_width=5.0, keyway_depth=2.3, keyway_angle=0.4,
         hub_diameter=22.0, hub_front=6.0, hub_back=2.0, bolts=3, bolt_circle=30.0,
-        bolt_diameter=3.0, bolt_angle=0.3, offset=0.05,
+        bolt_diameter=3.0, bolt_angle=0.3, clearance=0.05, clearance_bores=True,
     )  # fmt: skip
     mark = Mark(center=np.array([0.0, -18.0]), diameter=1.5, depth=0.6)
     return make_part(

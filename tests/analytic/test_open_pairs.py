@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 from gearcam.errors import InfeasibleError
-from gearcam.gears.pair import contact_arcs
+from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.laws.phases import Phases
 from gearcam.laws.rack import Rack
 from gearcam.laws.span import ONE_LOBE, Travel
@@ -92,23 +92,25 @@ def test_a_blank_ends_half_a_pitch_beyond_its_centrode() -> None:
 def test_an_open_pair_drives_from_end_to_end(name: str) -> None:
     made = profile(name)
     length = made.pair.rolling.length(1)
-    for sigma in (1, -1):
-        arcs = contact_arcs(made.gear1, made.gear2, sigma)
-        assert arcs.gaps == ()
-        carried = arcs.ratios > 0.0
-        assert arcs.start[carried].min() < 0.0
-        assert arcs.end[carried].max() > length
+    for side in (DRIVE, COAST):
+        pairs = flank_pairs(made.gears, side)
+        assert pairs.stretches[2].min() >= 1
+        start, end = (made.pair.rolling.arc_length(edge) for edge in pairs.arcs)
+        carried = pairs.contact_ratios > 0.0
+        assert start[carried].min() < 0.0
+        assert end[carried].max() > length
 
 
 def test_a_missing_end_tooth_would_be_seen() -> None:
     """Without the last flanks the coverage has a hole at the end."""
     made = profile("furnace_door")
-    arcs = contact_arcs(made.gear1, made.gear2, 1)
-    object.__setattr__(arcs, "start", arcs.start[:-3])
-    object.__setattr__(arcs, "end", arcs.end[:-3])
-    ((low, high),) = arcs.gaps
-    assert high == pytest.approx(made.pair.rolling.length(1), abs=1e-9)
-    assert low < high
+    pairs = flank_pairs(made.gears, COAST)
+    fewer = flank_pairs(made.gears, COAST)
+    fewer.__dict__["arcs"] = tuple(edge[:-3] for edge in pairs.arcs)
+    start, end, carrying = fewer.stretches
+    assert np.flatnonzero(carrying == 0).tolist() == [len(carrying) - 1]
+    assert end[-1] == pytest.approx(made.law.lobes.period, abs=1e-12)
+    assert start[-1] == pytest.approx(float(fewer.arcs[1].max()), abs=1e-12)
 
 
 def test_ends_that_meet_are_refused_with_the_way_that_does() -> None:

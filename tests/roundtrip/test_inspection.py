@@ -47,9 +47,9 @@ def distances(made: GearPairJob, rows: dict[str, np.ndarray], wheel: int) -> np.
     ("name", "blank"),
     [
         ("nail_machine_two_phase", {}),
-        ("nail_machine_two_phase", {"offset": (0.15, -0.1), "tip_rounding": (0.4, 0.0)}),
+        ("nail_machine_two_phase", {"clearance": (0.15, 0.1), "tip_rounding": (0.4, 0.0)}),
         ("furnace_door", {}),
-        ("ellipse", {"offset": -0.05}),
+        ("ellipse", {"clearance": (0.05, 0.05)}),
     ],
 )
 def test_points_lie_on_the_part(name: str, blank: dict[str, Any]) -> None:
@@ -63,8 +63,8 @@ def test_points_lie_on_the_part(name: str, blank: dict[str, Any]) -> None:
         assert np.max(away) < 2 * gear.profile.chord_error
 
 
-def test_points_of_another_offset_do_not() -> None:
-    made, other = job("ellipse"), job("ellipse", offset=0.004)
+def test_points_of_another_clearance_do_not() -> None:
+    made, other = job("ellipse"), job("ellipse", clearance=(0.004, 0.004))
     assert distances(other, read(made), 1).min() > 0.003
 
 

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from gearcam.findings import Finding
-from gearcam.gears.pair import contact_arcs
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.jobs.ordered import kept_reach
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
@@ -54,41 +50,30 @@ def test_the_tool_at_hand_is_compared_with_the_sharpest_fillet() -> None:
         assert any(finding.where == "wheel 1" for finding in heard) == speaks
 
 
-def test_rounded_tips_cost_what_moved_tips_cost() -> None:
-    assert not found("lost-flank", tip_rounding=(0.15, 0.15))
-    assert not found("lost-flank", offset=(-0.1, -0.1))
-    assert not found("lost-flank", offset=(0.1, 0.1))
+@pytest.mark.parametrize(("part", "speaks"), [(0.999, False), (1.001, True)])
+def test_a_kerf_wider_than_the_sharpest_fillet_is_reported(part: float, speaks: bool) -> None:
+    """The largest tool that reaches every place is the widest kerf that does."""
+    plain = replace(profile("ellipse").design, blank=Blank(density=(1.0, 1.0)))
+    widest = GearPairJob(plain).parts_subject.tools[0].diameter
+    output = replace(plain.output, kerf=part * widest)
+    heard = [one for one in GearPairJob(replace(plain, output=output)).findings
+             if one.code == "wide-kerf" and one.where == "wheel 1"]  # fmt: skip
+    assert bool(heard) == speaks
+    if speaks:
+        assert heard[0].limit == pytest.approx(widest)
+        assert "metal is left there" in heard[0].message
 
 
-def test_a_kerf_that_eats_flanks_is_reported() -> None:
-    """A beam of 1.2 mm does not get to the bottom of spaces of module 1: their flanks are lost."""
-    heard = found("lost-flank", offset=(0.6, 0.0))
-    assert [finding.where[:7] for finding in heard] == ["wheel 1"]
-    assert heard[0].limit == 0.0
-    assert heard[0].value is not None
-    assert 0.1 < heard[0].value < 2.0
-    assert "contact ratio falls from 1.705 to" in heard[0].message
-
-
-@pytest.mark.parametrize("rounding", [0.1, 0.2, 0.3])
-def test_the_contact_ratio_left_is_that_of_shorter_flanks(rounding: float) -> None:
-    """A flank loses w = height/(sin*cos) of reach, its contact arc as much: by the kept reach."""
-    blank = Blank(tip_rounding=(rounding, 0.0))
-    job = GearPairJob(replace(profile("circular").design, blank=blank))
-    lost = job.parts_subject.lost[0]
-    assert lost is not None
-    low, high = kept_reach(job.gear1, blank.wheel(1))
-    whole = job.gear1.profile.flanks
-    assert low == pytest.approx(whole.lowest)
-    shorter = whole.highest - high
-    # a corner of angle 90 + a degrees loses r/tan(45 + a/2) of its side, a the tip's pressure angle
-    z, m = job.pair.teeth[0], job.pair.module
-    a = math.acos(0.5 * z * math.cos(math.radians(20)) / (0.5 * z + 1))
-    along = rounding / math.tan(math.pi / 4 + a / 2)
-    assert lost.height == pytest.approx(along * math.cos(a), rel=0.1, abs=m / 32)
-    arcs = contact_arcs(job.gear1, job.gear2, 1)
-    before = float(arcs.ratios.min())
-    assert lost.contact_ratio[0] == pytest.approx(before)
-    assert before - lost.contact_ratio[1] == pytest.approx(
-        float(np.max(shorter)) / arcs.pitch, rel=0.05
-    )
+def test_the_rim_is_what_clearance_leaves() -> None:
+    """Clearance takes the root down, and the bore's wall up where bores follow it."""
+    plain = found("thin-rim", limits={"rim_thickness": 50.0}, bore_diameter=(10.0, 10.0))
+    module = profile("ellipse").pair.module
+    for bores, off in ((False, 0.1), (True, 0.2)):
+        made = found(
+            "thin-rim", limits={"rim_thickness": 50.0}, bore_diameter=(10.0, 10.0),
+            clearance=(0.1, 0.0), clearance_bores=bores,
+        )  # fmt: skip
+        assert plain[0].value is not None
+        assert made[0].value is not None
+        assert (plain[0].value - made[0].value) * module == pytest.approx(off, abs=1e-3)
+        assert made[1].value == plain[1].value

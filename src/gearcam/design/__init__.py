@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.design.kinds import KINDS
 from gearcam.design.outputs import FORMATS, CamOutputSpec, OutputSpec
 from gearcam.design.reader import load, loads
-from gearcam.design.spec import document_of, hash_of
+from gearcam.design.spec import demand_kind, document_of, hash_of
 
 if TYPE_CHECKING:
     from gearcam.design.cam import CamDesign
@@ -32,6 +32,7 @@ __all__ = [
     "Design",
     "GearPairDesign",
     "OutputSpec",
+    "demand_kind",
     "document_of",
     "hash_of",
     "load",

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from gearcam.design.kinds import KINDS, Examined, Kind, own_faults
 from gearcam.design.models import faults_of
+from gearcam.design.retired import without_retired
 from gearcam.design.wording import Fault, did_you_mean, key_hint, nearest, quoted, show
 
 _NAME = re.compile(r"\w[\w.-]*")
@@ -43,6 +44,8 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     if later is not None:
         found.faults.append(later)
         return found
+    retired, document = without_retired(document)
+    found.faults += [one.fault for one in retired]
     found.faults += _kind_faults(document)
     found.faults += _top_faults(document, kind)
     _examine_name(document, stem, found)

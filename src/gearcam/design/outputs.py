@@ -11,15 +11,16 @@ from gearcam.design.wording import Fault, show
 from gearcam.quantities import ANGLE, COUNT, LENGTH, TEXT, param
 
 PAIR_FORMATS: Final = (
-    "dxf", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg", "inspection",
+    "dxf", "cut-svg", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg",
+    "inspection",
 )  # fmt: skip
 """What ``output.files`` of a gear pair may list."""
 
 CAM_FORMATS: Final = (*PAIR_FORMATS, "tool-path", "curvature")
+"""What ``output.files`` of a cam may list."""
 
 FORMATS: Final = tuple(dict.fromkeys((*PAIR_FORMATS, *CAM_FORMATS)))
 """Every kind of file that a design of some kind can give."""
-"""What ``output.files`` of a cam may list."""
 
 _FILES: Final = "the files to write; summary.json always is"
 
@@ -42,12 +43,25 @@ def _dxf_version() -> Any:
     )
 
 
+def _kerf() -> Any:
+    return param(
+        LENGTH,
+        default=0.0,
+        ge=0,
+        le=100,
+        doc="what the cutter burns away; the paths of dxf files to be cut and of cut-svg move by "
+        "half of it",
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class OutputSpec:
     """Which files of a gear pair are wanted, and how exact.
 
     Parameters
     ----------
+    kerf : float, mm
+        What the cutter burns away.
     dxf_curves, dxf_version : str
         How outlines are drawn, and for which readers.
     """
@@ -60,6 +74,7 @@ class OutputSpec:
         doc="largest distance of an outline's chords from the true curve; "
         "the smaller of 0.001 mm and module/1000 when left out, never coarser than module/50",
     )
+    kerf: float = _kerf()
     dxf_curves: str = _dxf_curves()
     dxf_version: str | None = _dxf_version()
     pose: float = param(
@@ -81,6 +96,8 @@ class CamOutputSpec:
 
     Parameters
     ----------
+    kerf : float, mm
+        What the cutter burns away.
     dxf_curves, dxf_version : str
         How outlines are drawn, and for which readers.
     """
@@ -93,6 +110,7 @@ class CamOutputSpec:
         le=1,
         doc="largest distance of an outline's chords from the true curve; 0.001 mm when left out",
     )
+    kerf: float = _kerf()
     dxf_curves: str = _dxf_curves()
     dxf_version: str | None = _dxf_version()
     pose: float = param(

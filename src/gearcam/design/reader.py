@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -53,8 +54,19 @@ def load(path: str | os.PathLike[str]) -> Design:
         If the file cannot be read, or for everything that is wrong in it, each with its line.
     """
     file = os.fspath(path)
+    return loads(decoded(content_of(file), file), file=file)
+
+
+def content_of(file: str) -> bytes:
+    """Return what is in a `file`.
+
+    Raises
+    ------
+    DesignError
+        If it cannot be read.
+    """
     try:
-        content = Path(file).read_bytes()
+        return Path(file).read_bytes()
     except FileNotFoundError as error:
         raise DesignError([Problem("there is no such file", file=file)]) from error
     except IsADirectoryError as error:
@@ -62,14 +74,35 @@ def load(path: str | os.PathLike[str]) -> Design:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise DesignError([Problem(f"cannot be read: {reason}", file=file)]) from error
+
+
+def decoded(content: bytes, file: str) -> str:
+    """Return the content of a file as text.
+
+    Parameters
+    ----------
+    content : bytes
+        As read.
+    file : str
+        Its name for messages.
+
+    Returns
+    -------
+    str
+        Without the mark that some programs put before UTF-8.
+
+    Raises
+    ------
+    DesignError
+        If it is not UTF-8.
+    """
     try:
-        text = content.decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         message = f"the byte 0x{content[error.start]:02x} is not UTF-8"
         problem = Problem(message, file=file, line=line, allowed="a text file saved as UTF-8")
         raise DesignError([problem]) from error
-    return loads(text, file=file)
 
 
 def loads(text: str, *, file: str = "") -> Design:
@@ -92,11 +125,11 @@ def loads(text: str, *, file: str = "") -> Design:
     DesignError
         For everything that is wrong in it, each with its line.
     """
-    document = _document(text, file)
+    document = document_in(text, file)
     _find_tables(document, file)
     found = examine(document, stem=Path(file).stem)
     if found.faults:
-        raise DesignError(_problems(found.faults, text, file))
+        raise DesignError(problems_of(found.faults, text, file))
     return KINDS[document["kind"]].design(source=file, **found.parts)
 
 
@@ -108,7 +141,8 @@ def _find_tables(document: dict[str, Any], file: str) -> None:
             law["file"] = os.fspath(Path(file).parent / law["file"])
 
 
-def _problems(faults: list[Fault], text: str, file: str) -> list[Problem]:
+def problems_of(faults: Iterable[Fault], text: str, file: str) -> list[Problem]:
+    """Return what is wrong in the `text` of a `file`, from its `faults`, with lines."""
     lines = lines_of(text)
     placed = [
         Problem(
@@ -125,7 +159,26 @@ def _problems(faults: list[Fault], text: str, file: str) -> list[Problem]:
     return sorted(placed, key=lambda problem: problem.line or 0)
 
 
-def _document(text: str, file: str) -> dict[str, Any]:
+def document_in(text: str, file: str) -> dict[str, Any]:
+    """Return what the text of a file holds.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        The file's name for messages.
+
+    Returns
+    -------
+    dict
+        As read.
+
+    Raises
+    ------
+    DesignError
+        If it is not TOML.
+    """
     try:
         return tomllib.loads(text)
     except RecursionError as error:

@@ -43,6 +43,32 @@ class DesignLike(Protocol):
         ...
 
 
+def demand_kind(design: DesignLike, kind: str) -> Any:
+    """Return a design, or refuse it if it is of another kind.
+
+    Parameters
+    ----------
+    design : DesignLike
+        Of any kind.
+    kind : str
+        The one that a command is for.
+
+    Returns
+    -------
+    DesignLike
+        The design, whose fields are those of the kind.
+
+    Raises
+    ------
+    DesignError
+        With the kind that it is of.
+    """
+    if design.kind != kind:
+        message = f"this command is for designs of kind {kind}"
+        raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
+    return design
+
+
 def settle(design: DesignLike, wanted: Iterable[Wanted]) -> None:
     """Refuse a design that no file could hold.
 

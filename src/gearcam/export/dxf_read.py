@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import CLOSED, OUTLINE, PROFILE
+from gearcam.drawings import CLOSED, KERF, OUTLINE, PROFILE
 from gearcam.errors import GearcamError
 from gearcam.export.dxf import MILLIMETRES
 from gearcam.numeric.bulges import as_complex, deviation
@@ -149,10 +149,16 @@ def read_outline(data: bytes) -> tuple[Array, Array]:
     Raises
     ------
     DxfError
-        If the file is damaged, or does not hold one closed outline.
+        If the file is damaged, holds paths of a cutter, or does not hold one closed outline.
     """
     document = read_dxf(data)
     layers = dict.fromkeys(entity.dxf.layer for entity in document.modelspace())
+    paths = [layer for layer in layers if layer.upper().endswith(KERF)]
+    if paths:
+        raise DxfError(
+            f"the layer {paths[0]} holds the path of a cutter, not an edge: "
+            "take a file that was written without a kerf"
+        )
     for wanted in (PROFILE, OUTLINE, ""):
         found = [
             (vertices, bulges)

@@ -9,6 +9,8 @@ Depends on drawings; shapely only inside the functions.
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Sequence
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
@@ -30,6 +32,7 @@ from gearcam.drawings import (
     Path,
     reach,
 )
+from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
 
 Array = NDArray[np.float64]
@@ -49,6 +52,11 @@ INKS: Final = ("#27598c", "#a35f22")
 
 CENTRODE_INK: Final = "#5a5a5a"
 TEXT_INK: Final = "#222222"
+
+DECIMALS: Final = 4
+"""Of the picture's numbers."""
+
+_ROUNDING: Final = 1e-12
 
 GLYPH: Final = 0.6
 """Width of a letter, part of the font's size, on the safe side."""
@@ -88,17 +96,17 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     left, top = float(low[0]) - margin, -float(high[1]) - margin
     whole = width + 2 * margin
     tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
-    box = " ".join(_number(value) for value in (left, top, whole, tall))
+    box = " ".join(number(value) for value in (left, top, whole, tall))
     base = -float(low[1]) + margin + size
-    ground = f'x="{_number(left)}" y="{_number(top)}"'
-    ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="#ffffff"'
+    ground = f'x="{number(left)}" y="{number(top)}"'
+    ground += f' width="{number(whole)}" height="{number(tall)}" fill="#ffffff"'
     sheet = f'viewBox="{box}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
     elements = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<svg xmlns="http://www.w3.org/2000/svg" {sheet} role="img">',
         f"<title>{escape(title)}</title>",
         f"<rect {ground}/>",
-        f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
+        f'<g stroke-linejoin="round" stroke-width="{number(1.2 * pixel)}">',
         *(line for feature in drawing.features for line in _element(feature, pixel)),
         "</g>",
         *_caption(lines, float(low[0]), base, size),
@@ -118,10 +126,10 @@ def pair_notes(center_distance: float, module: float, teeth: tuple[int, int]) ->
 
 def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
     made = []
-    for number, line in enumerate(line for line in lines if line):
-        place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * number)}"'
-        font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
-        weight = ' font-weight="bold"' if number == 0 else ""
+    for row, line in enumerate(line for line in lines if line):
+        place = f'x="{number(left)}" y="{number(base + 1.4 * size * row)}"'
+        font = f'font-family="sans-serif" font-size="{number(size)}" fill="{TEXT_INK}"'
+        weight = ' font-weight="bold"' if row == 0 else ""
         made.append(f"<text {place} {font}{weight}>{escape(line)}</text>")
     return made
 
@@ -131,7 +139,7 @@ def _element(feature: Feature, pixel: float) -> list[str]:
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
     wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
-    dash = f'stroke-dasharray="{_number(7 * pixel)} {_number(4 * pixel)}"'
+    dash = f'stroke-dasharray="{number(7 * pixel)} {number(4 * pixel)}"'
     match shape:
         case Contour(vertices=points) if feature.kind == PITCH:
             style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
@@ -147,15 +155,16 @@ def _element(feature: Feature, pixel: float) -> list[str]:
         case Circle(center=center, diameter=diameter):
             inside = {MARK: ink, PRIME: "none", FOLLOWER: fill}.get(feature.kind, "#ffffff")
             line = f'{CENTRODE_INK}" {dash}' if feature.kind == PRIME else f'{ink}"'
-            place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'
-            size = f'r="{_number(0.5 * diameter)}"'
+            place = f'cx="{number(center[0])}" cy="{number(-center[1])}"'
+            size = f'r="{number(0.5 * diameter)}"'
             return [f'<circle class={name} {place} {size} fill="{inside}" stroke="{line}/>']
         case Loop():
-            return [f'<path class={name} fill="#ffffff" stroke="{ink}" d="{_arcs(shape)}"/>']
+            data = arc_data(shape.vertices, shape.bulges)
+            return [f'<path class={name} fill="#ffffff" stroke="{ink}" d="{data}"/>']
         case Cross(center=center, size=size):
-            x, y, arm = float(center[0]), -float(center[1]), _number(size)
-            start = f"M{_number(x - 0.5 * size)} {_number(y)}h{arm}"
-            upright = f"M{_number(x)} {_number(y - 0.5 * size)}v{arm}"
+            x, y, arm = float(center[0]), -float(center[1]), number(size)
+            start = f"M{number(x - 0.5 * size)} {number(y)}h{arm}"
+            upright = f"M{number(x)} {number(y - 0.5 * size)}v{arm}"
             return [f'<path class={name} fill="none" stroke="{TEXT_INK}" d="{start}{upright}"/>']
 
 
@@ -166,26 +175,45 @@ def _data(points: Array, closed: bool) -> str:
     line = LineString(np.vstack([points, points[:1]]) if closed else points)
     kept = get_coordinates(simplify(line, THINNING, preserve_topology=False))
     kept = kept[:-1] if closed else kept
-    steps = " ".join(f"{_number(x)} {_number(-y)}" for x, y in kept.tolist())
+    steps = " ".join(f"{number(x)} {number(-y)}" for x, y in kept.tolist())
     return f"M{steps}" + ("Z" if closed else "")
 
 
-def _arcs(loop: Loop) -> str:
-    """Return the path data of a loop: straight pieces and circular arcs."""
-    points, steps = loop.vertices, []
-    for bulge, start, (x, y) in zip(loop.bulges, points, np.roll(points, -1, axis=0), strict=True):
-        end = f"{_number(x)} {_number(-y)}"
-        if bulge == 0.0:
-            steps.append(f"L{end}")
-            continue
-        chord = float(np.hypot(x - start[0], y - start[1]))
-        radius = _number(0.25 * chord * (1.0 + bulge**2) / abs(bulge))
-        # y is turned downwards: what turns left stays so for the eye, which SVG calls 0
-        steps.append(f"A{radius} {radius} 0 {int(abs(bulge) > 1)} {int(bulge < 0)} {end}")
-    return f"M{_number(points[0, 0])} {_number(-points[0, 1])}{''.join(steps)}Z"
+def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
+    """Return the path data of a closed chain of straight pieces and circular arcs.
+
+    Parameters
+    ----------
+    vertices : (n, 2) array, mm
+        First not repeated; y upwards, and turned downwards here.
+    bulges : (n,) array
+        Of the pieces between them.
+    decimals : int
+        Of every number.
+
+    Returns
+    -------
+    str
+        No arc is longer than a quarter of a circle: a reader finds the centre of a half circle from
+        a rounded radius with few digits.
+    """
+    points, steps = as_complex(vertices), []
+    ends = np.roll(points, -1)
+    for start, end, bulge in zip(points.tolist(), ends.tolist(), bulges.tolist(), strict=True):
+        half = 2.0 * math.atan(bulge)  # half of the arc's angle
+        count = max(1, math.ceil(abs(half) / (0.25 * math.pi + _ROUNDING)))
+        radius = number(0.5 * abs(end - start) / abs(math.sin(half)), decimals) if half else ""
+        for k in range(1, count + 1):
+            part = math.sin(half * k / count) / math.sin(half) if half else 1.0
+            place = start + (end - start) * part * cmath.exp(1j * half * (k / count - 1.0))
+            # y is turned downwards: what turns left stays so for the eye, which SVG calls 0
+            arc = f"A{radius} {radius} 0 0 {int(bulge < 0.0)} " if half else "L"
+            steps.append(f"{arc}{number(place.real, decimals)} {number(-place.imag, decimals)}")
+    x, y = points[0].real, -points[0].imag
+    return f"M{number(x, decimals)} {number(y, decimals)}{''.join(steps)}Z"
 
 
-def _number(value: float) -> str:
-    """Four decimals, no idle zeros."""
-    text = f"{value:.4f}".rstrip("0").rstrip(".")
+def number(value: float, decimals: int = DECIMALS) -> str:
+    """Return a `value` with up to as many `decimals`, no idle zeros."""
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text

@@ -24,6 +24,7 @@ from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import CAM_KIND
 
 if TYPE_CHECKING:
+    from gearcam.parts.blank import WheelBlank
     from gearcam.parts.checks import PartsSubject
     from gearcam.parts.part import Part
 
@@ -107,14 +108,21 @@ class CamJob(Job):
         profile, thickness = self.profile, self.design.cam.thickness
         with self._stage("part"):
             place = Place(wheel=None, module=_RIM_PART * thickness / RIM)
-            return make_part(NAME, [profile], thickness, self.design.blank, place)
+            edge = _edge(profile, self.design.blank)
+            return make_part(NAME, [edge], thickness, self.design.blank, place)
+
+    @property
+    def contour(self) -> Contour:
+        """The profile as made: with its clearance."""
+        return self.part.contour if self.ordered else self.profile
 
     @cached_property
     def part_subject(self) -> PartsSubject:
         """What the checks of parts look at."""
         from gearcam.parts.checks import PartsSubject
 
-        return PartsSubject(parts=(self.part,), names=("cam",), lost=(None,))
+        kerf = self.design.output.kerf
+        return PartsSubject(parts=(self.part,), names=("cam",), kerf=kerf, uncut=(False,))
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -186,3 +194,23 @@ class CamJob(Job):
         summary = self.summary(self._beside(folder, FOLLOWED), {"followed": facts})
         contents = {FOLLOWED: table_bytes(columns)}
         return finish(folder, contents, summary, self.findings, keep=True)
+
+
+def _edge(profile: Contour, blank: WheelBlank) -> Contour:
+    """Return a profile with its clearance and its rounded edges, in this order."""
+    if not (blank.clearance or blank.tip_rounding):
+        return profile
+    from gearcam.parts.parallel import moved, rounded, sized
+
+    clear = sized(
+        lambda size: moved(profile, -size),
+        blank.clearance,
+        "cam, blank.clearance_mm",
+        "clearance",
+    )
+    return sized(
+        lambda size: rounded(clear, size),
+        blank.tip_rounding,
+        "cam, blank.tip_rounding_mm",
+        "radius",
+    )

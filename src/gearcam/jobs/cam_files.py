@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.jobs.cam import NAME
-from gearcam.jobs.exports import STEP_PART, drawn, dxf_style, mesh_bytes, meshes
+from gearcam.jobs.exports import STEP_PART, cut_files, drawn, dxf_style, mesh_bytes, meshes
 
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing, Shape
@@ -42,7 +42,8 @@ def export(job: CamJob, kind: str, extras: dict[str, Any]) -> dict[str, bytes]:
     """
     makers: dict[str, Callable[[], dict[str, bytes]]] = {
         "csv": lambda: _tables(job),
-        "dxf": lambda: drawn([_drawing(job)], _style(job), extras),
+        "dxf": lambda: drawn([_cut(job)], _style(job), extras),
+        "cut-svg": lambda: cut_files([_cut(job)], job.design.name, job.design.output.kerf),
         "svg": lambda: _picture(job),
         "step": lambda: _step(job),
         "drawing-dxf": lambda: _sheet(job, "dxf"),
@@ -77,7 +78,7 @@ def _tables(job: CamJob) -> dict[str, bytes]:
         "rho_profile_mm": found["rho_profile"],
     }
     return {
-        "profile.csv": outline_bytes(job.profile.vertices),
+        "profile.csv": outline_bytes(job.contour.vertices),
         "motion.csv": table_bytes(columns),
     }
 
@@ -90,12 +91,19 @@ def _drawing(job: CamJob, *, assembled: bool = False) -> Drawing:
     from gearcam.drawings import cam_drawing
 
     design, cam = job.design, job.cam
-    pitch = None if cam.pitch_contour is cam.contour else cam.pitch_contour
+    pitch = None if cam.pitch_contour is job.part.contour else cam.pitch_contour
     prime, side = cam.mechanism.least, -1.0 if design.cam.clockwise else 1.0
     if not assembled:
         return cam_drawing(job.part, pitch, prime)
     pose = design.output.pose
     return cam_drawing(job.part, pitch, prime, _follower(job, pose), angle=side * pose)
+
+
+def _cut(job: CamJob) -> Drawing:
+    """Return what a cutter follows: the part, or paths with the kerf."""
+    from gearcam.drawings import cut_drawing
+
+    return cut_drawing(_drawing(job), job.design.output.kerf)
 
 
 def _follower(job: CamJob, theta: float) -> list[Shape]:
@@ -188,8 +196,8 @@ def _facts(job: CamJob) -> dict[str, str]:
         found = cam.pressure(kind)
         if found is not None:
             facts[f"pressure, {kind}"] = f"{math.degrees(found.largest):.4g} deg"
-    if design.blank.offset:
-        facts["offset of edges"] = f"{design.blank.offset:+.6g} mm"
+    if design.blank.clearance:
+        facts["clearance"] = f"{design.blank.clearance:.6g} mm"
     return facts | weight_facts(job.part, design.blank)
 
 
@@ -197,7 +205,13 @@ def _inspection(job: CamJob) -> dict[str, bytes]:
     from gearcam.export.table import table_bytes
 
     theta, points, normals = job.cam.places(job.design.output.inspection_points)
-    points = points + job.design.blank.offset * normals
+    clearance = job.design.blank.clearance
+    if clearance:
+        from gearcam.parts.parallel import touches
+
+        kept = touches(job.profile, points, normals, -clearance)
+        theta, points, normals = theta[kept], points[kept], normals[kept]
+        points = points - clearance * normals
     columns = {
         "theta_deg": np.degrees(theta),
         "x_mm": points.real,
@@ -211,7 +225,7 @@ def _inspection(job: CamJob) -> dict[str, bytes]:
 def _tool_path(job: CamJob, extras: dict[str, Any]) -> dict[str, bytes]:
     from gearcam.drawings import TOOL, Drawing, Feature
     from gearcam.export.table import outline_bytes
-    from gearcam.parts.parallel import moved
+    from gearcam.parts.parallel import moved, sized
 
     radius = job.design.output.tool_radius or job.mechanism.radius
     if not radius:
@@ -220,7 +234,10 @@ def _tool_path(job: CamJob, extras: dict[str, Any]) -> dict[str, bytes]:
             where="output.tool_radius_mm",
             nearest="a round follower's own radius counts where none is given; this one has none",
         )
-    path = moved(job.part.contour, radius)
+    contour = job.part.contour
+    path = sized(
+        lambda size: moved(contour, size), radius, "output.tool_radius_mm", "radius of the cutter"
+    )
     drawing = Drawing(name=TOOL_PATH, features=(Feature(layer=TOOL, shape=path),))
     tables = {f"{TOOL_PATH}.csv": outline_bytes(path.vertices)}
     return tables | drawn([drawing], _style(job), extras)

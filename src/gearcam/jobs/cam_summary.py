@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearcam.cams.measures import Range
-from gearcam.jobs.summary import CHORD_HOW, FORMAT, listed, versions
+from gearcam.jobs.summary import (
+    CHORD_HOW,
+    FORMAT,
+    dxf_how,
+    kerf_entry,
+    listed,
+    versions,
+)
 
 if TYPE_CHECKING:
     from gearcam.jobs.cam import CamJob
@@ -39,6 +46,7 @@ def summarize(
         "format": FORMAT,
         "name": job.design.name,
         "kind": job.design.kind,
+        **kerf_entry(job.design.output.kerf),
         "motion": _motion(job),
         "cam": _cam(job),
         **_part(job),
@@ -89,16 +97,28 @@ def _cam(job: CamJob) -> dict[str, Any]:
         )
     if cam.contact_place is not None:
         made["contact_mm"] = _ends(cam.contact_place)
-    reach = np.hypot(*job.profile.vertices.T)
-    made["profile"] = {
+    made["profile"] = _profile(job)
+    return made
+
+
+def _profile(job: CamJob) -> dict[str, Any]:
+    """Return the sizes of the profile as made: with clearance those of its parallel."""
+    cam, contour, clearance = job.cam, job.contour, job.design.blank.clearance
+    reach = np.hypot(*contour.vertices.T)
+    least = min(float(reach.min()), cam.nearest_flat - clearance)
+    common = {
+        "chord_error_mm": contour.chord_error,
+        "vertices": len(contour.vertices),
+        "radius_mm": {"min": least, "max": float(reach.max())},
+    }
+    if clearance:
+        return {"clearance_mm": clearance, "area_mm2": contour.moments.area, **common}
+    return {
         "perimeter_mm": cam.size.perimeter,
         "area_mm2": cam.size.area,
-        "chord_error_mm": job.profile.chord_error,
-        "vertices": len(job.profile.vertices),
         "least_vertices": cam.sampler.least,
-        "radius_mm": {"min": min(float(reach.min()), cam.nearest_flat), "max": float(reach.max())},
+        **common,
     }
-    return made
 
 
 def _ends(found: Range, scale: float = 1.0) -> dict[str, float]:
@@ -149,21 +169,22 @@ def _part(job: CamJob) -> dict[str, Any]:
 
 def _accuracy(job: CamJob, extras: dict[str, Any]) -> dict[str, Any]:
     """Error estimates, and how each was made."""
-    size, reach = job.cam.size, float(np.abs(job.profile.vertices).max())
+    reach = float(np.abs(job.profile.vertices).max())
     values: dict[str, Any] = {
         "profile_mm": 16.0 * np.finfo(float).eps * reach,
-        "chord_mm": job.profile.chord_error,
-        "perimeter_mm": size.perimeter_error,
-        "area_mm2": size.area_error,
+        "chord_mm": job.contour.chord_error,
     }
     how = {
         "profile_mm": "rounding of closed forms at the largest radius",
         "chord_mm": CHORD_HOW,
-        "perimeter_mm": "Gauss-Legendre quadrature with half the cells, and rounding",
-        "area_mm2": "Gauss-Legendre quadrature with half the cells, and rounding",
     }
+    if not job.design.blank.clearance:
+        size = job.cam.size
+        values |= {"perimeter_mm": size.perimeter_error, "area_mm2": size.area_error}
+        quadrature = "Gauss-Legendre quadrature with half the cells, and rounding"
+        how |= {"perimeter_mm": quadrature, "area_mm2": quadrature}
     dxf = extras.get("dxf")
     if dxf is not None:
         values["dxf_mm"] = dxf["error_mm"]
-        how["dxf_mm"] = f"files read back ({dxf['curves']}), against the curve, both ways"
+        how["dxf_mm"] = dxf_how(job.design.output.kerf, dxf["curves"])
     return {**values, "how": how}

@@ -66,6 +66,33 @@ def drawn(drawings: Sequence[Drawing], style: DxfStyle, extras: dict[str, Any]) 
     return files
 
 
+def cut_files(drawings: Sequence[Drawing], title: str, kerf: float) -> dict[str, bytes]:
+    """Return the files of a laser: one for each part, and a sheet with all of them, labelled.
+
+    Parameters
+    ----------
+    drawings : sequence of Drawing
+        What is cut.
+    title : str
+        The design's name.
+    kerf : float, mm
+        By half of which their paths have been moved.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by file name.
+    """
+    from gearcam.export.cut_svg import cut_svg
+    from gearcam.export.nest import labelled, nested
+
+    files = {
+        f"{one.name}_cut.svg": cut_svg([one], f"{title}, {one.name}", kerf) for one in drawings
+    }
+    sheet = nested([labelled(one) for one in drawings])
+    return files | {"cut.svg": cut_svg(sheet, title, kerf)}
+
+
 def meshes(parts: Sequence[Part], extras: dict[str, Any]) -> dict[str, Mesh]:
     """Return the solids of parts, made once for all kinds of files.
 

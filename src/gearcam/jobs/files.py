@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearcam.jobs.exports import STEP_PART, drawn, dxf_style, mesh_bytes, meshes
+from gearcam.jobs.exports import STEP_PART, cut_files, drawn, dxf_style, mesh_bytes, meshes
 from gearcam.jobs.sheet_files import sheet_files
 
 if TYPE_CHECKING:
@@ -38,7 +38,8 @@ def export(job: GearPairJob, kind: str, extras: dict[str, Any]) -> dict[str, byt
     """
     makers: dict[str, Callable[[], dict[str, bytes]]] = {
         "csv": lambda: _tables(job),
-        "dxf": lambda: _drawings(job, extras),
+        "dxf": lambda: drawn([*job.to_cut, _pair_drawing(job)], _style(job), extras),
+        "cut-svg": lambda: cut_files(job.to_cut, job.design.name, job.design.output.kerf),
         "svg": lambda: _picture(job),
         "step": lambda: _steps(job),
         "drawing-dxf": lambda: sheet_files(job, _pair_drawing(job), _style(job), "dxf"),
@@ -104,15 +105,6 @@ def poses(job: GearPairJob) -> tuple[Pose, Pose]:
 
 def _style(job: GearPairJob) -> DxfStyle:
     return dxf_style(job.design.output, job.gear1.profile.tolerance)
-
-
-def _drawings(job: GearPairJob, extras: dict[str, Any]) -> dict[str, bytes]:
-    from gearcam.drawings import wheel_drawing
-
-    drawings = [
-        wheel_drawing(part, step) for part in job.parts for step in range(len(part.contours))
-    ]
-    return drawn([*drawings, _pair_drawing(job)], _style(job), extras)
 
 
 def _picture(job: GearPairJob) -> dict[str, bytes]:

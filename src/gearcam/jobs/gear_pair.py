@@ -34,6 +34,7 @@ from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 
 if TYPE_CHECKING:
+    from gearcam.drawings import Drawing
     from gearcam.parts.checks import PartsSubject
     from gearcam.parts.part import Part
 
@@ -123,8 +124,7 @@ class GearPairJob(Job):
         """What is taken off the edges of both wheels' teeth."""
         blanks = (self.design.blank.wheel(number) for number in (1, 2))
         first, second = (
-            Finish(clearance=max(0.0, -blank.offset), tip_rounding=blank.tip_rounding)
-            for blank in blanks
+            Finish(clearance=blank.clearance, tip_rounding=blank.tip_rounding) for blank in blanks
         )
         return first, second
 
@@ -169,7 +169,8 @@ class GearPairJob(Job):
     @property
     def bores(self) -> tuple[float | None, float | None]:
         """Bore diameters, mm, of circles that hold their keyways; a rack has none."""
-        first, second = (2.0 * self.design.blank.wheel(number).bore_reach for number in (1, 2))
+        blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
+        first, second = (2.0 * blank.bore_reach for blank in blanks)
         return first or None, None if self.law.feeds else second or None
 
     @cached_property
@@ -213,6 +214,17 @@ class GearPairJob(Job):
         _ = self.steps  # timed for themselves
         with self._stage("parts"):
             return make_parts(self)
+
+    @cached_property
+    def to_cut(self) -> tuple[Drawing, ...]:
+        """What a cutter follows: both wheels, step by step, as parts or as paths with the kerf."""
+        from gearcam.drawings import cut_drawing, wheel_drawing
+
+        return tuple(
+            cut_drawing(wheel_drawing(part, step), self.design.output.kerf)
+            for part in self.parts
+            for step in range(len(part.contours))
+        )
 
     def centrode_angles(self) -> NDArray[np.float64]:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""

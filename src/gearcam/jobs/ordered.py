@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+_PLACES = 65
+"""Places on each flank at which it is asked whether a cutter gets there."""
+
 
 def make_parts(job: GearPairJob) -> tuple[Part, Part]:
     """Return both wheels as parts.
@@ -71,7 +74,7 @@ def _mark(job: GearPairJob, gear: Gear) -> Mark:
     frames = job.pair.rolling.frames(gear.wheel, np.zeros(1))
     radius = complex(frames.p[0])
     normal = complex(frames.t[0]) * gear.toothing.turn
-    blank = job.design.blank.wheel(gear.wheel)
+    blank = job.design.blank.wheel(gear.wheel).widened
     return timing_mark(
         abs(radius),
         0.0 if gear.wheel == 1 else math.pi,
@@ -85,8 +88,23 @@ def _mark(job: GearPairJob, gear: Gear) -> Mark:
 
 
 def parts_subject(job: GearPairJob) -> PartsSubject:
-    """Return what the checks of parts look at: the `job`'s parts."""
-    return PartsSubject(parts=job.parts)
+    """Return what the checks of parts look at: the `job`'s parts, and where a cutter gets to."""
+    kerf = job.design.output.kerf
+    uncut = tuple(bool(kerf) and _uncut(job, number, kerf) for number in (1, 2))
+    return PartsSubject(parts=job.parts, kerf=kerf, uncut=uncut)
+
+
+def _uncut(job: GearPairJob, number: int, kerf: float) -> bool:
+    """Return whether a cutter does not get to some place of a wheel's flanks as made."""
+    from gearcam.parts.parallel import touches
+
+    gear = job.gears[number - 1]
+    low, high = gear.profile.flanks.lowest, gear.profile.flanks.highest
+    kept = whole_flanks(gear) & (high > low)
+    reach = low + np.linspace(0.0, 1.0, _PLACES)[:, None] * (high - low)
+    points, normals = flank_places(gear, np.where(kept, reach, 0.0))
+    contour = job.parts[number - 1].contour
+    return not touches(contour, points[:, kept].ravel(), normals[:, kept].ravel(), 0.5 * kerf).all()
 
 
 def whole_flanks(gear: Gear) -> NDArray[np.bool_]:

@@ -80,8 +80,8 @@ def wheel_facts(job: GearPairJob, gear: Gear) -> dict[str, str]:
         facts["profile shift"] = f"{shift:+.6g} modules"
     facts["centrode length"] = f"{toothing.length:.6g} mm"
     facts["cutter"] = toothing.cutter.kind
-    if blank.offset:
-        facts["offset"] = f"{blank.offset:+.6g} mm"
+    if blank.clearance:
+        facts["clearance"] = f"{blank.clearance:.6g} mm"
     if blank.tip_rounding:
         facts["tip rounding"] = f"R{blank.tip_rounding:.6g}"
     return facts | weight_facts(job.parts[gear.wheel - 1], blank)

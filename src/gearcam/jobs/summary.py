@@ -74,6 +74,7 @@ def summarize(
             **facts,
             "solved": solved,
         },
+        **kerf_entry(job.design.output.kerf),
         "gears": [_gear(job, gear) for gear in job.gears],
         **listed(job.design_hash, files),
         "findings": findings,
@@ -105,6 +106,11 @@ def listed(design: str, files: Mapping[str, str | None]) -> dict[str, Any]:
     return {"design": design, "files": current, **({"stale": stale} if stale else {})}
 
 
+def kerf_entry(kerf: float) -> dict[str, float]:
+    """Return what a summary says of the `kerf`, mm, that paths of cutting files allow for."""
+    return {"kerf_mm": kerf} if kerf else {}
+
+
 def _helix(job: GearPairJob) -> dict[str, Any]:
     from gearcam.gears.helix import leads
 
@@ -132,6 +138,7 @@ def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
         "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
         "root_radius_min_mm": gear.least_radius,
         **({"bore_diameter_mm": blank.bore} if job.bores[gear.wheel - 1] else {}),
+        **({"clearance_mm": blank.clearance} if blank.clearance else {}),
         "outline": {
             "vertices": len(gear.outline),
             "least_vertices": gear.profile.sampler.least,
@@ -178,8 +185,14 @@ def _accuracy(job: GearPairJob, extras: dict[str, Any]) -> dict[str, Any]:
     }
     if dxf is not None:
         values["dxf_mm"] = dxf["error_mm"]
-        how["dxf_mm"] = f"files read back ({dxf['curves']}), against the curve, both ways"
+        how["dxf_mm"] = dxf_how(job.design.output.kerf, dxf["curves"])
     return {**values, "how": how}
+
+
+def dxf_how(kerf: float, curves: str) -> str:
+    """Return how the errors of DXF files were found: with a `kerf`, mm, and of which `curves`."""
+    what = "the edge, or its parallel at half the kerf" if kerf else "the curve"
+    return f"files read back ({curves}), against {what}, both ways"
 
 
 def versions() -> dict[str, str]:

@@ -4,7 +4,8 @@ Most values are given once for both wheels, or twice, driver first; 0 means that
 *keyway* is cut into the bore's circle; its depth counts from that circle, at its middle, as shaft
 standards tabulate it. A *D-bore* has a flat. *Hubs* stand on the faces: front is +z. *Lightening
 holes* lie between hub and rim and are as large as the rim that they keep allows. A *stop slot*
-takes a pin that stands in the housing and ends the way of an open wheel.
+takes a pin that stands in the housing and ends the way of an open wheel. *Clearance* is what is
+taken off the outline all around; if asked, what a shaft, a bolt or a pin goes through follows it.
 
 Refused by reading: sizes that contradict each other or lack their partner.
 
@@ -14,7 +15,7 @@ Depends on quantities only.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
 from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, Quantity, param
@@ -24,6 +25,9 @@ KIND: Final = "gear-pair-parts"
 
 CAM_KIND: Final = "cam-parts"
 """The kind of the checks of a cam as a part."""
+
+_FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
+"""Sizes of what a shaft, a bolt or a pin goes through."""
 
 Problem = tuple[str, int | None, str, str]
 """Field, number of the wheel's value, what is wrong, what is allowed."""
@@ -94,10 +98,14 @@ class Blank:
     density: tuple[float, float] | None = each(
         DENSITY, default=None, gt=0, le=1e5, doc="for mass, centroid, unbalance and inertia"
     )
-    offset: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=-100, le=100,
-        doc="moves every cut edge: + adds material (half the kerf), - takes off (clearance)",
-    )  # fmt: skip
+    clearance: tuple[float, float] = each(
+        LENGTH, default=(0, 0), ge=0, le=100, doc="taken off the toothed edge, along its normal"
+    )
+    clearance_bores: bool = param(
+        TEXT,
+        default=False,
+        doc="whether bores, bolt holes and stop slots are wider by it, all around",
+    )
     tip_rounding: tuple[float, float] = each(
         LENGTH, default=(0, 0), ge=0, le=100, doc="radius of the teeth's rounded tip edges"
     )
@@ -127,13 +135,13 @@ class WheelBlank:
         As of `Blank`.
     hub_diameter, hub_front, hub_back, rim, web, stop_pin, mark_diameter : float, mm
         As of `Blank`.
-    offset, tip_rounding : float, mm
+    clearance, tip_rounding : float, mm
         As of `Blank`.
     keyway_angle, bolt_angle : float, rad
         As of `Blank`.
     bolts, lightening_holes : int
         As of `Blank`.
-    timing_marks : bool
+    timing_marks, clearance_bores : bool
         As of `Blank`.
     density : float or None, kg/m^3
         As of `Blank`.
@@ -158,7 +166,8 @@ class WheelBlank:
     timing_marks: bool = True
     mark_diameter: float | None = None
     density: float | None = None
-    offset: float = 0.0
+    clearance: float = 0.0
+    clearance_bores: bool = False
     tip_rounding: float = 0.0
 
     @property
@@ -173,6 +182,21 @@ class WheelBlank:
             return 0.5 * self.bore
         floor = 0.5 * self.bore + self.keyway_depth
         return float((floor**2 + 0.25 * self.keyway_width**2) ** 0.5)
+
+    @property
+    def widening(self) -> float:
+        """What bores, bolt holes and stop slots are wider by, mm."""
+        return 2.0 * self.clearance if self.clearance_bores else 0.0
+
+    @property
+    def widened(self) -> WheelBlank:
+        """The blank with the sizes of its bore, bolt holes and stop slot as made.
+
+        A keyway keeps its depth: the circle from which it counts is wider.
+        """
+        sizes = {name: getattr(self, name) for name in _FOLLOWING}
+        wider = {name: size + self.widening for name, size in sizes.items() if size}
+        return replace(self, clearance_bores=False, **wider)
 
     def problems(self) -> Iterator[Problem]:
         """Yield what is wrong by reading: field, None, message, allowed."""

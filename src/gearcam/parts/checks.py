@@ -1,4 +1,4 @@
-"""The checks of parts: walls between openings, flanks that an offset takes away, tools too large.
+"""The checks of parts: walls between openings, kerfs and tools too large.
 
 Importing this room registers them. A check sees a `PartsSubject` and yields findings.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
 
 from gearcam.findings import Finding, check
 from gearcam.parts.blank import CAM_KIND, KIND
@@ -16,36 +15,6 @@ from gearcam.parts.part import Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
-
-_ROUNDING: Final = 1e-9
-"""Contact ratio that rounding may cost."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class LostFlank:
-    """What rounding or an offset takes off the flanks that touch the mate.
-
-    Parameters
-    ----------
-    height : float, mm
-        Largest height that a flank loses.
-    expected : float, mm
-        What the edge of a tip takes by itself when it is moved inwards or rounded.
-    teeth : str
-        Where, in words.
-    contact_ratio : (float, float)
-        Smallest contact ratio of the whole flanks, and of what is left of them.
-    """
-
-    height: float
-    expected: float
-    teeth: str
-    contact_ratio: tuple[float, float]
-
-    def harmless(self, limit: float) -> bool:
-        """Return whether no more is lost than expected, or nothing that touches; `limit` kept."""
-        whole, left = self.contact_ratio
-        return left >= whole - _ROUNDING or (left >= limit and self.height <= self.expected)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,13 +27,16 @@ class PartsSubject:
         As made.
     names : tuple of str
         What a person calls them.
-    lost : tuple of LostFlank or None
-        What each wheel's flanks lose; None where edges are neither moved nor rounded.
+    kerf : float, mm
+        What the cutter burns away; 0 where nothing is said of it.
+    uncut : tuple of bool
+        Whether a cutter that burns so much does not get to some flank of each wheel.
     """
 
     parts: tuple[Part, ...]
     names: tuple[str, ...] = ("wheel 1", "wheel 2")
-    lost: tuple[LostFlank | None, ...] = (None, None)
+    kerf: float = 0.0
+    uncut: tuple[bool, ...] = (False, False)
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
@@ -121,26 +93,27 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
 
 
 @check(
-    "lost-flank",
-    kind=KIND,
-    doc="flank that an offset or rounded tips take away, and the contact ratio that is left",
-    limit=("contact_ratio", Param(doc="least contact ratio", ge=1, le=3), 1.1),
+    "wide-kerf",
+    kind=(KIND, CAM_KIND),
+    doc="whether what the cutter burns away fits into every place of an outline",
 )
-def lost_flank(subject: PartsSubject, limit: float) -> Iterator[Finding]:
-    """Warn where more flank is lost than a moved tip takes, an error where too little drives."""
-    for name, lost in zip(subject.names, subject.lost, strict=True):
-        if lost is None or lost.harmless(limit):
+def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
+    """Warn of a kerf wider than an inner corner or a slot, an error where flanks stay uncut."""
+    rows = zip(subject.names, subject.tools, subject.uncut, strict=True)
+    for name, tools, uncut in rows:
+        if tools.diameter >= subject.kerf:
             continue
-        whole, left = lost.contact_ratio
+        what, where = _tightest(tools)
+        left = "metal is left there, on flanks too" if uncut else "metal is left there"
         yield Finding(
-            code="lost-flank",
-            severity="warning" if left >= limit else "error",
-            message=f"Offset and rounding take up to {lost.height:.4g} mm of the height of flanks; "
-            f"the contact ratio falls from {whole:.4g} to {left:.4g}.",
-            value=lost.height,
-            limit=lost.expected,
+            code="wide-kerf",
+            severity="error" if uncut else "warning",
+            message=f"A cutter that burns {subject.kerf:.4g} mm does not get into {what}{where}, "
+            f"which takes {tools.diameter:.4g} mm: {left}.",
+            value=subject.kerf,
+            limit=tools.diameter,
             unit="mm",
-            where=f"{name}, {lost.teeth}",
+            where=name,
         )
 
 
@@ -155,10 +128,7 @@ def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
     for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
             continue
-        narrow = tools.slot < 2.0 * tools.inner_radius
-        place = tools.slot_place if narrow else tools.inner_place
-        what = "a slot" if narrow else "an inner corner or radius"
-        where = "" if place is None else f" at x = {place[0]:.4f}, y = {place[1]:.4f} mm"
+        what, where = _tightest(tools)
         yield Finding(
             code="large-tool",
             severity="note",
@@ -169,3 +139,11 @@ def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
             unit="mm",
             where=name,
         )
+
+
+def _tightest(tools: ToolLimits) -> tuple[str, str]:
+    """Return what limits a tool, and where."""
+    narrow = tools.slot < 2.0 * tools.inner_radius
+    place = tools.slot_place if narrow else tools.inner_place
+    what = "a slot" if narrow else "an inner corner or radius"
+    return what, "" if place is None else f" at x = {place[0]:.4f}, y = {place[1]:.4f} mm"

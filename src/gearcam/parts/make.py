@@ -1,24 +1,19 @@
-"""Making a part: outlines with rounded edges, openings, hub and mark, all edges moved if asked.
+"""Making a part: outlines as made, openings, hub and mark.
 
-The order is that of the shop: teeth, rounded edges, openings, and last the offset, which moves
-every edge that is cut, outlines outwards and openings inwards where it adds material.
-
-Refused: what openings, marks and parallels refuse, and offsets that close a hole.
+Refused: what openings and marks refuse.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.openings import Place, bore, common, demand_apart, openings
-from gearcam.parts.part import Hub, Mark, Opening, Part
-from gearcam.parts.shapes import Circle, Loop
+from gearcam.parts.openings import Place, openings
+from gearcam.parts.part import Hub, Mark, Part
 
 Marker = Callable[[], Mark]
 
@@ -38,7 +33,7 @@ def make_part(
     name : str
         The stem of its files.
     contours : sequence of Contour
-        True outlines: one, or those of the steps.
+        True outlines as made: one, or those of the steps.
     width : float, mm
         Of the toothed plate.
     blank : WheelBlank
@@ -58,29 +53,17 @@ def make_part(
         If something has no room, or meets something else.
     """
     edges = list(contours)
-    if blank.tip_rounding:
-        from gearcam.parts.parallel import rounded
-
-        edges = [rounded(contour, blank.tip_rounding) for contour in edges]
     found = openings(blank, edges, place)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
         _demand_within(hub, edges, place)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
-    if blank.offset:
-        from gearcam.parts.parallel import moved
-
-        edges = [moved(contour, blank.offset) for contour in edges]
-        found = tuple(_shifted(opening, blank, place) for opening in found)
-        demand_apart(found, blank, common(edges), place)
-        if hub is not None:
-            _demand_within(hub, edges, place)
     part = Part(
         name=name,
         contours=tuple(edges),
         width=width,
-        openings=tuple(found),
+        openings=found,
         hub=hub,
         marks=marks,
     )
@@ -101,53 +84,6 @@ def _demand_within(hub: Hub, contours: Sequence[Contour], place: Place) -> None:
             unit="mm",
             nearest=f"a hub below {room:.6g} mm",
         )
-
-
-def _shifted(opening: Opening, blank: WheelBlank, place: Place) -> Opening:
-    """Return an opening whose edge is moved into it by the offset."""
-    shape, by = opening.shape, blank.offset
-    if isinstance(shape, Circle):
-        if shape.diameter <= 2.0 * by:
-            raise _closed(opening, by, 0.5 * shape.diameter, place)
-        return replace(opening, shape=replace(shape, diameter=shape.diameter - 2.0 * by))
-    if opening.kind == "BORE":
-        return replace(opening, shape=_moved_bore(opening, blank, place))
-    return replace(opening, shape=_moved_slot(shape, opening, by, place))
-
-
-def _moved_bore(opening: Opening, blank: WheelBlank, place: Place) -> Circle | Loop:
-    """Return the bore of moved sizes: keyways become narrower and less deep, flats nearer."""
-    by = blank.offset
-    least = min(size for size in (blank.bore, blank.keyway_width, blank.bore_flat) if size)
-    if least <= 2.0 * by:
-        raise _closed(opening, by, 0.5 * least, place)
-    width = blank.keyway_width - 2.0 * by if blank.keyway_width else 0.0
-    flat = blank.bore_flat - 2.0 * by if blank.bore_flat else 0.0
-    diameter = blank.bore - 2.0 * by
-    return bore(replace(blank, bore_diameter=diameter, keyway_width=width, bore_flat=flat))
-
-
-def _moved_slot(shape: Loop, opening: Opening, by: float, place: Place) -> Loop:
-    """Return a slot whose arcs are moved along their normals and keep their angles."""
-    points = shape.vertices @ [1.0, 1j]
-    radii, half = np.abs(points), len(points) // 2
-    width = float(radii[0] - radii[half])
-    if width <= 2.0 * by:
-        raise _closed(opening, by, 0.5 * width, place)
-    inwards = np.where(np.arange(len(points)) < half, -by, by)
-    made = points * (1.0 + inwards / radii)
-    return Loop(vertices=np.column_stack([made.real, made.imag]), bulges=shape.bulges)
-
-
-def _closed(opening: Opening, by: float, limit: float, place: Place) -> InfeasibleError:
-    return InfeasibleError(
-        f"the offset closes the {opening.name}",
-        where=f"{place.name}, blank.offset_mm",
-        value=by,
-        limit=limit,
-        unit="mm",
-        nearest=f"an offset below {limit:.6g} mm",
-    )
 
 
 def _demand_marks(part: Part, place: Place) -> None:

@@ -135,25 +135,26 @@ def openings(blank: WheelBlank, contours: Sequence[Contour], place: Place) -> tu
     Returns
     -------
     tuple of Opening
-        Bore, bolt holes, stop slot, lightening holes: those that are wanted.
+        Bore, bolt holes, stop slot, lightening holes: those that are wanted, with the sizes as
+        made.
 
     Raises
     ------
     InfeasibleError
         If they meet each other, the hub's edge or the outline, or have no room.
     """
-    solid = common(contours)
-    found = [Opening(kind="BORE", shape=bore(blank), name="bore")] if blank.bore else []
-    found += _bolts(blank)
+    solid, wide = _common(contours), blank.widened
+    found = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
+    found += _bolts(wide)
     if blank.stop_pin:
         found.append(_slot(blank, solid, place))
-    demand_apart(found, blank, solid, place)
+    _demand_apart(found, blank, solid, place)
     if blank.lightening_holes:
-        found += _lightening(blank, solid, found, place)
+        found += _lightening(wide, solid, found, place)
     return tuple(found)
 
 
-def common(contours: Sequence[Contour]) -> Polygon:
+def _common(contours: Sequence[Contour]) -> Polygon:
     """Return what all steps' `contours` have in common."""
     from shapely import intersection_all
 
@@ -163,40 +164,28 @@ def common(contours: Sequence[Contour]) -> Polygon:
     return shared
 
 
-def demand_apart(found: Sequence[Opening], blank: WheelBlank, solid: Polygon, place: Place) -> None:
-    """Refuse openings that meet each other, the hub's edge or the outline.
-
-    Parameters
-    ----------
-    found : sequence of Opening
-        All of them.
-    blank : WheelBlank
-        With the hub.
-    solid : Polygon
-        The toothed plate.
-    place : Place
-        Which wheel.
-
-    Raises
-    ------
-    InfeasibleError
-        With what meets what.
-    """
+def _demand_apart(
+    found: Sequence[Opening], blank: WheelBlank, solid: Polygon, place: Place
+) -> None:
+    """Refuse openings that meet each other, the hub's edge or the outline."""
     from shapely import Point, Polygon
 
     regions = [Polygon(opening.shape.points(1e-4 * place.module)) for opening in found]
     hub = Point(0.0, 0.0).buffer(0.5 * blank.hub_diameter, quad_segs=256).boundary
     for number, (opening, region) in enumerate(zip(found, regions, strict=True)):
         if not solid.contains(region):
-            raise _no_room(opening, solid, "the outline", place)
+            raise _no_room(opening, solid, "the outline", place, blank.widening)
         if blank.hub_diameter and region.intersects(hub):
-            raise _no_room(opening, solid, "the edge of the hub", place)
+            raise _no_room(opening, solid, "the edge of the hub", place, blank.widening)
         for other, second in zip(found[:number], regions[:number], strict=True):
             if region.intersects(second):
-                raise _no_room(opening, solid, f"the {other.name}", place)
+                raise _no_room(opening, solid, f"the {other.name}", place, blank.widening)
 
 
-def _no_room(opening: Opening, solid: Polygon, what: str, place: Place) -> InfeasibleError:
+def _no_room(
+    opening: Opening, solid: Polygon, what: str, place: Place, widening: float
+) -> InfeasibleError:
+    """Return the refusal of what meets something; diameters as the design gives them."""
     from shapely import Point
 
     shape, value, limit = opening.shape, None, None
@@ -204,10 +193,11 @@ def _no_room(opening: Opening, solid: Polygon, what: str, place: Place) -> Infea
     if isinstance(shape, Circle) and what == "the outline":
         center = Point(*shape.center)
         inside = solid.contains(center)
-        value, limit = shape.diameter, 2.0 * solid.boundary.distance(center) if inside else None
+        value = shape.diameter - widening
+        limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
         nearest = (
             f"there a diameter below {limit:.6g} mm stays inside"
-            if limit
+            if limit and limit > 0.0
             else "its middle lies outside the roots: take a smaller circle"
         )
     return InfeasibleError(
@@ -235,8 +225,10 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
             nearest="leave stop_pin_mm out, or give an open law (driven_travel_deg)",
         )
     start = 0.0 if place.wheel == 1 else math.pi - place.travel
-    inner = max(blank.bore_reach, 0.5 * blank.hub_diameter)
+    wide = blank.widened
+    inner = max(wide.bore_reach, 0.5 * blank.hub_diameter)
     radius, room = _roomiest(solid, start, place.travel, inner)
+    room -= blank.widening
     if blank.stop_pin >= room:
         raise InfeasibleError(
             "no room for the slot of the stop pin between shaft and roots",
@@ -246,9 +238,8 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
             unit="mm",
             nearest=f"a pin below {room:.6g} mm",
         )
-    return Opening(
-        kind="SLOT", shape=_arc_slot(radius, start, place.travel, blank.stop_pin), name="stop slot"
-    )
+    shape = _arc_slot(radius, start, place.travel, wide.stop_pin)
+    return Opening(kind="SLOT", shape=shape, name="stop slot")
 
 
 def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tuple[float, float]:

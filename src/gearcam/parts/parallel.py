@@ -1,24 +1,28 @@
-"""Parallels of outlines: kerf and clearance (`moved`), rounded edges (`rounded`).
+"""Parallels of outlines: clearance, kerf and tool paths (`moved`), rounded edges (`rounded`).
 
 Both follow a disc that rolls along the outline (see `rolled`). Moving takes the way of its middle;
 rounding takes what it touches, and an arc of the disc wherever it touches two places at once. The
 results are true parallels of the curve, not those of a polygon.
 
-Refused: distances that leave no simple outline.
+Refused: distances that leave no simple outline; `sized` names the largest that it found to leave
+one.
 
 Depends on numeric; shapely inside the functions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Complex, as_pairs
+from gearcam.errors import InfeasibleError
+from gearcam.numeric.bulges import Complex, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.cubics import on_cubics
 from gearcam.parts.rolled import Stretch, arc_run, roll, too_far
 
 Array = NDArray[np.float64]
@@ -32,6 +36,12 @@ _VERTICES: Final = 0.95
 
 _POINT: Final = 1e-9
 """Length in tolerances below which a stretch is a point."""
+
+_PLACES: Final = 65
+"""Places on each run at which it is asked whether a parallel follows it."""
+
+_HALVINGS: Final = 8
+"""How often the range of a size that leaves an outline is halved for a refusal."""
 
 
 def moved(contour: Contour, by: float) -> Contour:
@@ -58,6 +68,37 @@ def moved(contour: Contour, by: float) -> Contour:
         return contour
     runs = [stretch.as_run(stretch.by) for stretch, _, _ in roll(contour, by).pairs]
     return _contour(runs, contour, by)
+
+
+def followed(contour: Contour, by: float) -> Contour:
+    """Return a parallel that follows every run of a contour, or refuse.
+
+    Parameters
+    ----------
+    contour : Contour
+        The outline.
+    by : float, mm
+        As of `moved`.
+
+    Returns
+    -------
+    Contour
+        With the same tolerance.
+
+    Raises
+    ------
+    InfeasibleError
+        If no simple outline is left, or one that passes a run by, such as a keyway's wall.
+    """
+    made = moved(contour, by)
+    for run in contour.runs:
+        p, t = as_complex(run.points), as_complex(run.tangents)
+        at = np.linspace(0.0, len(p) - 1.0, _PLACES)
+        step = np.minimum(at.astype(np.int64), len(p) - 2)
+        points, tangents = on_cubics(p, t, step, at - step)
+        if not touches(contour, points, -1j * tangents, by).any():
+            raise too_far(contour, by)
+    return made
 
 
 def rounded(contour: Contour, radius: float) -> Contour:
@@ -91,6 +132,56 @@ def rounded(contour: Contour, radius: float) -> Contour:
             normals = start / abs(start), end / abs(end)
             runs.append(arc_run(center, radius, *normals, contour.tolerance))
     return _contour(runs, contour, -radius)
+
+
+def sized(make: Callable[[float], Contour], size: float, where: str, what: str) -> Contour:
+    """Return the contour that `make` makes of a size, or say which size would do.
+
+    Parameters
+    ----------
+    make : callable
+        ``make(size)``: `moved` or `rounded` of some contour.
+    size : float, mm
+        As asked for.
+    where : str
+        The key that gives it.
+    what : str
+        What the size is, in words.
+
+    Returns
+    -------
+    Contour
+
+    Raises
+    ------
+    InfeasibleError
+        If the size leaves no simple outline, with one that leaves one.
+    """
+    try:
+        return make(size)
+    except InfeasibleError:
+        low, high = 0.0, size
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            try:
+                make(tried := _fewer_digits(middle))
+            except InfeasibleError:
+                high = middle
+            else:
+                low = tried
+        raise InfeasibleError(
+            f"no simple outline is left by this {what}",
+            where=where,
+            value=size,
+            unit="mm",
+            nearest=f"a {what} of {low:.3g} mm leaves one" if low else "leave it out",
+        ) from None
+
+
+def _fewer_digits(size: float) -> float:
+    """Round a size down to three digits, as it is said."""
+    step = 10.0 ** (math.floor(math.log10(size)) - 2)
+    return float(f"{math.floor(size / step) * step:.3g}")
 
 
 def _ends(one: Stretch, two: Stretch) -> tuple[complex, complex]:

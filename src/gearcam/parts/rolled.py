@@ -395,5 +395,4 @@ def too_far(contour: Contour, radius: float) -> InfeasibleError:
         where=f"an outline of {np.ptp(contour.vertices[:, 0]):.6g} mm",
         value=abs(radius),
         unit="mm",
-        nearest="take a smaller offset_mm or tip_rounding_mm",
     )

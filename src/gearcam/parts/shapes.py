@@ -9,6 +9,7 @@ Refused: loops that run clockwise.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -16,13 +17,17 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import bulge_pieces, flatten_bulges
+from gearcam.numeric.bulges import as_pairs, bulge_pieces, flatten_bulges
+from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.moments import Moments, arc_moments
 
 Array = NDArray[np.float64]
 
 FEWEST: Final = 12
 """Fewest chords of a circle."""
+
+_DENSE: Final = 1 / 40
+"""Chord error of dense points over the tolerance."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -133,6 +138,31 @@ class Loop:
     def points(self, sagitta: float) -> Array:
         """Return points on the loop, (n, 2), mm, no chord farther from it than `sagitta`, mm."""
         return flatten_bulges(self.vertices, self.bulges, sagitta)
+
+    def contour(self, tolerance: float) -> Contour:
+        """Return the loop as a contour within a `tolerance`, mm: a run for each of its pieces."""
+        vertices = self.points(tolerance)
+        return Contour(
+            dense=lambda: tuple(self._runs(_DENSE * tolerance)),
+            vertices=vertices,
+            tolerance=tolerance,
+            chord_error=tolerance,
+        )
+
+    def _runs(self, sagitta: float) -> Iterator[Run]:
+        for start, chord, bend in zip(
+            *bulge_pieces(self.vertices, self.bulges, closed=True), strict=True
+        ):
+            half = 2.0 * math.atan(bend)  # half of the arc's angle
+            radius = 0.5 * abs(chord) / abs(math.sin(half)) if half else math.inf
+            count = max(1, math.ceil(abs(half) / math.sqrt(2.0 * sagitta / radius)) if half else 1)
+            way = np.linspace(0.0, 1.0, count + 1)
+            reach = np.sin(half * way) / math.sin(half) if half else way
+            spokes = np.exp(1j * half * (way - 1.0))
+            tangents = chord / abs(chord) * np.exp(1j * half * (2.0 * way - 1.0))
+            points = start + chord * reach * spokes
+            points[-1] = start + chord
+            yield Run(points=as_pairs(points), tangents=as_pairs(tangents))
 
 
 def frozen(values: object) -> Array:

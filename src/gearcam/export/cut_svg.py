@@ -1,0 +1,124 @@
+"""SVG for laser cutters: 1:1 in millimetres, to be cut, not looked at.
+
+Laser programs go by colours and by the order of what they read: cuts are red hairlines, engraving
+is blue; first comes what is engraved, then inner edges, then outlines, so that nothing is cut out
+of a part that has come loose. Everything is a path of arcs and straight pieces: outlines within the
+chord tolerance, openings and marks exact.
+
+Refused: drawings without an outline.
+
+Depends on drawings and numeric.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+from xml.sax.saxutils import escape, quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.drawings import INNER, LABEL, MARK, OUTER, Circle, Drawing, Feature, Loop, Path, reach
+from gearcam.export.dxf import CURVE_PART
+from gearcam.export.svg import arc_data, number
+from gearcam.numeric.arcs import fit_closed
+from gearcam.numeric.contour import Contour
+
+Array = NDArray[np.float64]
+
+CUT: Final = "#ff0000"
+ENGRAVED: Final = "#0000ff"
+
+HAIRLINE: Final = 0.01
+"""Width of every line, mm."""
+
+MARGIN: Final = 1.0
+"""What the sheet keeps around, mm."""
+
+GROUPS: Final = (
+    ("engrave", (MARK, LABEL), ENGRAVED),
+    ("cut-inner", INNER, CUT),
+    ("cut-outer", OUTER, CUT),
+)
+"""What is drawn, in this order: name, kinds, colour."""
+
+_FINER: Final = 1e-3
+"""Rounding of numbers over the tolerance."""
+
+
+def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes:
+    """Write drawings of parts for a laser cutter.
+
+    Parameters
+    ----------
+    drawings : sequence of Drawing
+        Each of one part, where it stands on the sheet.
+    title : str
+        Of the file.
+    kerf : float, mm
+        By half of which the paths have been moved: said in the file, nothing is moved here.
+
+    Returns
+    -------
+    bytes
+        The file, UTF-8; the same for the same drawings.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to cut.
+    """
+    features = [feature for drawing in drawings for feature in drawing.features]
+    shown = [one for one in features if any(one.kind in kinds for _, kinds, _ in GROUPS)]
+    if not any(one.kind in OUTER for one in shown):
+        raise ValueError(f"{title}: nothing to cut")
+    tolerance = min(one.tolerance for drawing in drawings for one in drawing.contours)
+    decimals = max(4, math.ceil(-math.log10(_FINER * tolerance)))
+    corners = np.vstack([reach(one.shape) for one in shown])
+    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
+    wide, tall = (number(float(size)) for size in np.ceil((high - low) * 1e4) / 1e4)
+    size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
+    told = f"; the paths are moved by half a kerf of {kerf:.6g} mm" if kerf else ""
+    # of the paths y = 0 is the sheet's upper edge
+    shift = complex(-float(low[0]), -float(high[1]))
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
+        f"<title>{escape(title)}</title>",
+        f"<desc>1:1 in mm: engrave what is blue, then cut what is red{told}</desc>",
+        *_groups(shown, shift, decimals),
+        "</svg>",
+    ]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _groups(shown: Sequence[Feature], shift: complex, decimals: int) -> Iterator[str]:
+    for name, kinds, colour in GROUPS:
+        inside = [one for one in shown if one.kind in kinds]
+        if inside:
+            yield f'<g id="{name}" fill="none" stroke="{colour}" stroke-width="{HAIRLINE}">'
+            for one in inside:
+                data = _data(one, shift, decimals)
+                yield f'<path class={quoteattr(one.layer.lower())} d="{data}"/>'
+            yield "</g>"
+
+
+def _data(feature: Feature, shift: complex, decimals: int) -> str:
+    """Return the path data of a feature that is shifted."""
+    by = [shift.real, shift.imag]
+    match feature.shape:
+        case Contour() as contour:
+            vertices, bulges = fit_closed(contour.runs, CURVE_PART * contour.tolerance)
+            return arc_data(vertices + by, bulges, decimals)
+        case Circle(center=center, diameter=diameter):
+            sides = center + 0.5 * diameter * np.array([[1.0, 0.0], [-1.0, 0.0]])
+            return arc_data(sides + by, np.ones(2), decimals)
+        case Loop(vertices=vertices, bulges=bulges):
+            return arc_data(vertices + by, bulges, decimals)
+        case Path(points=points):
+            steps = (f"{number(x, decimals)} {number(-y, decimals)}" for x, y in points + by)
+            return f"M{'L'.join(steps)}"
+        case shape:
+            raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")

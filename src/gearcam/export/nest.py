@@ -1,0 +1,156 @@
+"""Nesting: parts side by side on a sheet, each with its name.
+
+A name stands where a part has most room, or below it. Parts stand in rows, the tallest first, as
+many to a row as make the sheet with the shortest edge around. Within a row each is pushed to the
+left until its hull is a gap away from the hulls beside it: as hulls keep apart, outlines do. Parts
+are shifted, and neither turned nor turned over.
+
+Depends on drawings and lettering; shapely inside the functions.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.drawings import INNER, LABEL, MARK, OUTER, Drawing, Feature, Path, place, reach
+from gearcam.export.lettering import strokes, text_width
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+Array = NDArray[np.float64]
+
+GAP: Final = 3.0
+"""Least distance between what is cut of two parts, mm."""
+
+_HIGHEST: Final = 5.0
+_LOWEST: Final = 1.5
+"""Heights of letters, mm: as high as there is room, or below the part where that is too low."""
+
+_FREE: Final = 1.0
+"""What a name keeps from every edge, mm."""
+
+_COARSE: Final = 0.05
+"""How exactly the room for a name is found, mm."""
+
+_NEAR: Final = 1e-3
+"""How near to the gap a part is pushed, mm."""
+
+_SAGITTA: Final = 0.01
+"""Of chords that stand for openings, mm."""
+
+
+def labelled(drawing: Drawing) -> Drawing:
+    """Return the `drawing` of a part with its name in single strokes."""
+    words = re.sub(r"(\d+)", r" \1", drawing.name.replace("_", " ")).upper()
+    wide = text_width(words)
+    (x, y), room = _roomiest(drawing)
+    height = min(_HIGHEST, 2.0 * (room - _FREE) / math.hypot(wide, 1.0))
+    left, base = x - 0.5 * wide * height, y - 0.5 * height
+    if height < _LOWEST:
+        height = _LOWEST
+        low, high = _box([drawing])
+        left, base = 0.5 * float(low[0] + high[0] - wide * height), float(low[1]) - GAP - height
+    lines = strokes(words, height, left, base)
+    names = (Feature(layer=LABEL, shape=Path(points=line, closed=False)) for line in lines)
+    return replace(drawing, features=(*drawing.features, *names))
+
+
+def _roomiest(drawing: Drawing) -> tuple[tuple[float, float], float]:
+    """Return the middle and the radius of the largest circle that meets nothing."""
+    from shapely import Polygon, maximum_inscribed_circle
+
+    def points(feature: Feature) -> Array:
+        shape: Any = feature.shape
+        return shape.vertices if hasattr(shape, "tolerance") else shape.points(_SAGITTA)
+
+    (outer,) = (points(one) for one in drawing.features if one.kind in OUTER)
+    inner = [points(one) for one in drawing.features if one.kind in (*INNER, MARK)]
+    free: Any = Polygon(outer, inner).simplify(_COARSE)
+    spoke: Any = maximum_inscribed_circle(free, tolerance=_COARSE)
+    (x, y), _ = spoke.coords
+    return (x, y), float(spoke.length) - _COARSE
+
+
+def nested(drawings: Sequence[Drawing]) -> tuple[Drawing, ...]:
+    """Return `drawings` of parts shifted so that they stand side by side, first ones first."""
+    hulls = [_hull(one) for one in drawings]
+    sizes = np.array([np.subtract(hull.bounds[2:], hull.bounds[:2]) for hull in hulls])
+    order = np.argsort(-np.round(sizes[:, 1]), kind="stable").tolist()
+    widths = accumulate(float(sizes[k, 0]) + GAP for k in order)
+    rows = min((_rows(order, sizes, width) for width in widths), key=lambda it: _around(it, sizes))
+    shifts: dict[int, tuple[float, float]] = {}
+    base = 0.0
+    for row in rows:
+        shifts |= _pushed(row, hulls, base)
+        base -= max(float(sizes[k, 1]) for k in row) + GAP
+    return tuple(
+        replace(one, features=place(one.features, 0.0, shifts[k])) for k, one in enumerate(drawings)
+    )
+
+
+def _hull(drawing: Drawing) -> Polygon:
+    from shapely import MultiPoint
+
+    kinds = (*OUTER, LABEL)
+    corners = [reach(one.shape) for one in drawing.features if one.kind in kinds]
+    hull: Any = MultiPoint(np.vstack(corners)).convex_hull
+    return hull
+
+
+def _box(drawings: Sequence[Drawing]) -> tuple[Array, Array]:
+    corners = np.vstack([reach(one.shape) for drawing in drawings for one in drawing.features])
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def _rows(order: Sequence[int], sizes: Array, width: float) -> list[list[int]]:
+    """Fill rows of a width, the parts in order."""
+    rows: list[list[int]] = []
+    left = 0.0
+    for k in order:
+        wide = float(sizes[k, 0]) + GAP
+        if not rows or wide > left * (1.0 + 1e-12):
+            rows.append([])
+            left = width
+        rows[-1].append(k)
+        left -= wide
+    return rows
+
+
+def _around(rows: Sequence[Sequence[int]], sizes: Array) -> float:
+    """Return half of the length around the box of rows, mm."""
+    wide = max(float((sizes[row, 0] + GAP).sum()) for row in rows)
+    return wide + sum(float(sizes[row, 1].max()) + GAP for row in rows)
+
+
+def _pushed(
+    row: Sequence[int], hulls: Sequence[Any], base: float
+) -> dict[int, tuple[float, float]]:
+    """Return shifts that stand hulls on a line below y = `base`, each as far left as gaps allow."""
+    from shapely import distance
+    from shapely.affinity import translate
+
+    foot = base - max(hulls[k].bounds[3] - hulls[k].bounds[1] for k in row)
+    stand: list[Any] = []
+    shifts: dict[int, tuple[float, float]] = {}
+    for k in row:
+        left, low, _, _ = hulls[k].bounds
+        x = max((one.bounds[2] + GAP for one in stand), default=0.0)
+        while x > 0.0 and stand:
+            # nothing comes nearer by more than it is moved
+            there = translate(hulls[k], x - left, foot - low)
+            free = float(distance(there, np.array(stand, dtype=object)).min()) - GAP
+            if free < _NEAR:
+                break
+            x = max(0.0, x - free)
+        shifts[k] = (x - left, foot - low)
+        stand.append(translate(hulls[k], *shifts[k]))
+    return shifts
