@@ -85,18 +85,34 @@ def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         ("contact ratio", found["contact_ratio"], ""),
         ("pairs in contact", found.get("pairs_in_contact"), ""),
         ("phases with interference", found.get("interference_steps"), ""),
-        ("transmission error, largest", found.get("transmission_error_rad_max"), "rad"),
         ("backlash along the pitch curve", found.get("backlash_mm"), "mm"),
+        ("lag of the driven wheel, taken up", found.get("lag_mm"), "mm"),
+        *_error_rows(found.get("transmission_error")),
         ("penetration of flanks", found["penetration_mm"], "mm"),
         ("chord error of outlines", found["chord_error_mm"], "mm"),
     ]
     for words, value, unit in rows:
         if value is not None:
-            yield f"  {words:<30}  {_span(value)} {unit}".rstrip()
+            yield f"  {words:<33}  {_span(value)} {unit}".rstrip()
+
+
+def _error_rows(error: Mapping[str, Any] | None) -> Iterator[tuple[str, Any, str]]:
+    """Yield the rows on the transmission error of a study, if anything touched in it."""
+    if error is None:
+        return
+    unit = error["unit"]
+    yield "transmission error, peak to peak", error["peak_to_peak"], unit
+    if "no_harmonics" in error:
+        yield "its harmonics", f"not told: {error['no_harmonics']}", ""
+    else:
+        largest = max(error["harmonics"], key=lambda one: one["amplitude"])
+        yield f"its largest harmonic, {largest['order']} a turn", largest["amplitude"], unit
 
 
 def _span(value: Any) -> str:
     """Write a number, or the smallest and largest of some."""
+    if isinstance(value, str):
+        return value
     if not isinstance(value, Mapping):
         return f"{value:.4g}"
     low, high = (_small(value[end]) for end in ("min", "max"))

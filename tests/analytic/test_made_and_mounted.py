@@ -93,7 +93,7 @@ def test_contact_ratio_and_lag_at_any_distance(case: dict, more: float, side: in
     assert pairs.contact_ratios == pytest.approx(truth.contact_ratio(distance), rel=1e-9)
     found = contacts(pairs, np.linspace(0.0, 1.0, 61))
     assert found.step.size > 30
-    assert found.lag == pytest.approx(side * truth.lag(distance), abs=1e-9)
+    assert found.lead == pytest.approx(side * truth.lag(distance), abs=1e-9)
     # the force is tangent to both base circles, at the operating pressure angle
     assert found.pressure_angle == pytest.approx(truth.operating(distance), abs=1e-9)
     for lever, base in zip(found.lever, truth.base, strict=True):
@@ -121,7 +121,7 @@ def test_play_of_the_parts_is_what_the_study_and_the_note_say(case: dict) -> Non
         2.0 * truth.lag(truth.designed) * truth.radii[1], abs=1e-9
     )
     assert found["lag_mm"]["max"] == pytest.approx(
-        -truth.lag(truth.designed) * truth.radii[1], abs=1e-9
+        truth.lag(truth.designed) * truth.radii[1], abs=1e-9
     )
     assert found["transmission_error"]["peak_to_peak"] < 1e-12
     # the lag is taken up first: the outlines overlap, whatever the play

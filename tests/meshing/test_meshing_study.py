@@ -122,14 +122,14 @@ def test_a_tooth_moved_by_20_um_is_found(by: float) -> None:
     assert codes(whole) == {}
     driven = 180.0 / (1.0 + 1.6)
     shift = 0.02 / driven
-    assert np.abs(broken.every("lag")).max() == pytest.approx(shift, rel=0.05)
+    assert np.abs(broken.every("lead")).max() == pytest.approx(shift, rel=0.05)
     if by < 0.0:
         assert codes(broken)["interference"] == "error"
-        assert broken.every("lag").max() == pytest.approx(shift, rel=0.05)
+        assert broken.every("lead").max() == pytest.approx(shift, rel=0.05)
     else:
         # where it is alone the driven wheel lags until it touches; where not, the others carry
-        assert broken.every("lag").min() == pytest.approx(-shift, rel=0.05)
-        assert broken.every("lag").max() == pytest.approx(0.0, abs=1e-9)
+        assert broken.every("lead").min() == pytest.approx(-shift, rel=0.05)
+        assert broken.every("lead").max() == pytest.approx(0.0, abs=1e-9)
         assert broken.summary["pairs_in_contact"] == whole.summary["pairs_in_contact"]
 
 
@@ -174,7 +174,7 @@ def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
     along = 0.1 * (np.tan(alpha + tilt) + np.tan(alpha - tilt)) * np.cos(tilt)
     assert np.all(np.abs(wide.every("backlash") / along - 1.0) < 0.01)
     # and the outlines say the same: turned by all of the play, the other flanks touch
-    turning, error = wide.setup.turning, wide.every("lag")
+    turning, error = wide.setup.turning, wide.every("lead")
     for share, free in ((0.999, True), (1.001, False)):
         found = turning.overlaps(phi, 0.0, error + share * play)
         touched = np.unique(found.step[found.depth > wide.setup.noise])

@@ -2,13 +2,13 @@
 
 A flank's normal at roll s passes through the pitch point of that roll, whatever its place `sf`: the
 flanks of one side are parallel curves, involutes of one base curve. So at a phase of the driver
-three equations say at which rolls of both wheels a pair touches, and how far the driven wheel has
-then turned from its nominal place, its *lag*: equal directions of the normals, and two coordinates.
-As designed the rolls are equal and the lag is 0. It is the same for all pairs of evenly spaced
+three equations say at which rolls of both wheels a pair touches, and how far the driven wheel is
+then ahead of its nominal place, its *lead*: equal directions of the normals, and two coordinates.
+As designed the rolls are equal and the lead is 0. It is the same for all pairs of evenly spaced
 flanks: they touch together at any distance of the shafts.
 
 Positions are those of the mounted pair: O1 at 0, O2 at the distance of the shafts, as complex
-numbers. A rack has no O2; its lag is a way, mm, in the direction in which it is driven.
+numbers. A rack has no O2; its lead is a way, mm, in the direction in which it is driven.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _FAR = 3.0
 """Rolls this many pitches from the nominal one belong to no pair of teeth that mesh."""
 
 _FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
-"""Unknowns among phase, roll of both wheels and lag, by which of the first three is known."""
+"""Unknowns among phase, roll of both wheels and lead, by which of the first three is known."""
 
 
 class Pose(NamedTuple):
@@ -54,14 +54,14 @@ class Pose(NamedTuple):
         Phase of the driver.
     one, two : arrays, rad
         Driver angles that name the rolls of driver and driven wheel.
-    lag : array, rad
-        The driven wheel's turn from its nominal place; of a rack its way, mm.
+    lead : array, rad
+        How far the driven wheel is ahead of its nominal place; of a rack its way, mm.
     """
 
     phi1: Array
     one: Array
     two: Array
-    lag: Array
+    lead: Array
 
     def take(self, index: Ints | Mask) -> Pose:
         """Return some of them, by `index`."""
@@ -84,7 +84,7 @@ class Normals:
         Angle between the normals; distance of the flanks along the driver's, and across it.
     slopes : (3, 4, n) array
         Their derivatives by phase, roll of the driver, roll of the driven wheel (as driver
-        angles) and lag.
+        angles) and lead.
     """
 
     frames: tuple[Frames, Frames]
@@ -95,7 +95,7 @@ class Normals:
 
     @property
     def rates(self) -> Array:
-        """Derivatives of both rolls (as driver angles) and the lag by the phase, (3, n)."""
+        """Derivatives of both rolls (as driver angles) and the lead by the phase, (3, n)."""
         return -_solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
 
 
@@ -121,7 +121,7 @@ def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
     parallel and ``conj(n)*(P2 - P1) + (s1 - s2 + sf2 - sf1)*cos(alpha) = 0``. Derivatives by s
     from ``dn/ds = +-1j*kappa*n`` (+ on wheel 1) and ``dP/ds = T``.
     """
-    phi1, one, two, lag = pose
+    phi1, one, two, lead = pose
     first, second = (
         toothing.frames(angle) for toothing, angle in zip(pairs.toothings, (one, two), strict=True)
     )
@@ -132,11 +132,11 @@ def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
     foot1, n1 = first.p * turned, first.t * (tilt * turned)
     nominal, ratio = law.phi2(phi1), law.derivatives(phi1, 0)[0]
     if law.feeds:
-        foot2 = second.p - 1j * (size * nominal + lag) + (pairs.distance - size)
+        foot2 = second.p - 1j * (size * nominal + lead) + (pairs.distance - size)
         tangent2, carried, turns = second.t, np.full(phi1.shape, -1j), 0.0
         ratio = size * ratio
     else:
-        back = np.exp(1j * (nominal + lag))
+        back = np.exp(1j * (nominal + lead))
         foot2, tangent2, turns = second.p * back, second.t * back, 1.0
         carried = 1j * foot2
         foot2 = foot2 + pairs.distance
@@ -144,18 +144,18 @@ def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
     across = np.conj(n1) * (foot2 - foot1)
     aligned = np.conj(n2) * n1
     distance = across.real + (first.s - second.s + play) * cosine
-    by_lag = np.conj(n1) * carried
+    by_lead = np.conj(n1) * carried
     by_one = -1j * (first.kappa * across + pairs.side * math.sin(alpha))
     by_two = np.conj(n1) * tangent2 - cosine
-    # the driver turns by -phi1, the driven wheel as with the lag
-    by_phase = 1j * np.conj(n1) * foot2 + ratio * by_lag
+    # the driver turns by -phi1, the driven wheel as with the lead
+    by_phase = 1j * np.conj(n1) * foot2 + ratio * by_lead
     angle = [
         -aligned.real * (1.0 + turns * ratio),
         aligned.real * first.kappa * first.speed,
         aligned.real * second.kappa * second.speed,
         -aligned.real * turns,
     ]
-    moves = [by_phase, by_one * first.speed, by_two * second.speed, by_lag]
+    moves = [by_phase, by_one * first.speed, by_two * second.speed, by_lead]
     return Normals(
         frames=(first, second),
         foot=np.stack([foot1, foot2]),

@@ -30,7 +30,7 @@ class Contacts:
         Index of the phase.
     pair : (n,) int array
         j.
-    lag : (n,) array, rad
+    lead : (n,) array, rad
         The driven wheel's turn from its nominal place when this pair touches; of a rack mm.
     point, force : (n,) complex arrays, mm and 1
         The point, and the unit direction in which the driver presses.
@@ -50,7 +50,7 @@ class Contacts:
 
     step: Ints
     pair: Ints
-    lag: Array
+    lead: Array
     point: Plane
     force: Plane
     pressure_angle: Array
@@ -120,7 +120,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     return Contacts(
         step=step,
         pair=pair,
-        lag=pose.lag,
+        lead=pose.lead,
         point=point,
         force=force,
         pressure_angle=np.arctan2(force.real, side * force.imag),

@@ -292,7 +292,7 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
 
     Returns
     -------
-    lag : (n,) array, rad
+    lead : (n,) array, rad
         Turn from the nominal place (of a rack mm); infinite where nothing touches.
     edge : (n,) bool array
         Whether an end of a flank decides it.
@@ -303,7 +303,7 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     their ends can be ahead of a tangency. Elsewhere ends are searched.
     """
     outward = np.full(len(phi1), -np.inf)
-    np.maximum.at(outward, found.step, -pairs.side * found.lag)
+    np.maximum.at(outward, found.step, -pairs.side * found.lead)
     searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
     near = touches(pairs, phi1[searched])
     ends = np.full(len(phi1), -np.inf)

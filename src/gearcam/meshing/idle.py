@@ -60,7 +60,7 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
         np.minimum.at(turn, near.step, pairs.side * near.turn)
         s = rolling.arc_length(phi1)
         nearest = pairs.near(s)[:, 0]
-        free = touch(pairs, phi1, pairs.play(nearest))[0].lag
+        free = touch(pairs, phi1, pairs.play(nearest))[0].lead
         apart = np.abs((pairs.side * turn - free) * to_pitch_line(rolling, phi1))
         edges = bool(np.isfinite(turn).all())
         found.append(

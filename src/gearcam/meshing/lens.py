@@ -249,8 +249,8 @@ def _overlapping(
     """
     rolling, law, side = pairs.toothings[0].rolling, pairs.toothings[0].rolling.law, pairs.side
     ahead, scale = phi1 + advance, rolling.center_distance if law.feeds else 1.0
-    lag = lead + scale * (law.phi2(phi1) - law.phi2(ahead))
-    pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lag), pairs.play(pair))
+    lead = lead + scale * (law.phi2(phi1) - law.phi2(ahead))
+    pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.play(pair))
     deep = -side * at.equations[1]
     missed = np.abs(at.equations[0]) + np.abs(at.equations[2]) / pairs.pitch
     some = np.flatnonzero((deep > 0.0) & (missed < _MISS))
@@ -266,7 +266,7 @@ def _overlapping(
             first.kappa / (sine + roll1 * first.kappa)
             - second.kappa / (roll2 * second.kappa - sine)
         )
-    turns = np.zeros(phi1.shape) if law.feeds else law.phi2(ahead) + lag
+    turns = np.zeros(phi1.shape) if law.feeds else law.phi2(ahead) + lead
     turned = np.exp(1j * np.stack([-ahead, turns]))
     origin = at.foot[0] + roll1 * at.normal[0]
     graphs = Graphs(

@@ -82,25 +82,25 @@ def motion(meshing: Meshing) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``lag_mm``, taken up along the pitch curve before the driver is turned ahead, and
-        ``transmission_error``: the deviation of the lag from its mean over the phases.
+        ``lag_mm``, by which the driven wheel is behind its nominal place, along the pitch curve,
+        when the play is taken up; ``transmission_error``: its deviation from that on the mean.
     """
-    lag, along = meshing.every("lag"), meshing.every("along")
-    touching = np.isfinite(lag)
+    lead, along = meshing.every("lead"), meshing.every("along")
+    touching = np.isfinite(lead)
     if not touching.any():
         return {}
     unit = "mm" if meshing.setup.turning.rolling.law.feeds else "rad"
     error: dict[str, Any] = {
         "unit": unit,
-        "mean_lag": float(lag[touching].mean()),
-        "peak_to_peak": float(np.ptp(lag[touching])),
+        "mean_lag": float(-lead[touching].mean()),
+        "peak_to_peak": float(np.ptp(lead[touching])),
     }
     reason = without_harmonics(meshing, touching)
     if reason:
         error["no_harmonics"] = reason
     else:
-        error["harmonics"] = harmonics(meshing, lag)
-    return {"lag_mm": extent((lag * along)[touching]), "transmission_error": error}
+        error["harmonics"] = harmonics(meshing, lead)
+    return {"lag_mm": extent((-lead * along)[touching]), "transmission_error": error}
 
 
 def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
@@ -137,26 +137,26 @@ def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
     return ""
 
 
-def harmonics(meshing: Meshing, lag: Array) -> list[dict[str, float]]:
-    """Return the harmonics of a driver turn in the driven wheel's lag, the first to 3*z1.
+def harmonics(meshing: Meshing, lead: Array) -> list[dict[str, float]]:
+    """Return the harmonics of a driver turn in the driven wheel's lead, the first to 3*z1.
 
     Parameters
     ----------
     meshing : Meshing
         A study of whole turns.
-    lag : (n,) array, rad
+    lead : (n,) array, rad
         At its phases.
 
     Returns
     -------
     list of dict
-        ``order``, ``amplitude`` in the unit of `lag`, ``phase_deg``: the lag is its mean and the
+        ``order``, ``amplitude`` in the unit of `lead`, ``phase_deg``: the lead is its mean and the
         sum of ``amplitude*cos(order*phi1 + phase)``.
     """
     start, end = meshing.setup.stretch
     turns = round((end - start) / (2.0 * np.pi))
     orders = np.arange(1, MOST_ORDERS * meshing.setup.sides[1].toothings[0].teeth + 1)
-    parts = 2.0 / len(lag) * np.fft.rfft(lag)[orders * turns] * np.exp(-1j * orders * start)
+    parts = 2.0 / len(lead) * np.fft.rfft(lead)[orders * turns] * np.exp(-1j * orders * start)
     return [
         {"order": int(order), "amplitude": float(abs(part)), "phase_deg": float(np.degrees(angle))}
         for order, part, angle in zip(orders, parts, np.angle(parts), strict=True)

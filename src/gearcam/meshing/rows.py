@@ -28,7 +28,7 @@ class Block:
         Driver and nominal driven angles.
     side : {-1, +1}
         sigma of the driver's flanks that the advance presses together.
-    lag : (n,) array, rad
+    lead : (n,) array, rad
         The driven wheel's turn from its nominal place at first touch on that side (of a rack its
         way, mm); not finite where nothing touches.
     along : (n,) array, mm/rad
@@ -55,7 +55,7 @@ class Block:
     phi1: Array
     phi2: Array
     side: int
-    lag: Array
+    lead: Array
     along: Array
     play: Array
     backlash: Array
@@ -175,7 +175,7 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         "specific_sliding1": column(1, exact.specific[0]),
         "specific_sliding2": column(1, exact.specific[1]),
         "relative_curvature_per_mm": column(1, exact.curvature),
-        "lag_rad": np.ma.masked_invalid(block.lag[step]),
+        "lag_rad": np.ma.masked_invalid(-block.lead[step]),
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back[step],
     }

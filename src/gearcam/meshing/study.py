@@ -329,7 +329,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
         phi1=phi1,
         phi2=turning.rolling.law.phi2(phi1),
         side=side,
-        lag=extreme[side],
+        lead=extreme[side],
         along=along,
         backlash=backlash,
         play=play,
