@@ -71,7 +71,7 @@ class GearPair:
     @property
     def shift(self) -> float:
         """Place of wheel 2's frame in that of wheel 1 at phi1 = 0, mm along x."""
-        return 0.0 if self.law.feeds else self.center_distance
+        return self.rolling.shift
 
     @property
     def studied(self) -> bool:

@@ -3,8 +3,8 @@
 Nothing is searched: at roll s a flank that crosses the pitch curve at `sf` touches its mate in the
 foot of the perpendicular from the pitch point, if its reach ``w = sigma*(sf - s)`` lies on both
 flanks. A *side* is the `sigma` of the driver's flank: -1 drives (the driver turns by ``-phi1``),
-+1 holds back. The pairs of a side are numbered without end by j, the driver's tooth counted from 0
-over all turns. Positions are those of the assembled pair: O1 at 0, O2 at (A, 0), as complex
++1 holds back. The pairs of a side are numbered by j, the driver's tooth counted from 0 over all turns,
+without end where both wheels go all around. Positions are those of the assembled pair: O1 at 0, O2 at (A, 0), as complex
 numbers.
 """
 
@@ -52,28 +52,44 @@ class FlankPairs:
 
     def tooth(self, wheel: Wheel, j: Ints) -> Ints:
         """Return tooth numbers, from 1, of a wheel in pairs `j` (see `FlankPairs`)."""
-        return self._count(wheel, j) % self.toothings[wheel - 1].teeth + 1
+        toothing, count = self.toothings[wheel - 1], self._count(wheel, j)
+        return (count % toothing.teeth if toothing.closed else count) + 1
+
+    @cached_property
+    def last(self) -> int | None:
+        """The last pair, where a wheel has ends; the first one is 0 then."""
+        return next((t.teeth for t in self.toothings if not t.closed), None)
+
+    def holds(self, j: Ints) -> NDArray[np.bool_]:
+        """Return which of the pairs `j` are there: beyond the ends of open wheels there are none."""
+        return np.full(j.shape, True) if self.last is None else (j >= 0) & (j <= self.last)
 
     def _count(self, wheel: Wheel, j: Ints) -> Ints:
         # sf = (j + side/4) pitches is (k + 1/2 - side/4) pitches on wheel 2.
         return j if wheel == 1 or self.side > 0 else j - 1
 
     def _flank(self, wheel: Wheel, j: Ints) -> Ints:
-        z, sigma = self.toothings[wheel - 1].teeth, self.side if wheel == 1 else -self.side
-        return self._count(wheel, j) % z + (0 if sigma > 0 else z)
+        toothing, sigma = self.toothings[wheel - 1], self.side if wheel == 1 else -self.side
+        z = len(toothing.numbers)
+        count = self._count(wheel, j) + 1 - toothing.numbers[0]
+        return (count % z if toothing.closed else np.clip(count, 0, z - 1)) + (0 if sigma > 0 else z)
 
     def place(self, wheel: Wheel, j: Ints) -> Array:
         """Return sf, mm, of the flank of a wheel in pairs `j` (see `FlankPairs`)."""
         toothing = self.toothings[wheel - 1]
-        turns = self._count(wheel, j) // toothing.teeth
+        turns = self._count(wheel, j) // toothing.teeth if toothing.closed else 0
         return self.flanks[wheel - 1].sf[self._flank(wheel, j)] + turns * (
             toothing.pitch * toothing.teeth
         )
 
     def reach(self, wheel: Wheel, j: Ints) -> tuple[Array, Array]:
-        """Return the reach w, mm, at root and tip of a wheel's flank (see `FlankPairs`)."""
-        flanks, number = self.flanks[wheel - 1], self._flank(wheel, j)
-        return flanks.lowest[number], flanks.highest[number]
+        """Return the reach w, mm, at root and tip of a wheel's flank (see `FlankPairs`).
+
+        Of pairs that are not there it is infinite, the root above the tip.
+        """
+        flanks, number, there = self.flanks[wheel - 1], self._flank(wheel, j), self.holds(j)
+        low, high = flanks.lowest[number], flanks.highest[number]
+        return np.where(there, low, np.inf), np.where(there, high, -np.inf)
 
     def active(self, j: Ints) -> tuple[Array, Array]:
         """Return the reach w, mm, of the driver's flanks between which pairs `j` touch."""
@@ -97,11 +113,19 @@ class FlankPairs:
 
     @cached_property
     def arcs(self) -> tuple[Array, Array]:
-        """Roll s, mm, between which each flank of the driver's first turn is in contact."""
-        j = np.arange(self.toothings[0].teeth)
+        """Roll s, mm, between which each flank of the driver's first turn is in contact.
+
+        Of open wheels and racks: each pair from the first to the last.
+        """
+        j = np.arange(self.toothings[0].teeth if self.last is None else self.last + 1)
         low, high = self.active(j)
         ends = self.place(1, j) - self.side * np.stack([low, high])
         return (ends[1], ends[0]) if self.side > 0 else (ends[0], ends[1])
+
+    @property
+    def travel(self) -> float:
+        """Length, mm, of a turn of the driver, or of what open wheels and racks roll through."""
+        return next((t.length for t in self.toothings if not t.closed), self.toothings[0].length)
 
     @property
     def contact_ratios(self) -> Array:
@@ -242,6 +266,8 @@ def count(pairs: FlankPairs, phi1: ArrayLike) -> Ints:
 def stretches(pairs: FlankPairs) -> tuple[Array, Array, Ints]:
     """Return the stretches of a turn of the driver on which the number of pairs is constant.
 
+    Of open wheels and racks it is their travel.
+
     Parameters
     ----------
     pairs : FlankPairs
@@ -250,15 +276,16 @@ def stretches(pairs: FlankPairs) -> tuple[Array, Array, Ints]:
     Returns
     -------
     start, end : (m,) arrays, rad
-        Driver angles within the first turn.
+        Driver angles.
     carrying : (m,) int array
         Pairs that carry there: 1 on single-pair arcs, 2 on double-pair arcs, 0 where none drives.
     """
     rolling = pairs.toothings[0].rolling
-    turn = rolling.length(1)
+    turn = pairs.travel
     start, end = pairs.arcs
     alive = end > start
-    edges = np.mod(np.concatenate([start[alive], end[alive]]), turn)
+    edges = np.concatenate([start[alive], end[alive]])
+    edges = np.mod(edges, turn) if pairs.last is None else np.clip(edges, 0.0, turn)
     edges = np.unique(np.concatenate([[0.0], edges, [turn]]))
     edges = edges[np.append(np.diff(edges) > 1e-12 * turn, True)]
     angles = rolling.angle(edges)
