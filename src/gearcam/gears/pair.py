@@ -74,8 +74,8 @@ class GearPair:
         return self.rolling.shift
 
     @property
-    def studied(self) -> bool:
-        """Whether both wheels go all around, as meshing studies ask."""
+    def closed(self) -> bool:
+        """Whether both wheels go all around."""
         return all(toothing.closed for toothing in self.toothings)
 
     def chord_tolerance(self, asked: float | None) -> float:

@@ -3,9 +3,9 @@
 Nothing is searched: at roll s a flank that crosses the pitch curve at `sf` touches its mate in the
 foot of the perpendicular from the pitch point, if its reach ``w = sigma*(sf - s)`` lies on both
 flanks. A *side* is the `sigma` of the driver's flank: -1 drives (the driver turns by ``-phi1``),
-+1 holds back. The pairs of a side are numbered by j, the driver's tooth counted from 0 over all turns,
-without end where both wheels go all around. Positions are those of the assembled pair: O1 at 0, O2 at (A, 0), as complex
-numbers.
++1 holds back. The pairs of a side are numbered by j, the driver's tooth counted from 0 over all
+turns, without end where both wheels go all around. Positions are those of the assembled pair: O1
+at 0, O2 at (A, 0), as complex numbers.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class FlankPairs:
         return next((t.teeth for t in self.toothings if not t.closed), None)
 
     def holds(self, j: Ints) -> NDArray[np.bool_]:
-        """Return which of the pairs `j` are there: beyond the ends of open wheels there are none."""
+        """Return which of the pairs `j` are there: none beyond the ends of open wheels."""
         return np.full(j.shape, True) if self.last is None else (j >= 0) & (j <= self.last)
 
     def _count(self, wheel: Wheel, j: Ints) -> Ints:
@@ -72,7 +72,8 @@ class FlankPairs:
         toothing, sigma = self.toothings[wheel - 1], self.side if wheel == 1 else -self.side
         z = len(toothing.numbers)
         count = self._count(wheel, j) + 1 - toothing.numbers[0]
-        return (count % z if toothing.closed else np.clip(count, 0, z - 1)) + (0 if sigma > 0 else z)
+        count = count % z if toothing.closed else np.clip(count, 0, z - 1)
+        return count + (0 if sigma > 0 else z)
 
     def place(self, wheel: Wheel, j: Ints) -> Array:
         """Return sf, mm, of the flank of a wheel in pairs `j` (see `FlankPairs`)."""

@@ -97,7 +97,7 @@ class Slide:
     def stand(self, phi1: Array, lead: Array | float) -> tuple[Plane, Plane]:
         """See `Guide`."""
         way = self.rolling.center_distance * self.rolling.law.phi2(phi1) + lead
-        return np.ones(len(way), dtype=np.complex128), -1j * way
+        return np.ones(len(way), dtype=np.complex128), np.asarray(-1j * way, dtype=np.complex128)
 
     def height(self, points: Plane) -> Array:
         """See `Guide`."""

@@ -10,7 +10,7 @@ The edge of a half is the part of it that belongs to the outline; for a first lo
 from __future__ import annotations
 
 from collections.abc import Sequence, Sized
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -23,18 +23,13 @@ from gearcam.gears.flank import Kind, Toothing
 from gearcam.gears.outline import Outline
 from gearcam.gears.rolling import Plane
 from gearcam.meshing.contact import Ints
+from gearcam.meshing.edges import Edge, covered, joined, rising, thinned
 from gearcam.meshing.staircase import Edges
 
 Array = NDArray[np.float64]
 
 _BELOW = 0.5
 """Depth of the halves below the root, in dedendums: more than any overlap that is worth a name."""
-
-_THINNED = 24.0
-"""Deviation of thinned edges over the chord error: a quarter of the vertices."""
-
-_FORWARD = 0.7
-"""Cosine of the largest angle to its direction at which an edge goes on over its neighbours."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -90,6 +85,12 @@ class Halves:
         index = half - self.first
         return np.where((index >= 0) & (index < self.count), index, -1)
 
+    def tooth(self, half: Ints) -> Any:
+        """Return the numbers of the teeth of halves h, masked where it is the body, (n,)."""
+        index = half - self.first
+        body = index == self.count
+        return np.ma.masked_array(self.teeth[np.where(body, 0, index)], mask=body)
+
     @cached_property
     def polygons(self) -> Any:
         """The halves as shapely polygons, prepared, (n,), then the body of an open wheel."""
@@ -110,7 +111,7 @@ class Halves:
     @cached_property
     def thinned(self) -> Edges:
         """The edges with fewer vertices."""
-        return _thin(self.edges, _THINNED * self.chord_error)
+        return thinned(self.edges, self.chord_error)
 
     @cached_property
     def circles(self) -> tuple[Plane, Array]:
@@ -147,27 +148,28 @@ def halve(outline: Outline) -> Halves:
     points, lands = _lands(outline)
     inner = _inner(outline, len(lands))
     halves: list[Plane] = []
-    edges: list[_Edge] = []
+    edges: list[Edge] = []
     tips: list[tuple[complex, float]] = []
     for k, pair in enumerate(pairwise(lands)):
         # on from a tip or back from it
         step = 1 if pair[0].tip else -1
-        chain = _chain(*pair[::step], step, len(outline.sampler.chords[1]))
+        tip, root = pair[::step]
+        chain = _chain(tip, root, step, len(outline.sampler.chords[1]))
         own, (under, low) = points[chain[1]], inner[k : k + 2][::step]
         halves.append(np.concatenate([own, [low, under]]))
-        edges.append(_edge(toothing.wheel, [points[part] for part in chain], under, low))
+        edges.append(rising(toothing.wheel, [points[part] for part in chain], under, low))
         tips.append((own[0], np.abs(points[chain[0]] - own[0]).max(initial=0.0)))
     if toothing.closed and toothing.wheel == 2:
         halves, tips = halves[-1:] + halves[:-1], tips[-1:] + tips[:-1]
         edges = edges[-1:] + edges[:-1]
     if toothing.wheel == 2:
-        edges = [_covered(k, edges, toothing.closed) for k in range(len(edges))]
+        edges = [covered(k, edges, toothing.closed) for k in range(len(edges))]
     bodies = [] if toothing.closed else [_body(outline, inner)]
     return Halves(
         points=np.concatenate(halves + bodies),
         starts=_starts(halves + bodies),
         chord_error=outline.sampler.chords[2],
-        edges=_join(edges),
+        edges=joined(edges),
         tips=np.array([tip for tip, _ in tips]),
         width=np.array([width for _, width in tips]),
         teeth=_teeth(toothing),
@@ -178,7 +180,7 @@ def halve(outline: Outline) -> Halves:
 
 
 def _teeth(toothing: Toothing) -> Ints:
-    """Number of each half's tooth."""
+    """Return the number of each half's tooth."""
     teeth = np.repeat(np.array(toothing.numbers), 2)
     if toothing.closed:
         return np.roll(teeth, -1) if toothing.wheel == 1 else teeth
@@ -294,102 +296,14 @@ def _inner(outline: Outline, count: int) -> Plane:
 
 def _counted(outline: Outline) -> Plane:
     """Vertices of what joins the ends of an open wheel, in the order of rising s."""
-    points = outline.points[len(outline.toothed) :] @ [1.0, 1j]
+    x, y = outline.points[len(outline.toothed) :].T
+    points: Plane = x + 1j * y
     return points if outline.toothing.wheel == 1 else points[::-1]
 
 
 def _body(outline: Outline, inner: Plane) -> Plane:
     """Vertices of what is below the halves of an open wheel."""
     return np.concatenate([inner, _counted(outline)[1:-1]])
-
-
-_COVER = np.radians(22.5)
-"""Angle of the cover to the direction of an edge: between level and the line of the tips."""
-
-_COVERED = 3
-"""Number of neighbours that the cover reaches over."""
-
-
-class _Edge(NamedTuple):
-    """The edge of a half, as it rises, see `Edges`."""
-
-    points: Plane
-    ends: tuple[complex, complex]
-    along: complex
-    hand: float
-
-
-def _edge(wheel: int, chain: list[Plane], under: complex, low: complex) -> _Edge:
-    """Return the edge of a half from what is before it, its own and what is after it."""
-    before, own, after = chain
-    down = (under - own[0]) / abs(under - own[0])
-    hand = 1.0 if ((low - under) / down).imag > 0.0 else -1.0
-    along = down * (1.0 + 1j * hand) / np.sqrt(2.0)
-    if wheel == 1:
-        # the driver's is seen from its mate: it rises from the root
-        more = _forward(np.append(own[0], before[::-1]), -along)[1:]
-        return _Edge(np.concatenate([own[::-1], more]), (own[-1], own[0]), -along, hand)
-    ends = own[0], own[-1]
-    more = _forward(np.append(own[-1], after), along)[1:]
-    less = _forward(np.append(own[0], before[::-1]), -along)[:0:-1]
-    return _Edge(np.concatenate([less, own, more]), ends, along, hand)
-
-
-def _forward(points: Plane, along: complex) -> Plane:
-    """Return the first points as long as they go forward."""
-    step = np.diff(points) / along
-    back = np.flatnonzero(step.real < _FORWARD * np.abs(step))
-    return points[: back[0] + 1] if back.size else points
-
-
-def _covered(half: int, edges: list[_Edge], closed: bool) -> _Edge:
-    """Lead the edge of a driven half on, from the far corner of its tip over its neighbours' tips.
-
-    All of them stay below the line, or the edge is left as it is.
-    """
-    edge = edges[half]
-    corner = edge.points[0]
-    line = edge.along * np.exp(1j * edge.hand * _COVER)
-    way = 1 if edges[half - 1].ends[0] == edge.ends[0] else -1
-    at = half - way * np.arange(1, 2 * _COVERED + 1)
-    at = at % len(edges) if closed else at[(at >= 0) & (at < len(edges))]
-    if not at.size:
-        return edge
-    others = [edges[k].points for k in at.tolist()]
-    seen = (np.concatenate(others) - corner) / line
-    if np.any(edge.hand * seen.imag[seen.real < 0.0] > 0.0):
-        return edge
-    far = corner - abs(others[-1][0] - corner) * line
-    return edge._replace(points=np.append(far, edge.points))
-
-
-def _join(edges: list[_Edge]) -> Edges:
-    points = np.concatenate([edge.points for edge in edges])
-    return Edges(
-        points=points,
-        starts=_starts([edge.points for edge in edges]),
-        whole=np.arange(len(points)),
-        ends=np.array([edge.ends for edge in edges]).T,
-        along=np.array([edge.along for edge in edges]),
-        hand=np.array([edge.hand for edge in edges]),
-    )
-
-
-def _thin(edges: Edges, deviation: float) -> Edges:
-    """Leave out vertices as long as no edge moves by more than a deviation."""
-    owner = np.repeat(np.arange(len(edges.along)), np.diff(edges.starts))
-    # the third coordinate says which vertices are left
-    vertices = np.stack([edges.points.real, edges.points.imag, np.arange(len(owner))], axis=1)
-    lines = shapely.linestrings(vertices, indices=owner)
-    fewer = shapely.simplify(lines, deviation, preserve_topology=False)
-    left = shapely.get_coordinates(fewer, include_z=True)[:, 2].astype(np.int64)
-    return replace(
-        edges,
-        points=edges.points[left],
-        starts=np.searchsorted(left, edges.starts),
-        whole=left,
-        deviation=deviation,
-    )
 
 
 def as_polygons(points: Plane, sizes: Ints) -> Any:

@@ -100,16 +100,16 @@ def lenses(
     low, high = ends
     area = _areas(some, low, high, root, tip, ahead)
     edge = clipped[0] | clipped[1]
-    axis = some.distance
+    axis, guide = some.distance, some.guide
     radius = np.stack([np.abs(some.flank(1, v, moving=False)[0] + axis) for v in (low, high)])
     point, _ = some.flank(1, middle, moving=False)
     toothing = pairs.toothings[0]
     alpha = toothing.cutter.alpha
     tangent = toothing.frames(middle).t * np.exp(-1j * (some.phi1 + advance))
     normal = tangent * (np.cos(alpha) + pairs.side * np.sin(alpha) * toothing.turn)
-    lever = np.abs(np.imag(np.conj(point) * normal))
+    lever = np.abs(guide.lever(point, normal))
     closed = np.where(edge, np.nan, _closed(pairs, phi1, advance, some.step, some.pair))
-    if some.distance != toothing.rolling.center_distance:
+    if some.distance != toothing.rolling.shift:
         closed[:] = np.nan
     closed[_uneven(pairs, low, high)] = np.nan
     return Lenses(
@@ -131,7 +131,8 @@ def _areas(some: Facing, low: Array, high: Array, root: Array, tip: Array, ahead
     angle = (low[:, None] + half[:, None] * (1.0 + _NODES)).ravel()
     point, motion = many.flank(1, angle, moving=True)
     turn = many.compare(angle, np.repeat(root, n), np.repeat(tip, n))[0] - np.repeat(ahead, n)
-    values = (turn * np.real(np.conj(point) * motion)).reshape(count, n)
+    # a turn sweeps what the flank's pieces give way along their normals
+    values = (turn * many.guide.lever(point, -1j * motion)).reshape(count, n)
     return np.abs(values @ _WEIGHTS * half)
 
 

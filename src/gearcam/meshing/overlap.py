@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import shapely
@@ -184,8 +184,11 @@ class Turning:
         """Overlap halves with all others, as polygons."""
         index, owner = self.driver.gather(facing.one)
         points = self.driver.points[index] * facing.turn[owner] + facing.shift[owner]
-        inside = self.guide.height(points) <= facing.reach[owner]
-        polygons = as_polygons(*_within(points, np.bincount(owner), inside))
+        sizes = np.bincount(owner)
+        # what lies beside the end of an open wheel may reach any root
+        if self.driven.closed:
+            points, sizes = _within(points, sizes, self.guide.height(points) <= facing.reach[owner])
+        polygons = as_polygons(points, sizes)
         one, two = self._tree.query(polygons)
         mates = self.driven.polygons[two]
         # the prepared ones first: twice as fast as the tree's own test
@@ -295,7 +298,7 @@ class Turning:
     def _astray(
         self, turn: Plane, shift: Plane, step: Ints, facing: Facing
     ) -> tuple[Ints, tuple[Ints, Facing]]:
-        """What of the driver comes near an open wheel or a rack away from its mates.
+        """Find what of the driver comes near an open wheel or a rack away from its mates.
 
         Returns the phases in which a half that faces its mate does, and phases and what else
         does, without mates; the driver's body is the last of its halves.
@@ -305,8 +308,8 @@ class Turning:
         mates[step, facing.one] = facing.two
         center, radius = driver.circles
         seen = center * turn[:, None] + shift[:, None]
-        points = shapely.points(seen.real, seen.imag).ravel()
-        reach = np.broadcast_to(radius, seen.shape).ravel()
+        seen, reach = seen.ravel(), np.tile(radius, len(turn))
+        points = shapely.points(seen.real, seen.imag)
         place, other = self._tree.query(points, predicate="dwithin", distance=reach)
         mate = mates.ravel()[place]
         across = (mate >= 0) & ((np.abs(other - mate) > _BESIDE) | (other == driven.count))
@@ -333,7 +336,8 @@ class Turning:
         body, last = self.driver.polygons[-1], self.driver.starts[-2:]
         center, radius = self.driven.circles
         seen = (center - shift[:, None]) * np.conj(turn)[:, None]
-        near = shapely.dwithin(body, shapely.points(seen.real, seen.imag), radius).any(axis=1)
+        centers: Any = shapely.points(seen.real, seen.imag)
+        near = shapely.dwithin(body, centers, cast("Any", radius)).any(axis=1)
         points = self.driver.points[last[0] : last[1]] * turn[:, None] + shift[:, None]
         bodies = as_polygons(points.ravel(), np.full(len(turn), points.shape[1]))
         return np.flatnonzero(near | shapely.intersects(self.driven.polygons[-1], bodies))

@@ -15,7 +15,9 @@ KIND = "gear-pair-meshing"
 class MeshingSpec:
     """Phases of the driver, its advance, and how the wheels are mounted.
 
-    The phases divide the stretch from `start` to `end` into `steps` equal parts, its end left out.
+    The phases divide the stretch from `start` to `end` into `steps` equal parts, its end left out;
+    open wheels and racks are studied at both of its ends. Without `start` and `end` it is a turn of
+    the driver, or the travel of open wheels and racks from stop to stop.
     The driver is turned ahead by `advance` at each (a negative one holds it back, so that the
     other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
     the pitch point are studied. Without `center_distance` the wheels stand as designed.
@@ -25,13 +27,13 @@ class MeshingSpec:
     start: float = param(
         ANGLE, default=0.0, ge=-36000, le=36000, word="from", doc="driver angle of the first phase"
     )
-    end: float = param(
+    end: float | None = param(
         ANGLE,
-        default=2.0 * math.pi,
+        default=None,
         ge=-36000,
         le=36000,
         word="to",
-        doc="driver angle at which the study ends",
+        doc="driver angle at which the study ends; a turn, or the last stop, if left out",
     )
     advance: float = param(
         ANGLE,

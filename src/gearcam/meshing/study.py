@@ -38,6 +38,9 @@ BLOCK = 120
 _BESIDE = 0.15
 """Phases studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""
 
+_STOP = 1e-7
+"""Share of the travel by which written degrees may pass a stop."""
+
 DEEPER = 1.25
 """Depth of overlap, over what the advance explains, from which flanks count as interfering."""
 
@@ -186,8 +189,16 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         If the wheels do not reach each other, or the advance is lost in rounding.
     """
     pair = gears[0].pair
-    distance = spec.center_distance or pair.center_distance
-    shift = distance - pair.center_distance
+    if pair.law.feeds and spec.center_distance is not None:
+        raise InfeasibleError(
+            "a rack has no shaft",
+            where="meshing.center_distance_mm",
+            value=spec.center_distance,
+            unit="mm",
+            nearest="leave it out: the rack stands as designed",
+        )
+    distance = spec.center_distance or pair.shift
+    shift = distance - pair.shift
     depth = 2.0 * pair.rack.addendum * pair.module
     if abs(shift) >= depth:
         near, far = pair.center_distance - depth, pair.center_distance + depth
@@ -202,8 +213,9 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         )
     pairs = {side: flank_pairs(gears, side) for side in (DRIVE, COAST)}
     side = DRIVE if spec.advance > 0.0 else COAST
-    turn = pair.law.lobes.n1 * pair.law.lobes.period
-    levers = contacts(pairs[side], np.linspace(0.0, turn, 20 * pair.teeth[0])).lever[0]
+    turn = float(pair.rolling.angle(pairs[side].travel))
+    count = round(20 * pairs[side].travel / pairs[side].pitch)
+    levers = contacts(pairs[side], np.linspace(0.0, turn, count)).lever[0]
     if not levers.size:
         levers = np.array([pair.rolling.frames(1, np.zeros(1)).p.real[0]])
     penetration = abs(spec.advance) * float(levers.min())
@@ -244,6 +256,16 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
     )
 
 
+def stretch(setup: Setup) -> tuple[float, float]:
+    """Return the driver angles, rad, between which a pair is studied (see `MeshingSpec`)."""
+    spec, pairs = setup.spec, setup.pairs[setup.side]
+    if spec.end is not None:
+        return spec.start, spec.end
+    if pairs.last is None:
+        return spec.start, 2.0 * np.pi
+    return spec.start, float(setup.turning.rolling.angle(pairs.travel))
+
+
 def phases(setup: Setup) -> Array:
     """Return the phases of a study, rad.
 
@@ -260,21 +282,35 @@ def phases(setup: Setup) -> Array:
     Raises
     ------
     InfeasibleError
-        If there is none.
+        If there is none, or the stretch leaves the travel of open wheels or a rack.
     """
-    spec = setup.spec
-    phi1 = spec.start + (spec.end - spec.start) * np.arange(spec.steps) / spec.steps
+    spec, pairs = setup.spec, setup.pairs[setup.side]
+    rolling = setup.turning.rolling
+    first, last = stretch(setup)
+    if not last > first:
+        raise InfeasibleError(
+            "the study ends before it begins",
+            where="meshing.from_deg",
+            value=float(np.degrees(first)),
+            limit=float(np.degrees(last)),
+            unit="deg",
+            nearest=f"below {np.degrees(last):.6g} deg",
+        )
+    phi1 = np.linspace(first, last, spec.steps, endpoint=pairs.last is not None)
+    if pairs.last is not None:
+        _demand_travel(first, last, float(rolling.angle(pairs.travel)))
     if spec.teeth is None:
         return phi1
-    pairs = setup.pairs[setup.side]
-    start, end = (edge[np.array(spec.teeth) - 1] for edge in pairs.arcs)
-    turn = pairs.toothings[0].rolling.length(1)
-    s = pairs.toothings[0].rolling.arc_length(phi1)[:, None]
+    some = np.isin(pairs.tooth(1, np.arange(len(pairs.arcs[0]))), spec.teeth)
+    start, end = (edge[some] for edge in pairs.arcs)
+    s = rolling.arc_length(phi1)[:, None]
     margin = _BESIDE * pairs.pitch
-    inside = np.mod(s - start + margin, turn) <= end - start + 2.0 * margin
+    after = s - start + margin
+    after = np.mod(after, rolling.length(1)) if pairs.last is None else after
+    inside = (after >= 0.0) & (after <= end - start + 2.0 * margin)
     chosen = phi1[inside.any(axis=1)]
     if not chosen.size:
-        angles = np.degrees(pairs.toothings[0].rolling.angle(0.5 * (start + end)))
+        angles = np.degrees(rolling.angle(0.5 * (start + end)))
         raise InfeasibleError(
             "none of the phases has one of these teeth in contact",
             where="meshing.teeth",
@@ -283,6 +319,23 @@ def phases(setup: Setup) -> Array:
             + " deg; take more steps or another range",
         )
     return chosen
+
+
+def _demand_travel(first: float, last: float, travel: float) -> None:
+    """Refuse phases beyond the stops of open wheels and racks."""
+    for key, value, limit, off in (
+        ("from", first, 0.0, first < -_STOP * travel),
+        ("to", last, travel, last > (1.0 + _STOP) * travel),
+    ):
+        if off:
+            raise InfeasibleError(
+                "the study leaves the travel of the pair",
+                where=f"meshing.{key}_deg",
+                value=float(np.degrees(value)),
+                limit=float(np.degrees(limit)),
+                unit="deg",
+                nearest=f"between 0 and {np.degrees(travel):.8g} deg",
+            )
 
 
 def _block(setup: Setup, phi1: Array, first: int) -> Block:
@@ -302,7 +355,8 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     lead = np.where(np.isfinite(extreme[side]), extreme[side], 0.0) if setup.shift else 0.0
     ahead = turning.overlaps(phi1, spec.advance, lead)
     held = turning.gaps(side, phi1, -spec.advance, lead)
-    r2 = np.abs(turning.rolling.frames(2, phi1).p)
+    # of a rack the turn is a way already
+    r2 = 1.0 if turning.rolling.law.feeds else np.abs(turning.rolling.frames(2, phi1).p)
     tangent = turning.rolling.frames(1, phi1).t * np.exp(-1j * phi1)
     play = extreme[COAST] - extreme[DRIVE]
     backlash = play * r2 * tangent.imag
