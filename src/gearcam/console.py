@@ -77,10 +77,9 @@ def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         if found["complete"]
         else (f"{found['steps_done']} of {found['steps']} phases")
     )
-    yield (
-        f"{phases} at centre distance {found['center_distance_mm']:.6g} mm, driver turned "
-        f"{ahead} by {abs(found['advance_deg']):.6g} deg"
-    )
+    distance = found.get("center_distance_mm")
+    mounted = "" if distance is None else f" at centre distance {distance:.6g} mm"
+    yield f"{phases}{mounted}, driver turned {ahead} by {abs(found['advance_deg']):.6g} deg"
     rows = [
         ("contact ratio", found["contact_ratio"], ""),
         ("pairs in contact", found.get("pairs_in_contact"), ""),

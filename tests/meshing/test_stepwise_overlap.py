@@ -14,7 +14,6 @@ from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.halves import Halves, halve
 from gearcam.meshing.overlap import Turning
-from gearcam.meshing.staircase import Facing
 from helpers_pairs import job, profile
 
 Array = NDArray[np.float64]
@@ -99,9 +98,7 @@ def test_graphs_and_polygons_find_the_same_pieces(name: str, shift: float, lead:
     angles = TURN[::5]
     graphs = turning.overlaps(angles, ADVANCE, angle)
     turn, shifts = turning.pose(angles, ADVANCE, angle)
-    step, one, two, reach = turning._near(angles, turn, shifts)
-    facing = Facing(one=one, two=two, turn=turn[step], shift=shifts[step], reach=reach)
-    polygons = turning._cut(step, facing)
+    polygons = turning._cut(*turning._near(angles, turn, shifts))
     keys = [
         (found.step * turning.driver.count + found.half[0]) * turning.driven.count + found.half[1]
         for found in (graphs, polygons)

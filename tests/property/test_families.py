@@ -215,18 +215,20 @@ def demand_free(made: GearPairJob) -> None:
     end = float(made.centrode_angles()[-1]) if made.law.feeds else made.law.lobes.period
     phases = end * (np.arange(12) + 0.37) / 12
     assert max(whole_overlap(made, phi) for phi in phases) <= explained(made)
-    if not made.pair.studied:
-        return
     first, second = (halve(gear.profile) for gear in made.gears)
     if not (first.sound and second.sound):  # the study refuses them
         phases = end * np.arange(PHASES_PER_TOOTH) / PHASES_PER_TOOTH
         assert max(whole_overlap(made, phi) for phi in phases) <= explained(made)
         return
     turning = Turning(
-        rolling=made.pair.rolling, driver=first, driven=second, distance=made.pair.center_distance
+        rolling=made.pair.rolling, driver=first, driven=second, distance=made.pair.shift
     )
-    count = PHASES_PER_TOOTH * math.gcd(*made.pair.teeth)
-    angles = made.law.lobes.period * np.arange(count) / count
+    if made.pair.closed:
+        count = PHASES_PER_TOOTH * math.gcd(*made.pair.teeth)
+        angles = made.law.lobes.period * np.arange(count) / count
+    else:
+        count = PHASES_PER_TOOTH * made.pair.teeth[1]
+        angles = np.linspace(0.0, end, count)
     found = turning.overlaps(angles, 0.0)
     areas = np.bincount(found.step, found.area, minlength=count)
     assert areas.max() <= explained(made)

@@ -205,11 +205,10 @@ def _tolerance_faults(raw: Any, pair: Any) -> Iterator[Fault]:
 def _meshing_faults(raw: Any, pair: Any) -> Iterator[Fault]:
     if not isinstance(raw, Mapping):
         return
-    start, end = raw.get("from_deg", 0), raw.get("to_deg", 360)
+    start, end = raw.get("from_deg", 0), raw.get("to_deg")
     if _is_number(start) and _is_number(end) and not end > start:
-        key = "to_deg" if "to_deg" in raw else "from_deg"
-        message = f"{show(raw[key])}: the study ends at {show(end)} deg before it begins"
-        yield Fault(("meshing", key), message, raw[key], "to_deg above from_deg")
+        message = f"{show(end)}: the study ends at {show(end)} deg before it begins"
+        yield Fault(("meshing", "to_deg"), message, end, "to_deg above from_deg")
     if raw.get("advance_deg") == 0:
         message = "0: without an advance no flanks overlap, and nothing can be seen"
         yield Fault(("meshing", "advance_deg"), message, 0, "-1 to 1, but not 0; 0.005 is usual")

@@ -50,7 +50,7 @@ class FlankPairs:
     side : {-1, +1}
         sigma of the driver's flanks.
     distance : float, mm
-        Distance of the shafts as mounted; of a rack the designed one and what it stands off.
+        Distance of the shafts as mounted; of a rack how far it stands off its place.
     """
 
     toothings: tuple[Toothing, Toothing]
@@ -225,7 +225,7 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
     side : {-1, +1}
         `DRIVE` or `COAST`.
     distance : float, mm, optional
-        Distance of the shafts as mounted; as designed if left out.
+        Distance of the shafts as mounted (of a rack see `FlankPairs`); as designed if left out.
 
     Returns
     -------
@@ -236,5 +236,5 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
         toothings=(first.toothing, second.toothing),
         flanks=(first.profile.flanks, second.profile.flanks),
         side=side,
-        distance=first.pair.center_distance if distance is None else distance,
+        distance=first.pair.shift if distance is None else distance,
     )

@@ -33,7 +33,7 @@ def leads(pair: GearPair, spec: HelixSpec) -> tuple[float, ...]:
     InfeasibleError
         If open wheels are to be stepped.
     """
-    if spec.steps > 1 and not pair.studied:
+    if spec.steps > 1 and not pair.closed:
         raise InfeasibleError(
             "open wheels and racks cannot be stepped: their end teeth would leave the blank",
             where="helix.steps",

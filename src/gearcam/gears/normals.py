@@ -132,7 +132,7 @@ def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
     foot1, n1 = first.p * turned, first.t * (tilt * turned)
     nominal, ratio = law.phi2(phi1), law.derivatives(phi1, 0)[0]
     if law.feeds:
-        foot2 = second.p - 1j * (size * nominal + lead) + (pairs.distance - size)
+        foot2 = second.p - 1j * (size * nominal + lead) + pairs.distance
         tangent2, carried, turns = second.t, np.full(phi1.shape, -1j), 0.0
         ratio = size * ratio
     else:

@@ -67,11 +67,11 @@ class GearPair:
     @property
     def shift(self) -> float:
         """Place of wheel 2's frame in that of wheel 1 at phi1 = 0, mm along x."""
-        return 0.0 if self.law.feeds else self.center_distance
+        return self.rolling.shift
 
     @property
-    def studied(self) -> bool:
-        """Whether both wheels go all around, as meshing studies ask."""
+    def closed(self) -> bool:
+        """Whether both wheels go all around."""
         return all(toothing.closed for toothing in self.toothings)
 
     def chord_tolerance(self, asked: float | None) -> float:

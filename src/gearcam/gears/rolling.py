@@ -91,6 +91,11 @@ class Rolling:
         return self.unit_arc.last if lobes.closed else float(self.unit_arc(lobes.period))
 
     @property
+    def shift(self) -> float:
+        """Place of wheel 2's frame in that of wheel 1 at phi1 = 0, mm along x; 0 for a rack."""
+        return 0.0 if self.law.feeds else self.center_distance
+
+    @property
     def lobe_length(self) -> float:
         """Length of one lobe, mm; the same on both wheels."""
         return self.center_distance * self.unit_length

@@ -280,12 +280,6 @@ class GearPairJob(Job):
         from gearcam.meshing.study import study
 
         gears = self.steps[self.design.meshing.helix_step - 1]
-        if not self.pair.studied:
-            raise InfeasibleError(
-                "open pairs and racks cannot be studied step by step by this version",
-                where="law",
-                nearest="build and check cover them: contact ratios and undercut are there",
-            )
         with self._stage("meshing"):
             meshing = study(gears, self.design.meshing, progress)
         if not meshing.blocks:

@@ -72,14 +72,20 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
     deepest = -float(backlash[worst])
     where = f"no room between both sides, phi1 = {math.degrees(meshing.phi1[worst]):.6g} deg"
     for block in meshing.blocks:
-        found, count = block.overlaps, meshing.setup.turning.driver.count
+        found, turning = block.overlaps, meshing.setup.turning
         bad = np.where(trespasses(meshing.setup, found), found.depth, 0.0)
         if bad.size and bad.max() > deepest:
             k = int(bad.argmax())
             deepest = float(bad[k])
-            one, two = (found.half[0][k] + 1) // 2 % (count // 2) + 1, found.half[1][k] // 2 + 1
+            one, two = (
+                f"tooth {tooth}" if tooth is not np.ma.masked else "the body"
+                for tooth in (
+                    turning.driver.tooth(found.half[0])[k],
+                    turning.driven.tooth(found.half[1])[k],
+                )
+            )
             angle = math.degrees(block.phi1[found.step[k]])
-            where = f"deepest at phi1 = {angle:.6g} deg, tooth {one} in tooth {two}"
+            where = f"deepest at phi1 = {angle:.6g} deg, {one} in {two}"
     yield Finding(
         code="interference",
         severity="error",
@@ -114,12 +120,12 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
 )
 def contact_off_flank(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
     """Warn of facing halves that overlap although their flanks cannot."""
-    side, count = meshing.setup.side, meshing.setup.turning.driver.count
+    side, driver = meshing.setup.side, meshing.setup.turning.driver
     least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
     off = np.zeros(len(meshing.phi1), dtype=bool)
     for block in meshing.blocks:
         found, lens = block.overlaps, block.lenses
-        halves = (2 * lens.pair - (side < 0)) % count
+        halves = driver.index(2 * lens.pair - (side < 0)) + driver.first
         known = set(zip(lens.step.tolist(), halves.tolist(), strict=True))
         keys = zip(found.step.tolist(), found.half[0].tolist(), strict=True)
         strange = np.array([key not in known for key in keys], dtype=bool)
@@ -171,8 +177,8 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
     Returns
     -------
     one, two : (z1,) and (z2,) arrays, mm
-        Of each tooth of both wheels, at the phase at which its middle passes the pitch point;
-        0 where it lies inside its mate.
+        Of each whole tooth of both wheels, at the phase at which its middle passes the pitch
+        point; 0 where it lies inside its mate. A closed wheel on a rack: those that pass it.
     """
     turning, pairs = meshing.setup.turning, meshing.setup.pairs[DRIVE]
     result = []
@@ -180,10 +186,14 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
         (turning.driver, turning.driven, pairs.toothings[0]),
         (turning.driven, turning.driver, pairs.toothings[1]),
     ):
-        phi1 = turning.rolling.angle(toothing.tooth_places)
+        places = toothing.tooth_places[toothing.whole]
+        phi1 = turning.rolling.angle(places)
+        passed = phi1 <= pairs.way * (1.0 + 1e-9)
+        phi1 = phi1[passed]
         turn, shift = turning.pose(phi1, 0.0)
-        # the + half of a tooth begins in the middle of its tip
-        tips = own.points[own.starts[np.arange(toothing.wheel - 1, own.count, 2)]]
+        # the half of a tooth begins in the middle of its tip
+        numbers = np.array(toothing.numbers)[toothing.whole][passed]
+        tips = own.tips[np.searchsorted(own.teeth, numbers)]
         seen = tips * turn + shift if toothing.wheel == 1 else (tips - shift) / turn
         result.append(mate.distance(seen))
     return result[0], result[1]

@@ -1,14 +1,15 @@
 """The exact gap: how far the driven wheel can turn until flanks touch, edges included.
 
-Where flanks share a tangent, `gearcam.gears.contact` knows it without a search. This is for the
+Where flanks share a tangent, `gearcam.gears.normals` knows it without a search. This is for the
 phases in which none do, and for wheels whose teeth are not evenly spaced.
 
 With wheel 1 held at a phase, the points of a driver's flank and those of its mate are compared at
-equal distance rho from the driven axis: the angle between them is what the driven wheel may turn
-until these points meet. Its extreme over the common range of rho is the touch of the pair, where
-the flanks share a tangent or at the end of one of them (an edge). The driven wheel lies between
-the largest of these angles on the driving side and the smallest on the other: the first is its
-transmission error, the difference its play. Negative play means that the pair cannot be assembled.
+equal heights seen from what guides the driven wheel (see `gearcam.meshing.guide`): the angle
+between them is what it may turn until these points meet; of a rack, the way that it may move. The
+extreme over the common range of heights is the touch of the pair, where the flanks share a tangent
+or at the end of one of them (an edge). The driven wheel lies between the largest of these turns on
+the driving side and the smallest on the other: the first is its transmission error, the difference
+its play. Negative play means that the pair cannot be assembled.
 
 Flanks only: that an edge meets the mate's fillet is seen by the stepwise overlap.
 """
@@ -24,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearcam.gears.contact import FlankPairs, Ints
 from gearcam.gears.rolling import Plane, Rolling, Wheel
 from gearcam.meshing.contact import Contacts
+from gearcam.meshing.guide import Guide, guide_of
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -34,7 +36,7 @@ _SAMPLES = 13
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Facing:
-    """Pairs of flanks at phases, compared at equal distance from the driven axis.
+    """Pairs of flanks at phases, compared at equal heights.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ class Facing:
         return toothing.rolling.angle(self._places[wheel - 1] - sigma * reach)
 
     def flank(self, wheel: Wheel, angle: Array, *, moving: bool) -> tuple[Plane, Plane]:
-        """Return points seen from the driven axis and directions of a wheel's flanks.
+        """Return points seen from the driven wheel's guide and directions of a wheel's flanks.
 
         Parameters
         ----------
@@ -94,43 +96,46 @@ class Facing:
         direction = frames.t * (cosine * w - sine)
         if moving:
             direction = -(sine + ahead * frames.kappa) * frames.speed * direction
-        turned = self._turned[wheel - 1]
-        shift = self.pairs.distance if wheel == 1 else 0.0
-        return point * turned - shift, direction * turned
+        turn, shift = self._stands[wheel - 1]
+        return point * turn + shift, direction * turn
 
     @cached_property
     def _places(self) -> tuple[Array, Array]:
         return self.pairs.place(1, self.pair), self.pairs.place(2, self.pair)
 
     @cached_property
-    def _turned(self) -> tuple[Plane, Plane]:
-        law = self.pairs.toothings[0].rolling.law
-        return np.exp(-1j * self.phi1), np.exp(1j * law.phi2(self.phi1))
+    def guide(self) -> Guide:
+        """What guides the driven wheel."""
+        return guide_of(self.pairs.toothings[0].rolling)
 
-    def find(self, wheel: Wheel, radius: Array, low: Array, high: Array, start: Array) -> Array:
-        """Return the driver angles, rad, of flank points at distances from the driven axis.
+    @cached_property
+    def _stands(self) -> tuple[tuple[Plane, Plane | float], tuple[Plane, Plane]]:
+        driver = np.exp(-1j * self.phi1)
+        return (driver, -self.pairs.distance), self.guide.stand(self.phi1, 0.0)
+
+    def find(self, wheel: Wheel, height: Array, low: Array, high: Array, start: Array) -> Array:
+        """Return the driver angles, rad, of flank points of given heights.
 
         Parameters
         ----------
         wheel : {1, 2}
             Driver or driven wheel.
-        radius : (n,) array, mm
-            Distances from O2.
+        height : (n,) array, mm
+            Heights.
         low, high : (n,) arrays, rad
-            Angles of flank points that are nearer and farther than that.
+            Angles of flank points that are lower and higher.
         start : (n,) array, rad
             First guess.
 
         Returns
         -------
         (n,) array
-            The nearer end where a distance is not reached.
+            The nearer end where a height is not reached.
         """
 
         def miss(angle: Array) -> tuple[Array, Array]:
             point, direction = self.flank(wheel, angle, moving=True)
-            size = np.abs(point)
-            return size - radius, np.real(np.conj(point) * direction) / size
+            return self.guide.height(point) - height, self.guide.rates(point, direction)[0]
 
         start = np.clip(start, np.minimum(low, high), np.maximum(low, high))
         return newton_in_bracket(miss, low, high, start, 1e-14)
@@ -147,16 +152,15 @@ class Facing:
 
         Returns
         -------
-        turn, slope : (n,) arrays, rad
-            The driven wheel's turn until it meets the points, and its derivative by log(rho).
+        turn, slope : (n,) arrays, rad (of a rack mm) and their change by the height
+            The driven wheel's turn until it meets the points, and its derivative.
         """
         point, direction = self.flank(1, angle, moving=False)
-        mate = self.find(2, np.abs(point), root, tip, angle)
+        mate = self.find(2, self.guide.height(point), root, tip, angle)
         other, along = self.flank(2, mate, moving=False)
-        rise = direction / point
-        mates = along / other
-        slope = rise.imag / rise.real - mates.imag / mates.real
-        return np.angle(point * np.conj(other)), slope
+        rise, turn = self.guide.rates(point, direction)
+        mates, turned = self.guide.rates(other, along)
+        return self.guide.turn(point, other), turn / rise - turned / mates
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -167,7 +171,7 @@ class Touches:
     ----------
     facing : Facing
         The pairs.
-    turn : (n,) array, rad
+    turn : (n,) array, rad, of a rack mm
         The driven wheel's turn from its nominal place at which the pair touches: it must lie above
         on the driving side and below on the other.
     angle : (n,) array, rad
@@ -197,7 +201,7 @@ class Touches:
 
 
 def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
-    """Return the pairs that share a range of distance from the driven axis.
+    """Return the pairs that share a range of heights.
 
     Parameters
     ----------
@@ -218,10 +222,11 @@ def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
     candidates = pairs.near(rolling.arc_length(phi1))
     step, column = np.nonzero(pairs.real(candidates))
     every = Facing(pairs=pairs, step=step, pair=candidates[step, column], phi1=phi1[step])
+    height = every.guide.height
     ends = [every.end(1, tip=False), every.end(1, tip=True)]
     mates = [every.end(2, tip=True), every.end(2, tip=False)]
-    far, near = (np.abs(every.flank(1, angle, moving=False)[0]) for angle in ends)
-    highest, lowest = (np.abs(every.flank(2, angle, moving=False)[0]) for angle in mates)
+    far, near = (height(every.flank(1, angle, moving=False)[0]) for angle in ends)
+    highest, lowest = (height(every.flank(2, angle, moving=False)[0]) for angle in mates)
     apart = np.abs(every.pairs.place(1, every.pair) - rolling.arc_length(every.phi1))
     shared = (np.minimum(far, highest) > np.maximum(near, lowest)) & (apart < 2.0 * pairs.pitch)
     found = every.select(shared)
@@ -250,7 +255,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     # On the driving side the largest turn counts, on the other the smallest.
     turn, slope, angle = (v.reshape(-1, _SAMPLES) for v in (-pairs.side * turn, slope, angle))
     rows, best = np.arange(len(low)), turn.argmax(axis=1)
-    # rho falls from root to tip of the driver's flank: there the extreme lies where the slope,
+    # heights fall from root to tip of the driver's flank: there the extreme lies where the slope,
     # taken towards the tip, turns from rising to falling.
     falling = pairs.side * slope
     before, after = np.maximum(best - 1, 0), np.minimum(best + 1, _SAMPLES - 1)

@@ -2,15 +2,17 @@
 
 Each wheel is divided into *halves* of teeth, from the middle of a tip to the middle of a root and
 a little below; h counts them from tooth 1's +s half as 0, wheel 2 from the half that faces it.
-Half h of the driver faces half h of the driven wheel. The edge of a half is the part of it that
-belongs to the outline; for a first look it is thinned.
+Half h of the driver faces half h of the driven wheel. Closed wheels count on over their turns; an
+open one has the halves -1 to 2z, from one end of its blank to the other, and a *body* below them.
+The edge of a half is the part of it that belongs to the outline; for a first look it is thinned.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence, Sized
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,21 +20,16 @@ import shapely
 from numpy.typing import NDArray
 
 from gearcam.gears.contact import Ints
-from gearcam.gears.flank import Kind
+from gearcam.gears.flank import Kind, Toothing
 from gearcam.gears.outline import Outline
 from gearcam.gears.rolling import Plane
+from gearcam.meshing.edges import Edge, covered, joined, rising, thinned
 from gearcam.meshing.staircase import Edges
 
 Array = NDArray[np.float64]
 
 _BELOW = 0.5
 """Depth of the halves below the root, in dedendums: more than any overlap that is worth a name."""
-
-_THINNED = 24.0
-"""Deviation of thinned edges over the chord error: a quarter of the vertices."""
-
-_FORWARD = 0.7
-"""Cosine of the largest angle to its direction at which an edge goes on over its neighbours."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,17 +40,26 @@ class Halves:
     ----------
     points : complex array, mm
         Vertices of all halves in the wheel's frame, one half after another: each from the middle
-        of the tip to the middle of the root, below that, and below the tip.
-    starts : (2z + 1,) int array
+        of the tip to the middle of the root, below that, and below the tip. Of an open wheel those
+        of its body follow.
+    starts : (n + 1,) int array, of an open wheel (n + 2,)
         Where each half begins, and the end.
     chord_error : float, mm
         Largest distance of the curve from its chords.
     edges : Edges
         What the halves have of the outline.
-    tips : (2z,) complex array, mm
+    tips : (n,) complex array, mm
         Middle of the tip of each half's tooth.
-    width : (2z,) array, mm
+    width : (n,) array, mm
         Largest distance of its corners from there.
+    teeth : (n,) int array
+        Number of each half's tooth.
+    first : int
+        h of the first half: 0, of an open wheel -1.
+    pitch : float, mm
+        Pitch along the centrode: two halves.
+    closed : bool
+        Whether the halves go all around.
     """
 
     points: Plane
@@ -62,15 +68,32 @@ class Halves:
     edges: Edges
     tips: Plane
     width: Array
+    teeth: Ints
+    first: int
+    pitch: float
+    closed: bool
 
     @property
     def count(self) -> int:
-        """Number of halves, 2z."""
-        return len(self.starts) - 1
+        """Number of halves: 2z of a closed wheel, 2z + 2 of an open one."""
+        return len(self.tips)
+
+    def index(self, half: Ints) -> Ints:
+        """Return the places in arrays of halves h, however counted; -1 where there is none."""
+        if self.closed:
+            return half % self.count
+        index = half - self.first
+        return np.where((index >= 0) & (index < self.count), index, -1)
+
+    def tooth(self, half: Ints) -> Any:
+        """Return the numbers of the teeth of halves h, masked where it is the body, (n,)."""
+        index = half - self.first
+        body = index == self.count
+        return np.ma.masked_array(self.teeth[np.where(body, 0, index)], mask=body)
 
     @cached_property
     def polygons(self) -> Any:
-        """The halves as shapely polygons, prepared, (2z,)."""
+        """The halves as shapely polygons, prepared, (n,), then the body of an open wheel."""
         polygons = as_polygons(self.points, np.diff(self.starts))
         shapely.prepare(polygons)
         return polygons
@@ -88,12 +111,16 @@ class Halves:
     @cached_property
     def thinned(self) -> Edges:
         """The edges with fewer vertices."""
-        return _thin(self.edges, _THINNED * self.chord_error)
+        return thinned(self.edges, self.chord_error)
 
     @cached_property
-    def outmost(self) -> Array:
-        """Largest distance of each half from the axis, mm, (2z,)."""
-        return np.asarray(np.maximum.reduceat(np.abs(self.points), self.starts[:-1]))
+    def circles(self) -> tuple[Plane, Array]:
+        """Centres and radii of circles about the halves, (n,), mm."""
+        begin, sizes = self.starts[: self.count], np.diff(self.starts)[: self.count]
+        points = self.points[: self.starts[self.count]]
+        center: Plane = np.asarray(np.add.reduceat(points, begin) / sizes, dtype=complex)
+        apart = np.abs(points - np.repeat(center, sizes))
+        return center, np.asarray(np.maximum.reduceat(apart, begin))
 
     def gather(self, halves: Ints) -> tuple[Ints, Ints]:
         """Return the indices into `points` of some `halves`, and which of these each belongs to."""
@@ -114,193 +141,169 @@ def halve(outline: Outline) -> Halves:
     Returns
     -------
     Halves
-        In the order of rising s from the middle of tooth 1 (wheel 1) or from the middle of the
-        space before tooth 1 (wheel 2).
+        In the order of rising s: from the middle of tooth 1 (wheel 1) or from the middle of the
+        space before tooth 1 (wheel 2), of an open wheel from its end.
     """
     toothing = outline.toothing
-    points, chains = _chains(outline)
-    depth = -(1.0 + _BELOW) * toothing.cutter.dedendum
-    places = toothing.tooth_places
-    deep = _below(outline, toothing.rolling.angle(places), depth)
-    low = _below(outline, toothing.rolling.angle(places + 0.5 * toothing.pitch), depth)
+    points, lands = _lands(outline)
+    inner = _inner(outline, len(lands))
     halves: list[Plane] = []
-    edges: list[_Edge] = []
+    edges: list[Edge] = []
     tips: list[tuple[complex, float]] = []
-    for k, chain in enumerate(chains):
-        tooth, side = divmod(k, 2)
-        own, under = points[chain[1]], deep[(tooth + side) % toothing.teeth]
-        halves.append(np.concatenate([own, [low[tooth], under]]))
-        edges.append(_edge(toothing.wheel, [points[part] for part in chain], under, low[tooth]))
+    for k, pair in enumerate(pairwise(lands)):
+        # on from a tip or back from it
+        step = 1 if pair[0].tip else -1
+        tip, root = pair[::step]
+        chain = _chain(tip, root, step, len(outline.sampler.chords[1]))
+        own, (under, low) = points[chain[1]], inner[k : k + 2][::step]
+        halves.append(np.concatenate([own, [low, under]]))
+        edges.append(rising(toothing.wheel, [points[part] for part in chain], under, low))
         tips.append((own[0], np.abs(points[chain[0]] - own[0]).max(initial=0.0)))
-    if toothing.wheel == 2:
+    if toothing.closed and toothing.wheel == 2:
         halves, tips = halves[-1:] + halves[:-1], tips[-1:] + tips[:-1]
         edges = edges[-1:] + edges[:-1]
-        edges = [_covered(k, edges) for k in range(len(edges))]
+    if toothing.wheel == 2:
+        edges = [covered(k, edges, toothing.closed) for k in range(len(edges))]
+    bodies = [] if toothing.closed else [_body(outline, inner)]
     return Halves(
-        points=np.concatenate(halves),
-        starts=_starts(halves),
+        points=np.concatenate(halves + bodies),
+        starts=_starts(halves + bodies),
         chord_error=outline.sampler.chords[2],
-        edges=_join(edges),
+        edges=joined(edges),
         tips=np.array([tip for tip, _ in tips]),
         width=np.array([width for _, width in tips]),
+        teeth=_teeth(toothing),
+        first=0 if toothing.closed else -1,
+        pitch=toothing.pitch,
+        closed=toothing.closed,
     )
+
+
+def _teeth(toothing: Toothing) -> Ints:
+    """Return the number of each half's tooth."""
+    teeth = np.repeat(np.array(toothing.numbers), 2)
+    if toothing.closed:
+        return np.roll(teeth, -1) if toothing.wheel == 1 else teeth
+    # wheel 1's first and last tooth formed lie outside its blank, wheel 2's half in it
+    beyond = 3 - toothing.wheel
+    return teeth[beyond:-beyond]
 
 
 def _starts(parts: Sequence[Sized]) -> Ints:
     return np.concatenate([[0], np.cumsum([len(part) for part in parts])])
 
 
-class _Middles:
-    """The middles of lands between the vertices `begin` and `end`, themselves vertices or between.
+class _Land(NamedTuple):
+    """A land between the vertices `begin` and `end`, and the number of its middle.
 
-    A middle between two vertices has a number of its own, from `extra` on.
+    The middle is a vertex itself, or it lies between `low` and `high` and has a number of its own.
     """
 
-    def __init__(self, begin: Ints, end: Ints, size: int, extra: int) -> None:
-        self.low, self.high = (begin + end) // 2, (begin + end + 1) // 2
-        self.at = np.where(self.low == self.high, self.low % size, extra + np.arange(len(begin)))
+    tip: bool
+    begin: int
+    end: int
+    middle: int
+
+    @property
+    def low(self) -> int:
+        return (self.begin + self.end) // 2
+
+    @property
+    def high(self) -> int:
+        return (self.begin + self.end + 1) // 2
 
 
-def _chains(outline: Outline) -> tuple[Plane, list[tuple[Ints, Ints, Ints]]]:
-    """Vertices of each half from tip to root: its own, between those of its neighbours' lands.
+def _lands(outline: Outline) -> tuple[Plane, list[_Land]]:
+    """Vertices of the outline, then those middles of lands that are none; the lands in order.
 
-    Half 0 is the front of the first tooth, half 1 the back of the second, which ends in the same
-    root, and so on. Returns the outline's vertices and the middles after them.
+    From the first tooth's tip to the same one again; of an open wheel from end to end. Vertices
+    are counted on where the outline closes.
     """
     points = outline.sampler.chords[1]
-    size, z = len(points), outline.toothing.teeth
+    size = len(points)
     (front, front_end), (back, back_end) = _flanks(outline)
-    following = np.append(front[1:], size)
-    tips, roots = (
-        _Middles(back_end, following, size, size),
-        _Middles(front_end, back, size, size + z),
-    )
-    chains: list[tuple[Ints, Ints, Ints]] = []
-    for k in range(z):
-        last = size if k == 0 else 0
-        tip, root, after = (
-            tips.at[[k - 1, k]],
-            roots.at[k],
-            np.arange(roots.low[k] + 1, back[k] + 1),
+    roots = np.stack([front_end, back], axis=1)
+    tips = np.stack([back_end[:-1], front[1:]], axis=1)
+    if outline.toothing.closed:
+        tips = np.concatenate([[[back_end[-1] - size, 0]], tips, [[back_end[-1], size]]])
+    elif outline.toothing.wheel == 1:
+        roots[0], roots[-1] = 0, size - 1
+    else:
+        tips = np.concatenate([[[0, 0]], tips, [[size - 1, size - 1]]])
+    first, second = (tips, roots) if len(tips) > len(roots) else (roots, tips)
+    ends = np.empty((len(tips) + len(roots), 2), dtype=np.int64)
+    ends[::2], ends[1::2] = first, second
+    low, high = ends.sum(axis=1) // 2, (ends.sum(axis=1) + 1) // 2
+    middles = 0.5 * (points[low % size] + points[high % size])
+    lands = [
+        _Land((k % 2 == 0) == (first is tips), begin, end, size + k if a < b else a % size)
+        for k, (begin, end, a, b) in enumerate(
+            zip(*ends.T.tolist(), low.tolist(), high.tolist(), strict=True)
         )
-        own = np.arange(tips.low[k - 1] + 1 - last, roots.high[k]) % size
-        before = np.arange(back_end[k - 1] - last, tips.high[k - 1] - last)
-        chains.append((before % size, np.concatenate([tip[:1], own, [root]]), after))
-        own = np.arange(tips.high[k] - 1, roots.low[k], -1)
-        after = np.arange(roots.high[k] - 1, front_end[k] - 1, -1)
-        before = np.arange(following[k], tips.low[k], -1)
-        chains.append((before % size, np.concatenate([tip[1:], own, [root]]), after))
-    middles = [0.5 * (points[land.low % size] + points[land.high % size]) for land in (tips, roots)]
-    return np.concatenate([points, *middles]), chains
+    ]
+    return np.concatenate([points, middles]), lands
+
+
+def _chain(tip: _Land, root: _Land, step: int, size: int) -> tuple[Ints, Ints, Ints]:
+    """Vertices of a half from tip to root, `step` by step: its own, between those of the lands."""
+    if step > 0:
+        before = np.arange(tip.begin, tip.high)
+        own = np.arange(tip.low + 1, root.high)
+        after = np.arange(root.low + 1, root.end + 1)
+    else:
+        before = np.arange(tip.end, tip.low, -1)
+        own = np.arange(tip.high - 1, root.low, -1)
+        after = np.arange(root.high - 1, root.begin - 1, -1)
+    return before % size, np.concatenate([[tip.middle], own % size, [root.middle]]), after % size
 
 
 def _flanks(outline: Outline) -> Ints:
-    """Vertices at which the front of each space begins and ends, and the back, (2, 2, z).
+    """Vertices at which the front of each space begins and ends, and the back, (2, 2, spaces).
 
-    A space begins with the + flank of its tooth and ends with the - flank of the next one.
+    A space begins with the + flank of its tooth and ends with the - flank of the next one. At the
+    ends of an open driver there is half a space.
     """
-    rows, z = outline.rows, outline.toothing.teeth
-    row = outline.sampler.curve_of(outline.sampler.chords[0][:-1])
+    rows, toothing = outline.rows, outline.toothing
+    vertices = outline.sampler.chords[0]
+    row = outline.sampler.curve_of(vertices[:-1] if toothing.closed else vertices)
     flank = np.flatnonzero(rows.kind == Kind.FLANK)
-    space = np.where(rows.sigma[flank] > 0.0, rows.tooth[flank], rows.tooth[flank] - 1) % z
-    ends = np.zeros((2, 2, z), dtype=np.int64)
-    for side, mine in enumerate((rows.sigma[flank] > 0.0, rows.sigma[flank] < 0.0)):
-        first, last = np.full(z, len(rows.kind)), np.full(z, -1)
+    plus = rows.sigma[flank] > 0.0
+    count = len(toothing.numbers) - (0 if toothing.closed else 1)
+    space = (rows.tooth[flank] - toothing.numbers[0] - np.where(plus, 0, 1)) % count
+    ends = np.zeros((2, 2, count), dtype=np.int64)
+    for side, mine in enumerate((plus, ~plus)):
+        first, last = np.full(count, len(rows.kind)), np.full(count, -1)
         np.minimum.at(first, space[mine], flank[mine])
         np.maximum.at(last, space[mine], flank[mine])
         ends[side] = np.searchsorted(row, first), np.searchsorted(row, last + 1)
-    # space 1 follows tooth 1 and comes first; space z, counted as 0, comes last
-    return np.roll(ends, -1, axis=2)
+    return ends
 
 
-def _below(outline: Outline, angle: Array, height: float) -> Plane:
-    frames = outline.toothing.frames(angle, curved=False)
-    return frames.p + height * outline.toothing.turn * frames.t
+def _inner(outline: Outline, count: int) -> Plane:
+    """Points below the middles of lands; at the ends of an open wheel the corners of its body."""
+    toothing = outline.toothing
+    start = toothing.tooth_places[0] if toothing.closed else toothing.ends[0]
+    angle = toothing.rolling.angle(start + 0.5 * toothing.pitch * np.arange(count))
+    frames = toothing.frames(angle, curved=False)
+    height = -(1.0 + _BELOW) * toothing.cutter.dedendum
+    inner = frames.p + height * toothing.turn * frames.t
+    if toothing.closed:
+        inner[-1] = inner[0]
+    else:
+        inner[[-1, 0]] = _counted(outline)[[0, -1]]
+    return inner
 
 
-_COVER = np.radians(22.5)
-"""Angle of the cover to the direction of an edge: between level and the line of the tips."""
-
-_COVERED = 3
-"""Number of neighbours that the cover reaches over."""
-
-
-class _Edge(NamedTuple):
-    """The edge of a half, as it rises, see `Edges`."""
-
-    points: Plane
-    ends: tuple[complex, complex]
-    along: complex
-    hand: float
+def _counted(outline: Outline) -> Plane:
+    """Vertices of what joins the ends of an open wheel, in the order of rising s."""
+    x, y = outline.points[len(outline.toothed) :].T
+    points: Plane = x + 1j * y
+    return points if outline.toothing.wheel == 1 else points[::-1]
 
 
-def _edge(wheel: int, chain: list[Plane], under: complex, low: complex) -> _Edge:
-    """Return the edge of a half from what is before it, its own and what is after it."""
-    before, own, after = chain
-    down = (under - own[0]) / abs(under - own[0])
-    hand = 1.0 if ((low - under) / down).imag > 0.0 else -1.0
-    along = down * (1.0 + 1j * hand) / np.sqrt(2.0)
-    if wheel == 1:
-        # the driver's is seen from its mate: it rises from the root
-        more = _forward(np.append(own[0], before[::-1]), -along)[1:]
-        return _Edge(np.concatenate([own[::-1], more]), (own[-1], own[0]), -along, hand)
-    ends = own[0], own[-1]
-    more = _forward(np.append(own[-1], after), along)[1:]
-    less = _forward(np.append(own[0], before[::-1]), -along)[:0:-1]
-    return _Edge(np.concatenate([less, own, more]), ends, along, hand)
-
-
-def _forward(points: Plane, along: complex) -> Plane:
-    """Return the first points as long as they go forward."""
-    step = np.diff(points) / along
-    back = np.flatnonzero(step.real < _FORWARD * np.abs(step))
-    return points[: back[0] + 1] if back.size else points
-
-
-def _covered(half: int, edges: list[_Edge]) -> _Edge:
-    """Lead the edge of a driven half on, from the far corner of its tip over its neighbours' tips.
-
-    All of them stay below the line, or the edge is left as it is.
-    """
-    edge = edges[half]
-    corner = edge.points[0]
-    line = edge.along * np.exp(1j * edge.hand * _COVER)
-    way = 1 if edges[half - 1].ends[0] == edge.ends[0] else -1
-    others = [edges[(half - way * k) % len(edges)].points for k in range(1, 2 * _COVERED + 1)]
-    seen = (np.concatenate(others) - corner) / line
-    if np.any(edge.hand * seen.imag[seen.real < 0.0] > 0.0):
-        return edge
-    far = corner - abs(others[-1][0] - corner) * line
-    return edge._replace(points=np.append(far, edge.points))
-
-
-def _join(edges: list[_Edge]) -> Edges:
-    points = np.concatenate([edge.points for edge in edges])
-    return Edges(
-        points=points,
-        starts=_starts([edge.points for edge in edges]),
-        whole=np.arange(len(points)),
-        ends=np.array([edge.ends for edge in edges]).T,
-        along=np.array([edge.along for edge in edges]),
-        hand=np.array([edge.hand for edge in edges]),
-    )
-
-
-def _thin(edges: Edges, deviation: float) -> Edges:
-    """Leave out vertices as long as no edge moves by more than a deviation."""
-    owner = np.repeat(np.arange(len(edges.along)), np.diff(edges.starts))
-    # the third coordinate says which vertices are left
-    vertices = np.stack([edges.points.real, edges.points.imag, np.arange(len(owner))], axis=1)
-    lines = shapely.linestrings(vertices, indices=owner)
-    fewer = shapely.simplify(lines, deviation, preserve_topology=False)
-    left = shapely.get_coordinates(fewer, include_z=True)[:, 2].astype(np.int64)
-    return replace(
-        edges,
-        points=edges.points[left],
-        starts=np.searchsorted(left, edges.starts),
-        whole=left,
-        deviation=deviation,
-    )
+def _body(outline: Outline, inner: Plane) -> Plane:
+    """Vertices of what is below the halves of an open wheel."""
+    return np.concatenate([inner, _counted(outline)[1:-1]])
 
 
 def as_polygons(points: Plane, sizes: Ints) -> Any:

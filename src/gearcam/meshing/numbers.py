@@ -42,7 +42,6 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
         "complete": meshing.complete,
         "steps": meshing.asked,
         "steps_done": len(meshing.phi1),
-        "center_distance_mm": turning.distance,
         "advance_deg": float(np.degrees(setup.spec.advance)),
         "penetration_mm": setup.penetration,
         "chord_error_mm": max(turning.driver.chord_error, turning.driven.chord_error),
@@ -52,6 +51,8 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
             for a, b, n in zip(np.degrees(start), np.degrees(end), carrying, strict=True)
         ],
     }
+    if not turning.rolling.law.feeds:
+        result["center_distance_mm"] = turning.distance
     if not meshing.blocks:
         return result
     stepwise = pairs_in_contact(meshing)
@@ -242,10 +243,10 @@ def agreement(meshing: Meshing, stepwise: NDArray[np.int64]) -> dict[str, Any]:
 
 def _areas(meshing: Meshing, block: Any) -> list[tuple[list[tuple[int, int]], Array]]:
     """Areas of the facing pairs by (step, half): found, predicted, in closed form."""
-    side, count = meshing.setup.side, meshing.setup.turning.driver.count
+    side, driver = meshing.setup.side, meshing.setup.turning.driver
     found, lens = block.overlaps, block.lenses
     good = on_side(found, side)
-    halves = ((2 * lens.pair - (side < 0)) % count).tolist()
+    halves = (driver.index(2 * lens.pair - (side < 0)) + driver.first).tolist()
     keys = list(zip(lens.step.tolist(), halves, strict=True))
     seen = list(zip(found.step[good].tolist(), found.half[0][good].tolist(), strict=True))
     return [(seen, found.area[good]), (keys, lens.area), (keys, lens.closed)]

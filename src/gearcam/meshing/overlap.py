@@ -5,14 +5,15 @@ looks at nothing but outlines. The wheels are taken in `halves` of teeth, the dr
 the driven wheel's frame. Half h of the driver faces half h of the driven wheel, and can reach the
 two beside it: so all overlap of the wheels is looked at, and each piece of it belongs to a pair of
 halves. Facing halves are overlapped as graphs (`staircase`); a phase in which a half may touch
-another than its mate, or stands across it, is cut as polygons.
+another than its mate, or stands across it, is cut as polygons. So is what an open wheel or a rack
+may run into far from the pitch point: its other end, or the body below its teeth.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import shapely
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 
 from gearcam.gears.contact import Ints
 from gearcam.gears.rolling import Plane, Rolling
+from gearcam.meshing.guide import Guide, guide_of
 from gearcam.meshing.halves import Halves, as_polygons
 from gearcam.meshing.staircase import Facing, overlap
 
@@ -31,6 +33,10 @@ _GROUP = 16
 _BESIDE = 4
 """Halves on both sides of the facing one whose tips are taken for the driven wheel's reach."""
 
+_FACING = 2.0
+"""Distance of the tips of facing halves, in pitches, up to which their graphs are compared; of open
+wheels other halves may face theirs from afar."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Overlaps:
@@ -41,7 +47,8 @@ class Overlaps:
     step : (n,) int array
         Index of the phase.
     half : (2, n) int array
-        Halves of driver and driven wheel that overlap, counted within the first turn.
+        Halves h of driver and driven wheel that overlap, counted within the first turn; the number
+        after the last one is the body of an open wheel.
     facing : (n,) bool array
         Whether these halves face each other, so that their flanks are a pair.
     area : (n,) array, mm^2
@@ -76,7 +83,7 @@ class Turning:
     driver, driven : Halves
         The wheels.
     distance : float, mm
-        Distance of the shafts as mounted.
+        Distance of the shafts as mounted; of a rack, how far it is moved away from its place.
     moved : float, mm
         How far the teeth are moved on along the centrodes: a step of stepped wheels.
     """
@@ -88,6 +95,11 @@ class Turning:
     moved: float = 0.0
 
     @cached_property
+    def guide(self) -> Guide:
+        """What guides the driven wheel."""
+        return guide_of(self.rolling)
+
+    @cached_property
     def _tree(self) -> Any:
         return shapely.STRtree(self.driven.polygons)
 
@@ -95,7 +107,7 @@ class Turning:
     def _land(self) -> Array:
         """Largest distance of a tip's corners from its middle, for each half of the driver."""
         width, half = self.driver.width, np.arange(self.driver.count)
-        other = (half + np.where(half % 2 == 0, -1, 1)) % len(half)
+        other = (half + np.where((half + self.driver.first) % 2 == 0, -1, 1)) % len(half)
         return np.maximum(width, width[other])
 
     @cached_property
@@ -109,11 +121,13 @@ class Turning:
 
     @cached_property
     def _reach(self) -> Array:
-        """Largest radius of the driven wheel near the half that faces each of the driver's."""
-        near = np.arange(-_BESIDE, _BESIDE + 1)
-        return self.driven.outmost[
-            (np.arange(self.driven.count)[:, None] + near) % self.driven.count
-        ].max(axis=1)
+        """Largest height of the driven wheel near the half that faces each of the driver's."""
+        driven, count = self.driven, self.driven.count
+        begin = driven.starts[:count]
+        heights = self.guide.height(driven.points[: driven.starts[count]])
+        near = np.arange(count)[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
+        near = near % count if driven.closed else np.clip(near, 0, count - 1)
+        return np.maximum.reduceat(heights, begin)[near].max(axis=1)
 
     def pose(self, phi1: Array, advance: float, lead: Array | float = 0.0) -> tuple[Plane, Plane]:
         """Return the turn and shift that take the driver's points into the driven wheel's frame.
@@ -124,44 +138,57 @@ class Turning:
             Phases.
         advance : float, rad
             How far the driver is ahead of them.
-        lead : (n,) array or float, rad
+        lead : (n,) array or float, rad, of a rack mm
             How far the driven wheel is.
 
         Returns
         -------
         turn, shift : (n,) complex arrays, 1 and mm
         """
-        back = np.exp(-1j * (self.rolling.law.phi2(phi1) + lead))
-        return np.exp(-1j * (phi1 + advance)) * back, back * complex(-self.distance)
+        turn, shift = self.guide.stand(phi1, lead)
+        back = np.conj(turn)
+        return np.exp(-1j * (phi1 + advance)) * back, back * (-self.distance - shift)
 
     def overlaps(self, phi1: Array, advance: float, lead: Array | float = 0.0) -> Overlaps:
         """Return all pieces of overlap at phases (see `pose`)."""
         turn, shift = self.pose(phi1, advance, lead)
-        step, half, mate, reach = self._near(phi1, turn, shift)
-        facing = Facing(one=half, two=mate, turn=turn[step], shift=shift[step], reach=reach)
+        step, facing = self._near(phi1, turn, shift)
         driver, driven = self.driver, self.driven
         steps = overlap((driver.edges, driver.thinned), (driven.edges, driven.thinned), facing)
         left = np.zeros(len(phi1), dtype=bool)
         left[step[steps.beyond]] = True
+        parts: list[Overlaps] = []
+        if not driven.closed:
+            across, strays = self._astray(turn, shift, step, facing)
+            left[across] = True
+            parts.append(self._cut(*strays))
+        if left.any():
+            rest = np.flatnonzero(left[step])
+            parts.append(self._cut(step[rest], facing.take(rest)))
         some = np.flatnonzero((steps.area > 0.0) & ~left[step])
         graphs = Overlaps(
             step=step[some],
-            half=np.stack([half[some], mate[some]]),
+            half=self._named(facing.one[some], facing.two[some]),
             facing=np.ones(len(some), dtype=bool),
             area=steps.area[some],
             length=steps.length[some],
             radius=steps.radius[:, some],
         )
-        if not left.any():
-            return graphs
-        rest = np.flatnonzero(left[step])
-        return _together(graphs, self._cut(step[rest], facing.take(rest)))
+        return _together([graphs, *parts]) if parts else graphs
+
+    def _named(self, one: Ints, two: Ints) -> Ints:
+        """Numbers h of halves by their places in arrays."""
+        return np.stack([one + self.driver.first, two + self.driven.first])
 
     def _cut(self, step: Ints, facing: Facing) -> Overlaps:
         """Overlap halves with all others, as polygons."""
         index, owner = self.driver.gather(facing.one)
         points = self.driver.points[index] * facing.turn[owner] + facing.shift[owner]
-        polygons = as_polygons(*_within(points, np.bincount(owner), facing.reach[owner]))
+        sizes = np.bincount(owner)
+        # what lies beside the end of an open wheel may reach any root
+        if self.driven.closed:
+            points, sizes = _within(points, sizes, self.guide.height(points) <= facing.reach[owner])
+        polygons = as_polygons(points, sizes)
         one, two = self._tree.query(polygons)
         mates = self.driven.polygons[two]
         # the prepared ones first: twice as fast as the tree's own test
@@ -177,7 +204,7 @@ class Turning:
         radius = [f.reduceat(seen, starts) if len(of) else seen for f in (np.minimum, np.maximum)]
         return Overlaps(
             step=step[one],
-            half=np.stack([facing.one[one], two]),
+            half=self._named(facing.one[one], two),
             facing=facing.two[one] == two,
             area=area[some],
             length=np.hypot(bounds[:, 2] - bounds[:, 0], bounds[:, 3] - bounds[:, 1]),
@@ -192,26 +219,25 @@ class Turning:
         phi1 : (n,) array, rad
             Phases.
         one, two : (n,) int arrays
-            Halves of driver and driven wheel, counted within the first turns.
+            Halves h of driver and driven wheel, counted within the first turns.
 
         Returns
         -------
         (n,) bool array
         """
-        return (self._unroll(self._halves_past(phi1), one) - two) % self.driven.count == 0
+        mate = self.driven.index(self._unroll(self._halves_past(phi1), one))
+        return (mate >= 0) & (mate + self.driven.first == two)
 
     def _halves_past(self, phi1: Array) -> Array:
         """How many halves have passed the pitch point."""
-        return 2.0 * (self.rolling.arc_length(phi1) - self.moved) / self._pitch
+        return 2.0 * (self.rolling.arc_length(phi1) - self.moved) / self.driver.pitch
 
     def _unroll(self, at: Array, half: Ints) -> Ints:
         """Count halves of the driver, known within the first turn, over all turns."""
+        if not self.driver.closed:
+            return half
         turns = np.rint((at - 0.5 - half) / self.driver.count).astype(np.int64)
         return half + turns * self.driver.count
-
-    @property
-    def _pitch(self) -> float:
-        return self.rolling.length(1) / (self.driver.count // 2)
 
     def gaps(self, side: int, phi1: Array, advance: float, lead: Array | float = 0.0) -> Array:
         """Return the least distance of facing halves of a side at phases.
@@ -226,43 +252,102 @@ class Turning:
         Returns
         -------
         (n,) array, mm
-            0 where they overlap.
+            0 where they overlap; infinite where none face each other.
         """
         turn, shift = self.pose(phi1, advance, lead)
-        pair = np.rint(self.rolling.arc_length(phi1) / self._pitch - 0.25 * side).astype(np.int64)
+        s, pitch = self.rolling.arc_length(phi1), self.driver.pitch
+        pair = np.rint(s / pitch - 0.25 * side).astype(np.int64)
         least = np.full(len(phi1), np.inf)
         for j in (pair - 1, pair, pair + 1):
             half = 2 * j - (side < 0)
-            index, owner = self.driver.gather(half % self.driver.count)
-            points = self.driver.points[index] * turn[owner] + shift[owner]
+            one, two = self.driver.index(half), self.driven.index(half)
+            there = np.flatnonzero((one >= 0) & (two >= 0))
+            index, owner = self.driver.gather(one[there])
+            points = self.driver.points[index] * turn[there][owner] + shift[there][owner]
             polygons = as_polygons(points, np.bincount(owner))
-            mates = self.driven.polygons[half % self.driven.count]
-            distance = shapely.distance(polygons, mates)
-            least = np.minimum(least, distance)
+            distance = shapely.distance(polygons, self.driven.polygons[two[there]])
+            least[there] = np.minimum(least[there], distance)
         return least
 
-    def _near(self, phi1: Array, turn: Plane, shift: Plane) -> tuple[Ints, Ints, Ints, Array]:
-        """Phases, driver's halves within the driven wheel's tips, their mates and its radius."""
+    def _near(self, phi1: Array, turn: Plane, shift: Plane) -> tuple[Ints, Facing]:
+        """Phases, and the driver's halves within the driven wheel's tips with their mates."""
         center, radius = self._groups
-        far = np.abs(center * turn[:, None] + shift[:, None])
-        step, group = np.nonzero(far <= radius + self.driven.outmost.max())
+        far = self.guide.height(center * turn[:, None] + shift[:, None])
+        step, group = np.nonzero(far <= radius + self._reach.max())
         step = np.repeat(step, _GROUP)
         half = (group[:, None] * _GROUP + np.arange(_GROUP)).ravel()
         real = half < self.driver.count
         step, half = step[real], half[real]
-        facing = self._unroll(self._halves_past(phi1)[step], half) % self.driven.count
-        distance = np.abs(self.driver.tips[half] * turn[step] + shift[step])
-        near = distance <= self._reach[facing] + self._land[half]
-        step, half, facing = step[near], half[near], facing[near]
-        return step, half, facing, self._reach[facing]
+        past = self._halves_past(phi1)[step]
+        mate = self.driven.index(self._unroll(past, half + self.driver.first))
+        tips = self.driver.tips[half] * turn[step] + shift[step]
+        near = self.guide.height(tips) <= self._reach[mate] + self._land[half]
+        if not self.driven.closed:
+            beside = np.abs(tips - self.driven.tips[mate]) <= _FACING * self.driven.pitch
+            near &= (mate >= 0) & beside
+        step, half, mate = step[near], half[near], mate[near]
+        return step, Facing(
+            one=half,
+            two=mate,
+            turn=turn[step],
+            shift=shift[step],
+            guide=self.guide,
+            reach=self._reach[mate],
+        )
+
+    def _astray(
+        self, turn: Plane, shift: Plane, step: Ints, facing: Facing
+    ) -> tuple[Ints, tuple[Ints, Facing]]:
+        """Find what of the driver comes near an open wheel or a rack away from its mates.
+
+        Returns the phases in which a half that faces its mate does, and phases and what else
+        does, without mates; the driver's body is the last of its halves.
+        """
+        driver, driven = self.driver, self.driven
+        mates = np.full((len(turn), driver.count), -1)
+        mates[step, facing.one] = facing.two
+        center, radius = driver.circles
+        seen = center * turn[:, None] + shift[:, None]
+        seen, reach = seen.ravel(), np.tile(radius, len(turn))
+        points = shapely.points(seen.real, seen.imag)
+        place, other = self._tree.query(points, predicate="dwithin", distance=reach)
+        mate = mates.ravel()[place]
+        across = (mate >= 0) & ((np.abs(other - mate) > _BESIDE) | (other == driven.count))
+        stray = np.unique(place[mate < 0])
+        step, half = stray // driver.count, stray % driver.count
+        if not driver.closed:
+            bodies = self._touched_bodies(turn, shift)
+            step = np.append(step, bodies)
+            half = np.append(half, np.full(len(bodies), driver.count))
+        return place[across] // driver.count, (
+            step,
+            Facing(
+                one=half,
+                two=np.full(len(half), -1),
+                turn=turn[step],
+                shift=shift[step],
+                guide=self.guide,
+                reach=np.full(len(half), np.inf),
+            ),
+        )
+
+    def _touched_bodies(self, turn: Plane, shift: Plane) -> Ints:
+        """Phases at which the driver's body may touch the driven wheel."""
+        body, last = self.driver.polygons[-1], self.driver.starts[-2:]
+        center, radius = self.driven.circles
+        seen = (center - shift[:, None]) * np.conj(turn)[:, None]
+        centers: Any = shapely.points(seen.real, seen.imag)
+        near = shapely.dwithin(body, centers, cast("Any", radius)).any(axis=1)
+        points = self.driver.points[last[0] : last[1]] * turn[:, None] + shift[:, None]
+        bodies = as_polygons(points.ravel(), np.full(len(turn), points.shape[1]))
+        return np.flatnonzero(near | shapely.intersects(self.driven.polygons[-1], bodies))
 
 
-def _within(points: Plane, sizes: Ints, reach: Array) -> tuple[Plane, Ints]:
-    """Leave out what the mate cannot reach: roots beyond the first vertex outside.
+def _within(points: Plane, sizes: Ints, inside: NDArray[np.bool_]) -> tuple[Plane, Ints]:
+    """Leave out what the mate cannot reach: roots beyond the first vertex that is not `inside`.
 
     The tip and the point below it always stay: what is left is the rest of the same half.
     """
-    inside = points.real**2 + points.imag**2 <= reach * reach
     keep = inside.copy()
     keep[1:] |= inside[:-1]
     keep[:-1] |= inside[1:]
@@ -273,11 +358,11 @@ def _within(points: Plane, sizes: Ints, reach: Array) -> tuple[Plane, Ints]:
     return points[keep], np.add.reduceat(keep.astype(np.int64), ends - sizes)
 
 
-def _together(one: Overlaps, two: Overlaps) -> Overlaps:
-    """Return the pieces of both in the order of their steps."""
-    order = np.argsort(np.concatenate([one.step, two.step]), kind="stable")
+def _together(parts: list[Overlaps]) -> Overlaps:
+    """Return the pieces of all parts in the order of their steps."""
+    order = np.argsort(np.concatenate([part.step for part in parts]), kind="stable")
     every = {
-        field.name: np.concatenate([getattr(one, field.name), getattr(two, field.name)], axis=-1)
+        field.name: np.concatenate([getattr(part, field.name) for part in parts], axis=-1)
         for field in fields(Overlaps)
     }
     return Overlaps(**{name: values[..., order] for name, values in every.items()})

@@ -129,11 +129,10 @@ def columns_of(blocks: list[Block], turning: Turning) -> dict[str, Array]:
 
 def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     found, exact, lens = block.overlaps, block.contacts, block.lenses
-    halves = (turning.driver.count, turning.driven.count)
     keys = [
         (found.step, *found.half),
-        (exact.step, *_halves(exact.pair, block.side, halves)),
-        (lens.step, *_halves(lens.pair, block.side, halves)),
+        (exact.step, *_halves(exact.pair, block.side, turning)),
+        (lens.step, *_halves(lens.pair, block.side, turning)),
     ]
     every, where = np.unique(
         np.hstack([np.stack(key) for key in keys]), axis=1, return_inverse=True
@@ -151,13 +150,13 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     area[rows[0]] = found.area
     carries = np.zeros(size)
     carries[rows[1]] = 1.0
-    axis = turning.distance
+    axis, unit = turning.distance, "mm" if turning.rolling.law.feeds else "rad"
     return {
         "step": (block.first + step).astype(float),
         "phi1_deg": np.degrees(block.phi1[step]),
         "phi2_deg": np.degrees(block.phi2[step]),
-        "tooth1": ((one + 1) // 2 % (halves[0] // 2) + 1).astype(float),
-        "tooth2": (two // 2 + 1).astype(float),
+        "tooth1": turning.driver.tooth(one).astype(float),
+        "tooth2": turning.driven.tooth(two).astype(float),
         "side": np.where(one % 2 == 0, 1.0, -1.0),
         "facing": turning.face(block.phi1[step], one, two).astype(float),
         "carries": carries,
@@ -175,13 +174,14 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         "specific_sliding1": column(1, exact.specific[0]),
         "specific_sliding2": column(1, exact.specific[1]),
         "relative_curvature_per_mm": column(1, exact.curvature),
-        "lag_rad": np.ma.masked_invalid(-block.lead[step]),
+        f"lag_{unit}": np.ma.masked_invalid(-block.lead[step]),
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back[step],
     }
 
 
-def _halves(pair: Ints, side: int, count: tuple[int, int]) -> tuple[Ints, Ints]:
+def _halves(pair: Ints, side: int, turning: Turning) -> tuple[Ints, Ints]:
     """Return the halves of pairs j of a side, counted within the first turns."""
     half = 2 * pair - (side < 0)
-    return half % count[0], half % count[1]
+    one, two = (halves.index(half) + halves.first for halves in (turning.driver, turning.driven))
+    return one, two

@@ -16,7 +16,8 @@ class MeshingSpec:
     """Phases of the driver, its advance, and how the wheels are mounted.
 
     The phases divide the stretch from `start` to `end` into `steps` equal parts, its end left out;
-    of an open pair the end is one of them, since it stops there.
+    open wheels and racks are studied at both of its ends. Without `end` it is a turn of the driver,
+    or the travel of open wheels and racks to the stop.
     The driver is turned ahead by `advance` at each (a negative one holds it back, so that the
     other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
     the pitch point are studied. Without `center_distance` the wheels stand as designed.
@@ -32,8 +33,7 @@ class MeshingSpec:
         ge=-36000,
         le=36000,
         word="to",
-        doc="driver angle at which the study ends; a turn, or all of an open pair's way, if left "
-        "out",
+        doc="driver angle at which the study ends; a turn, or the last stop, if left out",
     )
     advance: float = param(
         ANGLE,

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.contact import Ints
+from gearcam.meshing.guide import Guide
 
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]
@@ -72,14 +73,17 @@ class Facing:
         Halves.
     turn, shift : (n,) complex arrays, 1 and mm
         What takes the driver's points into the driven wheel's frame.
+    guide : Guide
+        What guides the driven wheel: says the heights of points there.
     reach : (n,) array, mm
-        Largest distance of the driven wheel from its axis near these halves.
+        Largest height of the driven wheel near these halves.
     """
 
     one: Ints
     two: Ints
     turn: Plane
     shift: Plane
+    guide: Guide
     reach: Array
 
     def take(self, some: Ints) -> Facing:
@@ -89,6 +93,7 @@ class Facing:
             two=self.two[some],
             turn=self.turn[some],
             shift=self.shift[some],
+            guide=self.guide,
             reach=self.reach[some],
         )
 
@@ -143,6 +148,9 @@ def overlap(one: tuple[Edges, Edges], two: tuple[Edges, Edges], facing: Facing) 
     """
     count = len(facing.one)
     area, length, radius = np.zeros(count), np.zeros(count), np.zeros((2, count))
+    beyond = np.zeros(count, dtype=bool)
+    if not count:
+        return Steps(area=area, length=length, radius=radius, beyond=beyond)
     near, windows, beyond = _look(one[1], two[1], facing)
     if near.size:
         part = facing.take(near)
@@ -199,7 +207,7 @@ def _look(one: Edges, two: Edges, facing: Facing) -> tuple[Ints, list[tuple[Ints
     count = len(facing.one)
     frame = _frame(one, two, facing)
     full = [(e.starts[h], e.starts[h + 1] - 1) for e, h in ((one, facing.one), (two, facing.two))]
-    first = _within(_cut(one, full[0], frame, (facing.turn, facing.shift)), facing)
+    first = _within(_cut(one, full[0], frame, (facing.turn, facing.shift)), frame, facing)
     second = _cut(two, full[1], frame)
     (over, after), (under, before) = _across(first, second)
     beyond = np.zeros(count, dtype=bool)
@@ -230,10 +238,11 @@ def _look(one: Edges, two: Edges, facing: Facing) -> tuple[Ints, list[tuple[Ints
     return np.flatnonzero(touched), windows, beyond
 
 
-def _within(graph: _Graph, facing: Facing) -> _Graph:
+def _within(graph: _Graph, frame: tuple[Plane, Array], facing: Facing) -> _Graph:
     """Leave out the roots of the driver that the mate cannot reach, up to the last vertex."""
-    at = np.arange(len(graph.u))
-    inside = graph.u**2 + graph.v**2 <= (facing.reach**2)[graph.owner]
+    at, owner = np.arange(len(graph.u)), graph.owner
+    points = (graph.u + 1j * frame[1][owner] * graph.v) * frame[0][owner]
+    inside = facing.guide.height(points) <= facing.reach[owner]
     begins = np.minimum.reduceat(np.where(inside, at, len(at)), graph.first) - 1
     keep = at >= np.repeat(begins, np.diff(np.append(graph.first, len(at))))
     return _Graph(graph.u[keep], graph.v[keep], graph.owner[keep], graph.index[keep])
@@ -253,8 +262,7 @@ def _across(first: _Graph, second: _Graph) -> tuple[tuple[Array, Ints], tuple[Ar
     """
     low = min(first.u.min(), second.u.min())
     span = max(first.u.max(), second.u.max()) - low + 1.0
-    places, wanted = (graph.owner * span + (graph.u - low) for graph in (second, first))
-    after = np.searchsorted(places, wanted)
+    after = np.searchsorted(*(g.owner * span + (g.u - low) for g in (second, first)))
     # a vertex comes before all that come after it
     before = np.cumsum(np.bincount(after, minlength=len(second.u) + 1))[:-1]
     return (_height(second, after, first.u), after), (_height(first, before, second.u), before)

@@ -39,6 +39,9 @@ BLOCK = 120
 _BESIDE = 0.15
 """Phases studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""
 
+_STOP = 1e-7
+"""Share of the travel by which written degrees may pass a stop."""
+
 DEEPER = 1.25
 """Depth of overlap, over what the advance explains, from which flanks count as interfering."""
 
@@ -76,7 +79,9 @@ class Setup:
     def stretch(self) -> tuple[float, float]:
         """Driver angles between which the pair is studied, rad."""
         spec, way = self.spec, self.pairs[DRIVE].way
-        return spec.start, spec.start + way if spec.end is None else spec.end
+        if spec.end is not None:
+            return spec.start, spec.end
+        return spec.start, way if not self.closed else spec.start + way
 
     @property
     def closed(self) -> bool:
@@ -205,8 +210,16 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         If the wheels do not reach each other, or the advance is lost in rounding.
     """
     pair = gears[0].pair
-    distance = spec.center_distance or pair.center_distance
-    shift = distance - pair.center_distance
+    if pair.law.feeds and spec.center_distance is not None:
+        raise InfeasibleError(
+            "a rack has no shaft",
+            where="meshing.center_distance_mm",
+            value=spec.center_distance,
+            unit="mm",
+            nearest="leave it out: the rack stands as designed",
+        )
+    distance = spec.center_distance or pair.shift
+    shift = distance - pair.shift
     depth = 2.0 * pair.rack.addendum * pair.module
     if abs(shift) >= depth:
         near, far = pair.center_distance - depth, pair.center_distance + depth
@@ -221,7 +234,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         )
     pairs = {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
     side = DRIVE if spec.advance > 0.0 else COAST
-    grid = np.linspace(0.0, pairs[side].way, 20 * pair.teeth[0])
+    grid = np.linspace(0.0, pairs[side].way, 20 * len(pairs[side].numbers))
     levers = contacts(pairs[side], grid).lever[0]
     if not levers.size:
         levers = np.abs(pair.rolling.frames(1, np.zeros(1)).p.real)
@@ -278,10 +291,22 @@ def phases(setup: Setup) -> Array:
     Raises
     ------
     InfeasibleError
-        If there is none.
+        If there is none, or the stretch leaves the travel of open wheels or a rack.
     """
     spec = setup.spec
-    phi1 = np.linspace(*setup.stretch, spec.steps, endpoint=not setup.closed)
+    first, last = setup.stretch
+    if not last > first:
+        raise InfeasibleError(
+            "the study ends before it begins",
+            where="meshing.from_deg",
+            value=float(np.degrees(first)),
+            limit=float(np.degrees(last)),
+            unit="deg",
+            nearest=f"below {np.degrees(last):.6g} deg",
+        )
+    phi1 = np.linspace(first, last, spec.steps, endpoint=not setup.closed)
+    if not setup.closed:
+        _demand_travel(first, last, setup.pairs[DRIVE].way)
     if spec.teeth is None:
         return phi1
     pairs = setup.pairs[setup.side]
@@ -304,6 +329,23 @@ def phases(setup: Setup) -> Array:
             + " deg; take more steps or another range",
         )
     return chosen
+
+
+def _demand_travel(first: float, last: float, travel: float) -> None:
+    """Refuse phases beyond the stops of open wheels and racks."""
+    for key, value, limit, off in (
+        ("from", first, 0.0, first < -_STOP * travel),
+        ("to", last, travel, last > (1.0 + _STOP) * travel),
+    ):
+        if off:
+            raise InfeasibleError(
+                "the study leaves the travel of the pair",
+                where=f"meshing.{key}_deg",
+                value=float(np.degrees(value)),
+                limit=float(np.degrees(limit)),
+                unit="deg",
+                nearest=f"between 0 and {np.degrees(travel):.8g} deg",
+            )
 
 
 def _block(setup: Setup, phi1: Array, first: int) -> Block:
