@@ -23,7 +23,7 @@ TEST   := $(RUN) step test
 .PHONY: demo test lint slow bench peers matrix lock clean help
 
 help:
-	@sed -n 's/^# //p' Makefile
+	@sed -n '/^$$/q; s/^# \{0,1\}//p' Makefile
 
 demo: $(VENV)/.run
 	$(BIN)/gearcam build $(DEMO) -o output

@@ -160,6 +160,20 @@ def test_files_are_told_by_the_table_that_their_law_has_read(tmp_path: Path) -> 
     assert set(make_job(design).check(tmp_path).summary["stale"].values()) == {before}
 
 
+def test_a_cam_is_told_by_the_points_that_its_rise_has_read(tmp_path: Path) -> None:
+    points = "x,y\n0,0\n0.2,0.1\n0.4,0.35\n0.6,0.65\n0.8,0.9\n1,1\n"
+    table = 'type = "rise"\nlaw = "table"\nfile = "rise.csv"'
+    file = tmp_path / "cam.toml"
+    file.write_text(changed(CAM, 'type = "rise"\nlaw = "cycloidal"', table), encoding="utf-8")
+    (tmp_path / "rise.csv").write_text(points, encoding="utf-8")
+    design = gearcam.load(file)
+    before = hash_of(design)
+    job = make_job(design)
+    assert job.program is not None  # type: ignore[union-attr]
+    (tmp_path / "rise.csv").write_text(points.replace("0.35", "0.36"), encoding="utf-8")
+    assert job.check(tmp_path).summary["design"] == before != hash_of(design)
+
+
 def test_a_table_that_is_gone_is_named(tmp_path: Path) -> None:
     design = with_table(tmp_path, TABLE)
     (tmp_path / "points.csv").unlink()
@@ -232,6 +246,9 @@ def test_a_study_is_new_and_the_build_stale_and_later_the_study_too(tmp_path: Pa
     desk.edit("eccentricity = 0.21", "eccentricity = 0.22")
     stale = {**dict.fromkeys(OUTLINES, first), "meshing.csv": meshed["design"]}
     assert desk.run("check")["stale"] == stale
+    again = desk.run("mesh")
+    assert again["files"] == {"meshing.csv": again["design"]}
+    assert again["stale"] == dict.fromkeys(OUTLINES, first)
     built = desk.run("build", "--only", "csv")
     assert "stale" not in built
     assert set(built["files"]) == OUTLINES
