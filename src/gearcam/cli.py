@@ -266,7 +266,7 @@ def _migrate(files: list[str]) -> None:
         say("\n  ".join([f"{file}: {'migrated' if changes else 'nothing to change'}", *changes]))
         return GOOD
 
-    _each(files, "migrated", one)
+    _each(files, "migrated", one, good="up to date")
 
 
 def _schema() -> None:
@@ -316,9 +316,14 @@ def _jobs(
 
 
 def _each(
-    files: Sequence[str], done: str, work: Callable[[str], int], *, debug: bool = False
+    files: Sequence[str],
+    done: str,
+    work: Callable[[str], int],
+    *,
+    good: str = "",
+    debug: bool = False,
 ) -> None:
-    """Do some work with every file, and end with the largest code."""
+    """Do some work with every file, and end with the largest code; `good` files are counted."""
     codes = []
     for file in files:
         try:
@@ -341,8 +346,8 @@ def _each(
         except Exception as error:
             codes.append(_fault(error, file=file, debug=debug))
     if len(files) > 1:
-        good = sum(code in (GOOD, FINDINGS) for code in codes)
-        say(f"{len(files)} files: {good} {done}, {len(files) - good} refused")
+        count = sum(code in (GOOD, FINDINGS) for code in codes)
+        say(f"{len(files)} files: {count} {good or done}, {len(files) - count} refused")
     raise SystemExit(max(codes, default=GOOD))
 
 

@@ -10,6 +10,7 @@ import pytest
 import shapely
 
 from gearcam.errors import InfeasibleError
+from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.make import make_part
@@ -17,6 +18,7 @@ from gearcam.parts.openings import Place
 from gearcam.parts.part import Opening, Part
 from gearcam.parts.shapes import Circle
 from helpers_contour import disc_contour, gear_contour, square_contour
+from helpers_pairs import profile
 
 SLOTTED = Place(wheel=1, module=2.0, travel=1.5)
 
@@ -101,3 +103,12 @@ def test_too_much_clearance_is_refused_with_what_leaves_an_outline() -> None:
         made(contour, blank(tip_rounding=20.0))
     named = float(two.value.nearest.split()[3])
     assert made(contour, blank(tip_rounding=named)).contour.area > 0.0
+
+
+def test_timing_marks_keep_their_gap_from_the_root_as_made() -> None:
+    """Root and mark go inwards together; a bore that follows pushes nothing while there is room."""
+    plain = profile("ellipse").design
+    clear = replace(plain, blank=replace(plain.blank, clearance=(0.1, 0.1)))
+    marks = [GearPairJob(design).parts[0].marks[0] for design in (plain, clear)]
+    (before, _), (after, _) = (mark.center for mark in marks)
+    assert before - after == pytest.approx(0.1, abs=1e-9)

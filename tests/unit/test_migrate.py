@@ -219,7 +219,7 @@ def test_several_files_are_all_tried(
     files: dict[str, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["migrate", *(str(files[name]) for name in ("by hand", "old", "current"))]) == 2
-    assert "3 files: 2 migrated, 1 refused" in capsys.readouterr().out
+    assert "3 files: 2 up to date, 1 refused" in capsys.readouterr().out
     assert "clearance_mm" in files["old"].read_text()
 
 
