@@ -298,7 +298,17 @@ def test_the_command_studies_the_travel_with_both_stops(name: str, tmp_path: Pat
     steps = np.unique(rows["phi1_deg"])
     assert steps == pytest.approx(np.linspace(0.0, last, 25), rel=1e-12)
     assert set(rows["facing"]) == {1.0}
+    whole = np.isfinite(rows["closed_mm2"])
+    assert np.count_nonzero(whole) > 10
+    assert rows["predicted_mm2"][whole] == pytest.approx(rows["closed_mm2"][whole], rel=0.02)
     assert ("center_distance_mm" in found) == (not door.law.feeds)
+
+
+def test_the_backlash_of_a_rack_is_the_way_that_it_may_move() -> None:
+    gears = job(Rack(r1="1"), (20, 12), module=2.0, backlash=0.06).gears
+    found = study(gears, MeshingSpec(steps=5))
+    assert found.every("play") == pytest.approx(0.06, rel=1e-9)
+    assert found.every("backlash") == pytest.approx(0.06, rel=1e-9)
 
 
 @pytest.mark.parametrize(

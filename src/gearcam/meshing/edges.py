@@ -40,7 +40,21 @@ class Edge(NamedTuple):
 
 
 def rising(wheel: int, chain: list[Plane], under: complex, low: complex) -> Edge:
-    """Return the edge of a half from what is before it, its own and what is after it."""
+    """Return the edge of a half.
+
+    Parameters
+    ----------
+    wheel : {1, 2}
+        Whose.
+    chain : list of complex arrays, mm
+        Vertices from tip to root: of the land before the half, its own, of the land after it.
+    under, low : complex, mm
+        Points below the middles of its tip and of its root.
+
+    Returns
+    -------
+    Edge
+    """
     before, own, after = chain
     down = (under - own[0]) / abs(under - own[0])
     hand = 1.0 if ((low - under) / down).imag > 0.0 else -1.0
@@ -63,9 +77,21 @@ def _forward(points: Plane, along: complex) -> Plane:
 
 
 def covered(half: int, edges: list[Edge], closed: bool) -> Edge:
-    """Lead the edge of a driven half on, from the far corner of its tip over its neighbours' tips.
+    """Return a driven half's edge led on, from its tip's far corner over its neighbours' tips.
 
-    All of them stay below the line, or the edge is left as it is.
+    Parameters
+    ----------
+    half : int
+        Place of the half.
+    edges : list of Edge
+        All edges of the wheel.
+    closed : bool
+        Whether the last half has the first one beside it.
+
+    Returns
+    -------
+    Edge
+        All neighbours stay below the line, or it is left as it is.
     """
     edge = edges[half]
     corner = edge.points[0]
@@ -97,7 +123,7 @@ def joined(edges: list[Edge]) -> Edges:
 
 
 def thinned(edges: Edges, chord_error: float) -> Edges:
-    """Leave out vertices as long as no edge moves by more than some chord errors, mm."""
+    """Return `edges` with fewer vertices; none moves by more than some of its `chord_error`, mm."""
     deviation = _THINNED * chord_error
     owner = np.repeat(np.arange(len(edges.along)), np.diff(edges.starts))
     # the third coordinate says which vertices are left

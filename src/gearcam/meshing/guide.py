@@ -57,7 +57,7 @@ class Guide(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Shaft:
-    """A shaft, seen as the origin; the driver is to its left."""
+    """A shaft, seen as the origin; the driver is to its left, that rolls: `rolling`."""
 
     rolling: Rolling
 
@@ -87,9 +87,9 @@ class Shaft:
 
 @dataclass(frozen=True, kw_only=True)
 class Slide:
-    """A slide across the line of centres: the rack's own frame, when the driver is at phi1 = 0.
+    """A slide across the line of centres: seen from the rack's place at phi1 = 0 of `rolling`.
 
-    The rack moves downwards there, as the driver's pitch point does.
+    The rack moves downwards, as the driver's pitch point does.
     """
 
     rolling: Rolling

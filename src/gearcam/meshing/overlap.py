@@ -33,10 +33,6 @@ _GROUP = 16
 _BESIDE = 4
 """Halves on both sides of the facing one whose tips are taken for the driven wheel's reach."""
 
-_FACING = 2.0
-"""Distance of the tips of facing halves, in pitches, up to which their graphs are compared; of open
-wheels other halves may face theirs from afar."""
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Overlaps:
@@ -159,9 +155,7 @@ class Turning:
         left[step[steps.beyond]] = True
         parts: list[Overlaps] = []
         if not driven.closed:
-            across, strays = self._astray(turn, shift, step, facing)
-            left[across] = True
-            parts.append(self._cut(*strays))
+            parts.append(self._cut(*self._astray(turn, shift, step, facing.one)))
         if left.any():
             rest = np.flatnonzero(left[step])
             parts.append(self._cut(step[rest], facing.take(rest)))
@@ -281,10 +275,7 @@ class Turning:
         past = self._halves_past(phi1)[step]
         mate = self.driven.index(self._unroll(past, half + self.driver.first))
         tips = self.driver.tips[half] * turn[step] + shift[step]
-        near = self.guide.height(tips) <= self._reach[mate] + self._land[half]
-        if not self.driven.closed:
-            beside = np.abs(tips - self.driven.tips[mate]) <= _FACING * self.driven.pitch
-            near &= (mate >= 0) & beside
+        near = (self.guide.height(tips) <= self._reach[mate] + self._land[half]) & (mate >= 0)
         step, half, mate = step[near], half[near], mate[near]
         return step, Facing(
             one=half,
@@ -295,40 +286,31 @@ class Turning:
             reach=self._reach[mate],
         )
 
-    def _astray(
-        self, turn: Plane, shift: Plane, step: Ints, facing: Facing
-    ) -> tuple[Ints, tuple[Ints, Facing]]:
-        """Find what of the driver comes near an open wheel or a rack away from its mates.
+    def _astray(self, turn: Plane, shift: Plane, step: Ints, facing: Ints) -> tuple[Ints, Facing]:
+        """Find what else of the driver comes near an open wheel or a rack, without mates.
 
-        Returns the phases in which a half that faces its mate does, and phases and what else
-        does, without mates; the driver's body is the last of its halves.
+        `facing` are the halves that face theirs at each `step`. A body is the last of all.
         """
-        driver, driven = self.driver, self.driven
-        mates = np.full((len(turn), driver.count), -1)
-        mates[step, facing.one] = facing.two
+        driver = self.driver
+        others = np.full((len(turn), driver.count), True)
+        others[step, facing] = False
+        step, half = np.nonzero(others)
         center, radius = driver.circles
-        seen = center * turn[:, None] + shift[:, None]
-        seen, reach = seen.ravel(), np.tile(radius, len(turn))
+        seen = center[half] * turn[step] + shift[step]
         points = shapely.points(seen.real, seen.imag)
-        place, other = self._tree.query(points, predicate="dwithin", distance=reach)
-        mate = mates.ravel()[place]
-        across = (mate >= 0) & ((np.abs(other - mate) > _BESIDE) | (other == driven.count))
-        stray = np.unique(place[mate < 0])
-        step, half = stray // driver.count, stray % driver.count
+        near = np.unique(self._tree.query(points, predicate="dwithin", distance=radius[half])[0])
+        step, half = step[near], half[near]
         if not driver.closed:
             bodies = self._touched_bodies(turn, shift)
             step = np.append(step, bodies)
             half = np.append(half, np.full(len(bodies), driver.count))
-        return place[across] // driver.count, (
-            step,
-            Facing(
-                one=half,
-                two=np.full(len(half), -1),
-                turn=turn[step],
-                shift=shift[step],
-                guide=self.guide,
-                reach=np.full(len(half), np.inf),
-            ),
+        return step, Facing(
+            one=half,
+            two=np.full(len(half), -1),
+            turn=turn[step],
+            shift=shift[step],
+            guide=self.guide,
+            reach=np.full(len(half), np.inf),
         )
 
     def _touched_bodies(self, turn: Plane, shift: Plane) -> Ints:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
-from gearcam.gears.pair import FINEST, Gear
+from gearcam.gears.pair import FINEST, Gear, GearPair
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import first_touch, to_pitch_line
 from gearcam.meshing.halves import halve
@@ -210,28 +210,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         If the wheels do not reach each other, or the advance is lost in rounding.
     """
     pair = gears[0].pair
-    if pair.law.feeds and spec.center_distance is not None:
-        raise InfeasibleError(
-            "a rack has no shaft",
-            where="meshing.center_distance_mm",
-            value=spec.center_distance,
-            unit="mm",
-            nearest="leave it out: the rack stands as designed",
-        )
-    distance = spec.center_distance or pair.shift
-    shift = distance - pair.shift
-    depth = 2.0 * pair.rack.addendum * pair.module
-    if abs(shift) >= depth:
-        near, far = pair.center_distance - depth, pair.center_distance + depth
-        raise InfeasibleError(
-            "the wheels are mounted so far from their designed distance that their teeth do not "
-            "mesh",
-            where="meshing.center_distance_mm",
-            value=distance,
-            limit=near if shift < 0.0 else far,
-            unit="mm",
-            nearest=f"between {near:.6g} and {far:.6g} mm",
-        )
+    distance = _distance(pair, spec)
     pairs = {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
     side = DRIVE if spec.advance > 0.0 else COAST
     grid = np.linspace(0.0, pairs[side].way, 20 * len(pairs[side].numbers))
@@ -250,8 +229,8 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
             unit="deg",
             nearest=f"at least {np.degrees(abs(least)):.3g} deg",
         )
-    first, second = (halve(replace(gear.profile, tolerance=tolerance)) for gear in gears)
-    for gear, halves in zip(gears, (first, second), strict=True):
+    both = [halve(replace(gear.profile, tolerance=tolerance)) for gear in gears]
+    for gear, halves in zip(gears, both, strict=True):
         if not halves.sound:
             raise InfeasibleError(
                 "the teeth are too few and too deep to be told apart by halves",
@@ -261,8 +240,8 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
             )
     turning = Turning(
         rolling=pair.rolling,
-        driver=first,
-        driven=second,
+        driver=both[0],
+        driven=both[1],
         distance=distance,
         moved=gears[0].toothing.moved,
     )
@@ -273,6 +252,33 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         penetration=penetration,
         lever=float(levers.max()),
     )
+
+
+def _distance(pair: GearPair, spec: MeshingSpec) -> float:
+    """Distance of the shafts as mounted, mm; 0 of a rack."""
+    if spec.center_distance is None:
+        return pair.shift
+    if pair.law.feeds:
+        raise InfeasibleError(
+            "a rack has no shaft",
+            where="meshing.center_distance_mm",
+            value=spec.center_distance,
+            unit="mm",
+            nearest="leave it out: the rack stands as designed",
+        )
+    depth = 2.0 * pair.rack.addendum * pair.module
+    near, far = pair.center_distance - depth, pair.center_distance + depth
+    if not near < spec.center_distance < far:
+        raise InfeasibleError(
+            "the wheels are mounted so far from their designed distance that their teeth do not "
+            "mesh",
+            where="meshing.center_distance_mm",
+            value=spec.center_distance,
+            limit=near if spec.center_distance <= near else far,
+            unit="mm",
+            nearest=f"between {near:.6g} and {far:.6g} mm",
+        )
+    return spec.center_distance
 
 
 def phases(setup: Setup) -> Array:
@@ -297,11 +303,8 @@ def phases(setup: Setup) -> Array:
     first, last = setup.stretch
     if not last > first:
         raise InfeasibleError(
-            "the study ends before it begins",
+            f"the study ends at {np.degrees(last):.6g} deg before it begins",
             where="meshing.from_deg",
-            value=float(np.degrees(first)),
-            limit=float(np.degrees(last)),
-            unit="deg",
             nearest=f"below {np.degrees(last):.6g} deg",
         )
     phi1 = np.linspace(first, last, spec.steps, endpoint=not setup.closed)
@@ -333,19 +336,16 @@ def phases(setup: Setup) -> Array:
 
 def _demand_travel(first: float, last: float, travel: float) -> None:
     """Refuse phases beyond the stops of open wheels and racks."""
-    for key, value, limit, off in (
-        ("from", first, 0.0, first < -_STOP * travel),
-        ("to", last, travel, last > (1.0 + _STOP) * travel),
-    ):
-        if off:
-            raise InfeasibleError(
-                "the study leaves the travel of the pair",
-                where=f"meshing.{key}_deg",
-                value=float(np.degrees(value)),
-                limit=float(np.degrees(limit)),
-                unit="deg",
-                nearest=f"between 0 and {np.degrees(travel):.8g} deg",
-            )
+    early = first < -_STOP * travel
+    if early or last > (1.0 + _STOP) * travel:
+        raise InfeasibleError(
+            "the study leaves the travel of the pair",
+            where=f"meshing.{'from' if early else 'to'}_deg",
+            value=float(np.degrees(first if early else last)),
+            limit=0.0 if early else float(np.degrees(travel)),
+            unit="deg",
+            nearest=f"between 0 and {np.degrees(travel):.8g} deg",
+        )
 
 
 def _block(setup: Setup, phi1: Array, first: int) -> Block:
