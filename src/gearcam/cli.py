@@ -28,6 +28,7 @@ from gearcam.console import (
     meshing_lines,
     pair_lines,
     progress_bar,
+    remedy_lines,
     say,
     wrapped,
     written_lines,
@@ -326,9 +327,6 @@ def _each(
             complain(f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}")
             complain(textwrap.indent(str(error), "  "))
             codes.append(WRONG)
-        except InfeasibleError as error:
-            complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
-            codes.append(IMPOSSIBLE)
         except (WriteError, MissingExtraError) as error:
             complain(f"{file}: {error}")
             codes.append(WRONG)
@@ -348,8 +346,13 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     from gearcam.jobs import make_job  # a file that is refused needs none of it
 
     job = make_job(design)
-    with progress_bar(file) as progress:
-        written = action(job, progress)
+    try:
+        with progress_bar(file) as progress:
+            written = action(job, progress)
+    except InfeasibleError as error:
+        complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
+        _tell_remedies(job, complain, error)
+        return IMPOSSIBLE
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
     told = [
         pair_lines(written.summary),
@@ -363,7 +366,20 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         found = written.summary["meshing"]
         complain(f"{file}: interrupted: {found['steps_done']} of {found['steps']} steps are kept")
         return INTERRUPTED
-    return FINDINGS if any(finding.severity == "error" for finding in written.findings) else GOOD
+    if any(finding.severity == "error" for finding in written.findings):
+        _tell_remedies(job, say)
+        return FINDINGS
+    return GOOD
+
+
+def _tell_remedies(
+    job: Any, tell: Callable[[str], None], refusal: InfeasibleError | None = None
+) -> None:
+    """Search for remedies and say what was found."""
+    from gearcam.jobs.remedies import remedies
+
+    for line in remedy_lines(remedies(job, refusal)):
+        tell(textwrap.indent(line, "  "))
 
 
 def _demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:

@@ -34,7 +34,7 @@ from gearcam.laws.spiral import LogSpiral
 from gearcam.laws.table import Table
 from gearcam.meshing.halves import halve
 from gearcam.meshing.overlap import Turning
-from helpers_pairs import explained, job, unadvised
+from helpers_pairs import explained, job
 
 MODULE = 2.0
 TURN = 2 * math.pi
@@ -247,12 +247,12 @@ def demand_advice(refused: InfeasibleError, given: Given) -> None:
             assert shapely.LinearRing(gear.outline).is_simple
         more = replace(law, eccentricity=1.01 * largest)
         with pytest.raises(InfeasibleError):
-            _ = unadvised(job(more, teeth, module=MODULE, x=x)).gears
+            _ = job(more, teeth, module=MODULE, x=x).gears
     step = math.gcd(*advised)
     fewer = tuple(count - count // step for count in advised)
     if "fewer may do" not in refused.nearest:
         with pytest.raises(InfeasibleError):
-            _ = unadvised(job(law, fewer, module=MODULE, x=x)).gears  # type: ignore[arg-type]
+            _ = job(law, fewer, module=MODULE, x=x).gears  # type: ignore[arg-type]
 
 
 def demand(given: Given) -> bool:

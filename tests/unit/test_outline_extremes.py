@@ -20,7 +20,7 @@ from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
-from helpers_pairs import Assembly, job, unadvised
+from helpers_pairs import Assembly, job
 
 SLOWEST = 5.0
 """Seconds; the machine that this was written on takes a tenth of it."""
@@ -48,7 +48,7 @@ def gaps(outline: Outline) -> float:
 def built_or_refused(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairJob | None:
     """The job, proved; None if the design was refused in a way that helps."""
     start = time.perf_counter()
-    made = unadvised(job(law, teeth, **given))  # advice is proved in test_families
+    made = job(law, teeth, **given)  # advice is proved in test_families
     try:
         _ = made.gears
     except InfeasibleError as error:
@@ -282,7 +282,7 @@ def errors_of(made: GearPairJob) -> list[str]:
 def test_a_shaft_outside_its_wheel_is_refused(e: float, z: int) -> None:
     """The near focus lies less than a dedendum inside the centrode: a*(1 - e) < 1.25 m."""
     rack = Rack(addendum=0.8, dedendum=1.0, tip_radius=0.3)
-    made = unadvised(job(Ellipse(eccentricity=e), (z, z), rack=rack))
+    made = job(Ellipse(eccentricity=e), (z, z), rack=rack)
     assert 0.5 * made.pair.center_distance * (1 - e) < 1.0
     with pytest.raises(InfeasibleError, match=r"shaft|axis"):
         _ = made.gears

@@ -22,7 +22,7 @@ from gearcam.laws.programs import Fourier, Multispeed, ThreePhasePolynomial
 from gearcam.laws.shapes import RoundedPolygon
 from gearcam.laws.span import ONE_LOBE
 from gearcam.tolerances import DEFAULT
-from helpers_pairs import job, unadvised
+from helpers_pairs import job
 
 TURN = 2 * math.pi
 
@@ -65,7 +65,7 @@ def test_tooth_counts_that_are_named_work_and_one_fewer_does_not(case: str) -> N
     error = advised(case)
     found: Any = error.suggested["pair.teeth"]
     build(job(law, found, rack=rack))
-    refusal(unadvised(job(law, (found[0] - 1, found[1] - 1), rack=rack)))
+    refusal(job(law, (found[0] - 1, found[1] - 1), rack=rack))
     assert f"the fewest teeth with which the pair can be made are {found[0]}" in str(error)
 
 
@@ -74,7 +74,7 @@ def test_the_eccentricity_that_is_named_works_and_beyond_it_nothing(case: str) -
     law, teeth, rack = TEETH[case]
     largest: Any = advised(case).suggested["law.eccentricity"]
     build(job(type(law)(eccentricity=largest), teeth, rack=rack))
-    refusal(unadvised(job(type(law)(eccentricity=1.01 * largest), teeth, rack=rack)))
+    refusal(job(type(law)(eccentricity=1.01 * largest), teeth, rack=rack))
 
 
 class Limit(NamedTuple):

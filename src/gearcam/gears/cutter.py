@@ -1,9 +1,10 @@
-"""The cutter of a wheel: the rack, or where the centrode is concave a pinion conjugate to it.
+"""The cutter of a wheel: the rack, where it is concave a pinion conjugate to it, or the mate.
 
 No straight rack can cut a concave centrode: rolled along it, it erases flank. A pinion cutter
 (shaper) of pitch curvature ``kc > max(-kappa)`` can, and cuts the same flanks, since it is
 conjugate to the rack. The rack is the pinion with ``kc = 0``, and every formula here has that
-limit.
+limit. Where such a pinion's teeth are pointed before they are as deep as the dedendum, the mate
+itself cuts the roots (see `joints`).
 """
 
 from __future__ import annotations
@@ -12,8 +13,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from gearcam.errors import InfeasibleError
-from gearcam.gears.spec import Rack
+from gearcam.gears.spec import BasicRack
 
 _CONCAVE_MARGIN = 1.15
 """kc over the sharpest concave curvature: enough for clearance, and still a large cutter."""
@@ -40,6 +40,8 @@ class Cutter:
         the teeth, more what the play takes from them.
     pitch : float, mm
         pi*m.
+    mated : bool
+        Whether the mate's teeth, longer by the clearance, cut the roots instead.
     """
 
     alpha: float
@@ -49,10 +51,13 @@ class Cutter:
     kc: float
     half_space: float
     pitch: float
+    mated: bool = False
 
     @property
     def kind(self) -> str:
-        """``rack`` or ``pinion``."""
+        """``rack``, ``pinion`` or ``mate``."""
+        if self.mated:
+            return "mate"
         return "pinion" if self.kc > 0.0 else "rack"
 
     @property
@@ -96,10 +101,9 @@ class Cutter:
 
 
 def choose_cutter(
-    rack: Rack,
+    rack: BasicRack,
     module: float,
     concave_curvature: float,
-    where: str,
     *,
     shift: float = 0.0,
     backlash: float = 0.0,
@@ -108,14 +112,12 @@ def choose_cutter(
 
     Parameters
     ----------
-    rack : Rack
+    rack : BasicRack
         Heights in modules.
     module : float, mm
         Module.
     concave_curvature : float, 1/mm
         Largest ``-kappa`` of the centrode; not positive for a convex one.
-    where : str
-        The wheel, for messages.
     shift : float
         Profile shift of this wheel, in modules.
     backlash : float, mm
@@ -124,12 +126,8 @@ def choose_cutter(
     Returns
     -------
     Cutter
-        The rack for a convex centrode, else a pinion.
-
-    Raises
-    ------
-    InfeasibleError
-        If no tooth of such a cutter can be as deep as the rack asks: the concave part is too tight.
+        The rack for a convex centrode, else a pinion, or the mate if no tooth of such a pinion can
+        be as deep as the rack asks.
     """
     kc = _CONCAVE_MARGIN * concave_curvature if concave_curvature * module > _FLAT else 0.0
     cutter = Cutter(
@@ -144,21 +142,7 @@ def choose_cutter(
     )
     if kc > 0.0 and cutter.offset > cutter.half_space:
         cutter = _blunt(cutter)
-    if cutter.offset > cutter.half_space * (1.0 + 1e-9):
-        smallest = _smallest_concave_radius(cutter)
-        raise InfeasibleError(
-            "a concave part of the centrode is too tight: a pinion cutter that fits into it has "
-            "pointed teeth",
-            where=where,
-            value=1.0 / concave_curvature,
-            limit=smallest,
-            unit="mm",
-            nearest=f"the smallest concave radius is {1.0 / concave_curvature:.6g} mm and must be "
-            f"at least {smallest:.6g} mm: lower the ratio's swing, take a smaller module (more "
-            "teeth) or a smaller rack.dedendum",
-            more_teeth=True,
-        )
-    return cutter
+    return replace(cutter, mated=cutter.offset > cutter.half_space * (1.0 + 1e-9))
 
 
 def _blunt(cutter: Cutter) -> Cutter:
@@ -169,13 +153,3 @@ def _blunt(cutter: Cutter) -> Cutter:
         fits = replace(cutter, tip_radius=middle).offset <= cutter.half_space
         low, high = (middle, high) if fits else (low, middle)
     return replace(cutter, tip_radius=low)
-
-
-def _smallest_concave_radius(cutter: Cutter) -> float:
-    """Smallest concave radius that leaves a sharp-cornered pinion's tooth a land, by bisection."""
-    low, high = 0.0, cutter.kc
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        fits = replace(cutter, kc=middle).offset <= cutter.half_space
-        low, high = (middle, high) if fits else (low, middle)
-    return _CONCAVE_MARGIN / low if low > 0.0 else math.inf

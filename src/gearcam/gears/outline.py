@@ -12,6 +12,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Kind, Rows, Toothing
+from gearcam.gears.joints import joints
 from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
@@ -226,30 +227,34 @@ def _find_flanks(
     half, z = toothing.half_tooth, len(toothing.numbers)
     sf = np.concatenate([toothing.tooth_places + half, toothing.tooth_places - half])
     sigma = np.repeat([1.0, -1.0], z)
-    mate_reach = _NO_MATE * toothing.pitch if mate is None else mate.cutter.reach
-    cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
+    mate_reach = _NO_MATE * toothing.pitch
+    if mate is not None and not mate.cutter.mated:  # roots that this wheel cuts are deep enough
+        mate_reach = mate.cutter.reach
+    reach, _ = joints(toothing, sf, sigma)
+    cusps = find_cusps(toothing, sf, sigma, -float(reach.max()), mate_reach)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
     if mate is not None and tolerance is not None:
-        reach = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+        top = sigma * (sf - toothing.rolling.arc_length(tips.phi))
 
         def mate_outline() -> Array:
             return build_outline(mate, toothing, tolerance, tolerances, follow=False).points
 
-        allowed = highest_corners(toothing, mate, mate_outline, tolerance, (sf, sigma), reach)
-        if (allowed < reach).any():
-            limit = np.where(allowed < reach, allowed, np.minimum(cusps.addendum, mate_reach))
+        allowed = highest_corners(toothing, mate, mate_outline, tolerance, (sf, sigma), top)
+        if (allowed < top).any():
+            limit = np.where(allowed < top, allowed, np.minimum(cusps.addendum, mate_reach))
             tips = find_tips(toothing, sf, sigma, limit)
     tips = _sharpen(toothing, sf, sigma, tips)
     highest = sigma * (sf - toothing.rolling.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
     addendum = np.where(cusps.addendum <= highest * (1.0 + 1e-12), cusps.addendum, np.inf)
-    lowest = np.full(2 * z, -toothing.cutter.reach)
     return Flanks(
         sf=sf,
         sigma=sigma,
-        cusps=Undercut(dedendum=cusps.dedendum, addendum=addendum),
+        cusps=Undercut(
+            dedendum=np.where(cusps.dedendum >= -reach, cusps.dedendum, -np.inf), addendum=addendum
+        ),
         tips=tips,
-        lowest=lowest,
+        lowest=-reach,
         highest=highest,
     )
 
@@ -274,6 +279,7 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
         high=zero,
         corner=zero.astype(bool),
         tooth=np.tile(toothing.numbers, 2),
+        joint=zero,
     )
     for tooth in pointed:
         found = meet(toothing, rows, int(tooth), int(z + tooth))
@@ -338,9 +344,8 @@ def _demand_simple(outline: Outline) -> None:
         value=toothing.pitch / np.pi,
         limit=largest,
         unit="mm",
-        nearest="this is the module, and the largest that is certainly free of undercut; take more "
-        "teeth, a smaller rack.dedendum or a larger rack.tip_radius",
-        more_teeth=True,
+        nearest="this is the module, and the largest that is free of undercut at this size",
+        more_teeth=toothing.pitch / (np.pi * largest) if largest else 2.0,
     )
 
 
@@ -362,6 +367,6 @@ def _demand_shaft(outline: Outline) -> None:
         value=module,
         limit=largest,
         unit="mm",
-        nearest=f"a module below {largest:.6g} mm (more teeth), or a smaller swing of the ratio",
-        more_teeth=True,
+        nearest="this is the module, and the one whose roots would reach the shaft at this size",
+        more_teeth=module / largest,
     )

@@ -13,13 +13,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.cutter import choose_cutter
-from gearcam.gears.demands import demand_rack, demand_shift
+from gearcam.gears.demands import demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
+from gearcam.gears.joints import contact_bound
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, Wheel, roll
-from gearcam.gears.spec import PairSpec, Rack
+from gearcam.gears.spec import BasicRack, PairSpec, Rack
 from gearcam.laws.base import RatioLaw
 from gearcam.laws.span import Lobes
 from gearcam.numeric.bulges import as_pairs
@@ -44,7 +45,7 @@ class GearPair:
         The centrodes.
     teeth : (int, int)
         Tooth counts.
-    rack : Rack
+    rack : BasicRack
         Basic rack.
     module : float, mm
         L/(pi*z).
@@ -54,7 +55,7 @@ class GearPair:
 
     rolling: Rolling
     teeth: tuple[int, int]
-    rack: Rack
+    rack: BasicRack
     module: float
     toothings: tuple[Toothing, Toothing]
 
@@ -98,8 +99,8 @@ class GearPair:
                 value=asked,
                 limit=limit,
                 unit="mm",
-                nearest=f"{'at least' if fine else 'at most'} {limit:.6g} mm for the module "
-                f"{self.module:.6g} mm",
+                nearest=f"the limit is for the module {self.module:.6g} mm",
+                ways=(Way(near={"output.chord_tolerance_mm": (1.001 if fine else 0.999) * limit}),),
             )
         return asked
 
@@ -155,6 +156,12 @@ class Gear:
         return max(0.0, -float(self.curvatures.min()))
 
     @property
+    def concave_radius(self) -> float:
+        """Smallest concave radius of the centrode, mm; infinite where it has no concave part."""
+        curvature = self.concave_curvature
+        return 1.0 / curvature if curvature > 0.0 else math.inf
+
+    @property
     def curvatures(self) -> Array:
         """All extremes of the centrode's curvature, 1/mm."""
         return self.pair.rolling.curvature_extremes(self.wheel)[1]
@@ -169,7 +176,7 @@ class Gear:
         return as_pairs(self.toothing.frames(phi).p)
 
 
-def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances) -> GearPair:
+def make_pair(law: RatioLaw, spec: PairSpec, asked: Rack, tolerances: Tolerances) -> GearPair:
     """Put a law on two shafts.
 
     Parameters
@@ -178,8 +185,8 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
         For the lobes of the tooth counts.
     spec : PairSpec
         Sizes.
-    rack : Rack
-        Basic rack.
+    asked : Rack
+        Basic rack as it is asked for.
     tolerances : Tolerances
         Inner accuracy.
 
@@ -191,7 +198,7 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
     Raises
     ------
     InfeasibleError
-        If the rack cannot be made, or a concave part is too tight for a cutter.
+        If the rack cannot be made, or a concave part is too tight for the teeth.
     """
     if law.feeds and spec.center_distance is not None:
         raise InfeasibleError(
@@ -199,7 +206,7 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
             where="pair.center_distance_mm",
             value=spec.center_distance,
             unit="mm",
-            nearest="give module_mm instead: with the tooth count it is the size of the wheel",
+            nearest="module_mm is given instead: with the tooth count it is the size of the wheel",
         )
     rolling = roll(
         law,
@@ -209,7 +216,7 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
         tolerances=tolerances,
     )
     module = spec.module or rolling.length(1) / (math.pi * spec.teeth[0])
-    demand_rack(rack)
+    rack = settle_rack(asked, spec.x)
     demand_shift(rack, spec, module)
 
     def toothing(wheel: Wheel) -> Toothing:
@@ -218,7 +225,6 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
             rack,
             module,
             concave,
-            f"wheel {wheel}",
             shift=spec.x if wheel == 1 else -spec.x,
             backlash=spec.backlash,
         )
@@ -230,13 +236,26 @@ def make_pair(law: RatioLaw, spec: PairSpec, rack: Rack, tolerances: Tolerances)
             closed=law.lobes.closed and not (law.feeds and wheel == 2),
         )
 
+    toothings = toothing(1), toothing(2)
+    _demand_contact(toothings)
     return GearPair(
-        rolling=rolling,
-        teeth=spec.teeth,
-        rack=rack,
-        module=module,
-        toothings=(toothing(1), toothing(2)),
+        rolling=rolling, teeth=spec.teeth, rack=rack, module=module, toothings=toothings
     )
+
+
+def _demand_contact(toothings: tuple[Toothing, Toothing]) -> None:
+    """Refuse a concave part in which the flanks cannot carry, whatever cuts their roots."""
+    tight = [toothing for toothing in toothings if toothing.cutter.mated]
+    if tight and (bound := contact_bound(*toothings)) < 1.0:
+        raise InfeasibleError(
+            "a concave part of the centrode is too tight for these teeth: no cutter fits into it, "
+            "and the flanks themselves touch for less than a pitch",
+            where=f"wheel {tight[0].wheel}",
+            value=bound,
+            limit=1.0,
+            nearest="this is the most that the contact ratio can be",
+            more_teeth=2.0,
+        )
 
 
 def make_gear(pair: GearPair, wheel: Wheel, tolerance: float, tolerances: Tolerances) -> Gear:

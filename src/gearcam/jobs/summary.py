@@ -69,6 +69,7 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
             "face_width_mm": job.design.pair.face_width,
             "x": job.design.pair.x,
             "backlash_mm": job.design.pair.backlash,
+            "rack": _rack(job),
             **facts,
             "solved": solved,
         },
@@ -80,6 +81,19 @@ def summarize(job: GearPairJob, files: Sequence[str], extras: dict[str, Any]) ->
         **{name: extras[name] for name in ("solids", "meshing") if name in extras},
         "timings_s": {name: round(value, 6) for name, value in job.timings.items()},
         "versions": versions(),
+    }
+
+
+def _rack(job: GearPairJob) -> dict[str, Any]:
+    """Return the basic rack as it was used, and the defaults that yielded to given values."""
+    rack = job.pair.rack
+    yielded = rack.yielded(job.design.rack)
+    return {
+        "pressure_angle_deg": math.degrees(rack.pressure_angle),
+        "addendum": rack.addendum,
+        "dedendum": rack.dedendum,
+        "tip_radius": rack.tip_radius,
+        **({"yielded": yielded} if yielded else {}),
     }
 
 
