@@ -6,6 +6,7 @@ import copy
 import json
 import re
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,7 @@ def followed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[st
     for key, value in changes.items():
         steps: list[Any] = [int(s) if s.isdigit() else s for s in re.findall(r"[^.\[\]]+", key)]
         place: Any = made
-        for step, after in zip(steps[:-1], steps[1:], strict=True):
+        for step, after in pairwise(steps):
             if isinstance(after, int) and not isinstance(place[step], list):
                 place[step] = [place[step]] * 2
             place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]

@@ -71,8 +71,6 @@ def profile(name: str, tolerance: float | None = None) -> GearPairJob:
     )
 
 
-
-
 def explained(made: GearPairJob) -> float:
     """Overlap that two chord errors explain: a lens of that depth on each of four flank pairs.
 

@@ -202,11 +202,16 @@ def test_racks_of_all_sorts(rack: str, law: Any) -> None:
     ("rack", "what", "value", "limit"),
     [
         # rho*(1/cos(alpha) - tan(alpha)) <= pi/4 - hf*tan(alpha)
-        (Rack(tip_radius=0.5), "tip radius", 0.5, 0.4719),
+        (Rack(dedendum=1.25, tip_radius=0.5), "tip radius", 0.5, 0.4719),
         (Rack(dedendum=2.0, tip_radius=0.1), "tip radius", 0.1, 0.08206),
-        (Rack(pressure_angle=math.radians(30)), "tip radius", 0.38, 0.11035),
+        (
+            Rack(pressure_angle=math.radians(30), dedendum=1.25, tip_radius=0.38),
+            "tip radius",
+            0.38,
+            0.11035,
+        ),
         # hf*tan(alpha) <= pi/4
-        (Rack(pressure_angle=math.radians(35)), "dedendum", 1.25, 1.12166),
+        (Rack(pressure_angle=math.radians(35), dedendum=1.25), "dedendum", 1.25, 1.12166),
         (Rack(dedendum=2.5, tip_radius=0.0), "dedendum", 2.5, 2.15785),
     ],
 )

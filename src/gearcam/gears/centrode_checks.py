@@ -101,19 +101,14 @@ def concave(subject: Subject, limit: float) -> Iterator[Finding]:
     """Note a concave part, which a rack or hob cannot cut."""
     for gear in subject.gears:
         cutter, radius = gear.toothing.cutter, gear.concave_radius
-        if cutter.kc > 0.0 and radius < limit:
+        if cutter.kind == "pinion" and radius < limit:
             place = float(gear.curvature_places[np.argmin(gear.curvatures)])
-            how = (
-                "or pinion cutter can cut this wheel, only a wire, a laser or a printer makes it; "
-                "its fillets are those of the mate's teeth, longer by the clearance."
-                if cutter.mated
-                else "can cut this wheel; its fillets are those of a pinion cutter with up to "
-                f"{2.0 / (cutter.kc * subject.pair.module):.3g} teeth."
-            )
+            count = 2.0 / (cutter.kc * subject.pair.module)
             yield Finding(
                 code="concave",
                 severity="note",
-                message=f"The centrode is concave here: no rack or hob {how}",
+                message="The centrode is concave here: no rack or hob can cut this wheel; its "
+                f"fillets are those of a pinion cutter with up to {count:.3g} teeth.",
                 value=radius,
                 limit=limit if limit < _ANY_RADIUS else None,
                 unit="mm",

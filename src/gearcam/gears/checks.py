@@ -14,7 +14,6 @@ import numpy as np
 from gearcam.findings import Finding, Severity, check
 from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
-from gearcam.gears.joints import joints
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import KIND, Subject
 from gearcam.quantities import LENGTH, NUMBER, Param, rounded_down
@@ -125,12 +124,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
         fewest = math.ceil(gear.toothing.teeth * factor * (1.0 - 1e-12))
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
-            lost = (
-                float(
-                    (flanks.lowest + joints(gear.toothing, flanks.sf, flanks.sigma)[0])[below].max()
-                )
-                * slope
-            )
+            lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
             message = (
                 f"Undercut takes up to {lost:.4g} mm from the root end of these flanks; {left}."
             )
@@ -205,7 +199,7 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
         if bore is None:
             continue
         rim = gear.least_radius - 0.5 * bore
-        if rim < limit * subject.pair.module:
+        if rim < limit * subject.pair.module * (1.0 - 1e-9):  # the bore named keeps it
             largest = 2.0 * (gear.least_radius - limit * subject.pair.module)
             hint = (
                 f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the limit"

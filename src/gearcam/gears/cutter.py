@@ -1,10 +1,9 @@
-"""The cutter of a wheel: the rack, where it is concave a pinion conjugate to it, or the mate.
+"""The cutter of a wheel: the rack, or where the centrode is concave a pinion conjugate to it.
 
 No straight rack can cut a concave centrode: rolled along it, it erases flank. A pinion cutter
 (shaper) of pitch curvature ``kc > max(-kappa)`` can, and cuts the same flanks, since it is
 conjugate to the rack. The rack is the pinion with ``kc = 0``, and every formula here has that
-limit. Where such a pinion's teeth are pointed before they are as deep as the dedendum, the mate
-itself cuts the roots (see `joints`).
+limit.
 """
 
 from __future__ import annotations
@@ -40,8 +39,6 @@ class Cutter:
         the teeth, more what the play takes from them.
     pitch : float, mm
         pi*m.
-    mated : bool
-        Whether the mate's teeth, longer by the clearance, cut the roots instead.
     """
 
     alpha: float
@@ -51,13 +48,10 @@ class Cutter:
     kc: float
     half_space: float
     pitch: float
-    mated: bool = False
 
     @property
     def kind(self) -> str:
-        """``rack``, ``pinion`` or ``mate``."""
-        if self.mated:
-            return "mate"
+        """``rack`` or ``pinion``."""
         return "pinion" if self.kc > 0.0 else "rack"
 
     @property
@@ -95,6 +89,21 @@ class Cutter:
         return edge + rise / kc
 
     @property
+    def fits(self) -> bool:
+        """Whether a tooth of it is as deep as the dedendum before it is pointed."""
+        return self.offset <= self.half_space * (1.0 + 1e-9)
+
+    @cached_property
+    def least_concave_radius(self) -> float:
+        """Smallest concave radius that leaves a sharp-cornered pinion's tooth a land, mm."""
+        low, high = 0.0, self.kc
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            fits = replace(self, kc=middle).offset <= self.half_space
+            low, high = (middle, high) if fits else (low, middle)
+        return _CONCAVE_MARGIN / low if low > 0.0 else math.inf
+
+    @property
     def joint_height(self) -> float:
         """Rack height of the joint of flank and fillet, mm, negative: below the pitch curve."""
         return -self.reach * math.sin(self.alpha) * math.cos(self.alpha)
@@ -126,8 +135,7 @@ def choose_cutter(
     Returns
     -------
     Cutter
-        The rack for a convex centrode, else a pinion, or the mate if no tooth of such a pinion can
-        be as deep as the rack asks.
+        The rack for a convex centrode, else a pinion; see `Cutter.fits`.
     """
     kc = _CONCAVE_MARGIN * concave_curvature if concave_curvature * module > _FLAT else 0.0
     cutter = Cutter(
@@ -142,7 +150,7 @@ def choose_cutter(
     )
     if kc > 0.0 and cutter.offset > cutter.half_space:
         cutter = _blunt(cutter)
-    return replace(cutter, mated=cutter.offset > cutter.half_space * (1.0 + 1e-9))
+    return cutter
 
 
 def _blunt(cutter: Cutter) -> Cutter:

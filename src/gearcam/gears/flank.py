@@ -9,7 +9,7 @@ the frame of the pitch point.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 
@@ -141,8 +141,6 @@ class Rows:
         Whether a corner precedes the row.
     tooth : (n,) int array
         Tooth number, from 1, that the row belongs to (for lands: the tooth before the space).
-    joint : (n,) array, mm
-        For fillets: roll ``|s - sf|`` of the joint with the flank.
     """
 
     kind: NDArray[np.int64]
@@ -154,7 +152,6 @@ class Rows:
     high: Array
     corner: Mask
     tooth: NDArray[np.int64]
-    joint: Array
 
 
 def trace(
@@ -194,19 +191,10 @@ def trace(
     if fillet.size:
         frames = toothing.frames(phi[fillet], curved=False)
         sf, sigma = rows.sf[index[fillet]], rows.sigma[index[fillet]]
-        if cutter.mated:
-            arm, radius = (
-                _mate_corner(toothing, frames, phi[fillet], sf, sigma, rows.joint[index[fillet]]),
-                0.0,
-            )
-        else:
-            arm, radius = (
-                _tip_center(cutter, frames, sf + sigma * cutter.offset, w),
-                cutter.tip_radius,
-            )
+        arm = _tip_center(cutter, frames, sf + sigma * cutter.offset, w)
         length = np.abs(arm)
         unit = np.where(length > 0.0, arm, -w * frames.t) / np.where(length > 0.0, length, 1.0)
-        points[fillet] = frames.p + arm + radius * unit
+        points[fillet] = frames.p + arm + cutter.tip_radius * unit
         tangents[fillet] = w * unit
 
     parallel = np.flatnonzero(kind >= Kind.LAND)
@@ -234,15 +222,3 @@ def _tip_center(cutter: Cutter, frames: Frames, x: Array, w: complex) -> Plane:
     beta = roll * kc
     lift = 2.0 * np.sin(0.5 * beta) ** 2 / kc
     return frames.t * ((1.0 / kc + d) * np.sin(beta) + (lift - d * np.cos(beta)) * w)
-
-
-def _mate_corner(
-    toothing: Toothing, frames: Frames, phi: Array, sf: Array, sigma: Array, joint: Array
-) -> Plane:
-    """Vector from the pitch point to the corner of the mate's tooth that ends flanks at `joint`."""
-    rolling = toothing.rolling
-    mate = replace(toothing, wheel=3 - toothing.wheel)
-    touching = mate.frames(rolling.angle(sf + sigma * joint), curved=False)
-    other = mate.frames(phi, curved=False)
-    # both tangents are one, and the outward normals opposite
-    return frames.t * np.conj(other.t) * (mate.flank_points(touching, sf, -sigma) - other.p)

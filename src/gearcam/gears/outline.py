@@ -12,7 +12,6 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Kind, Rows, Toothing
-from gearcam.gears.joints import joints
 from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
@@ -227,34 +226,30 @@ def _find_flanks(
     half, z = toothing.half_tooth, len(toothing.numbers)
     sf = np.concatenate([toothing.tooth_places + half, toothing.tooth_places - half])
     sigma = np.repeat([1.0, -1.0], z)
-    mate_reach = _NO_MATE * toothing.pitch
-    if mate is not None and not mate.cutter.mated:  # roots that this wheel cuts are deep enough
-        mate_reach = mate.cutter.reach
-    reach, _ = joints(toothing, sf, sigma)
-    cusps = find_cusps(toothing, sf, sigma, -float(reach.max()), mate_reach)
+    mate_reach = _NO_MATE * toothing.pitch if mate is None else mate.cutter.reach
+    cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
     if mate is not None and tolerance is not None:
-        top = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+        reach = sigma * (sf - toothing.rolling.arc_length(tips.phi))
 
         def mate_outline() -> Array:
             return build_outline(mate, toothing, tolerance, tolerances, follow=False).points
 
-        allowed = highest_corners(toothing, mate, mate_outline, tolerance, (sf, sigma), top)
-        if (allowed < top).any():
-            limit = np.where(allowed < top, allowed, np.minimum(cusps.addendum, mate_reach))
+        allowed = highest_corners(toothing, mate, mate_outline, tolerance, (sf, sigma), reach)
+        if (allowed < reach).any():
+            limit = np.where(allowed < reach, allowed, np.minimum(cusps.addendum, mate_reach))
             tips = find_tips(toothing, sf, sigma, limit)
     tips = _sharpen(toothing, sf, sigma, tips)
     highest = sigma * (sf - toothing.rolling.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
     addendum = np.where(cusps.addendum <= highest * (1.0 + 1e-12), cusps.addendum, np.inf)
+    lowest = np.full(2 * z, -toothing.cutter.reach)
     return Flanks(
         sf=sf,
         sigma=sigma,
-        cusps=Undercut(
-            dedendum=np.where(cusps.dedendum >= -reach, cusps.dedendum, -np.inf), addendum=addendum
-        ),
+        cusps=Undercut(dedendum=cusps.dedendum, addendum=addendum),
         tips=tips,
-        lowest=-reach,
+        lowest=lowest,
         highest=highest,
     )
 
@@ -279,7 +274,6 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
         high=zero,
         corner=zero.astype(bool),
         tooth=np.tile(toothing.numbers, 2),
-        joint=zero,
     )
     for tooth in pointed:
         found = meet(toothing, rows, int(tooth), int(z + tooth))

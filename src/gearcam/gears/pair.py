@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError, Way
+from gearcam.gears.bound import demand_cutters
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.demands import demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
-from gearcam.gears.joints import contact_bound
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, Wheel, roll
 from gearcam.gears.spec import BasicRack, PairSpec, Rack
@@ -237,25 +237,10 @@ def make_pair(law: RatioLaw, spec: PairSpec, asked: Rack, tolerances: Tolerances
         )
 
     toothings = toothing(1), toothing(2)
-    _demand_contact(toothings)
+    demand_cutters(*toothings)
     return GearPair(
         rolling=rolling, teeth=spec.teeth, rack=rack, module=module, toothings=toothings
     )
-
-
-def _demand_contact(toothings: tuple[Toothing, Toothing]) -> None:
-    """Refuse a concave part in which the flanks cannot carry, whatever cuts their roots."""
-    tight = [toothing for toothing in toothings if toothing.cutter.mated]
-    if tight and (bound := contact_bound(*toothings)) < 1.0:
-        raise InfeasibleError(
-            "a concave part of the centrode is too tight for these teeth: no cutter fits into it, "
-            "and the flanks themselves touch for less than a pitch",
-            where=f"wheel {tight[0].wheel}",
-            value=bound,
-            limit=1.0,
-            nearest="this is the most that the contact ratio can be",
-            more_teeth=2.0,
-        )
 
 
 def make_gear(pair: GearPair, wheel: Wheel, tolerance: float, tolerances: Tolerances) -> Gear:

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.flank import Kind, Rows, Toothing, trace
-from gearcam.gears.joints import joints
 from gearcam.gears.rolling import Plane
 from gearcam.gears.tips import TipEnds
 from gearcam.gears.undercut import Undercut
@@ -80,16 +79,13 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         following, wrap, around, count = following[:-1], wrap[:-1], around[:-1], z - 1
     plus = places[:count] + half
     minus = places[following] + around - half
-    reach, offset = joints(
-        toothing, np.concatenate([places + half, places - half]), np.repeat([1.0, -1.0], z)
-    )
-    ends = toothing.rolling.angle(
+    joints = toothing.rolling.angle(
         np.stack(
             [
-                plus + reach[:count],
-                plus + offset[:count],
-                minus - offset[z + following],
-                minus - reach[z + following],
+                plus + cutter.reach,
+                plus + cutter.offset,
+                minus - cutter.offset,
+                minus - cutter.reach,
             ]
         )
     )
@@ -103,13 +99,12 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         "kind": [Kind.FLANK, Kind.FILLET, Kind.LAND, Kind.FILLET, Kind.FLANK, Kind.TIP],
         "sf": [plus, plus, zero, minus, minus, zero],
         "sigma": [one, one, zero, -one, -one, zero],
-        "start": [top_plus, ends[0], ends[1], ends[2], ends[3], tip_start],
-        "end": [ends[0], ends[1], ends[2], ends[3], top_minus, tip_end],
+        "start": [top_plus, joints[0], joints[1], joints[2], joints[3], tip_start],
+        "end": [joints[0], joints[1], joints[2], joints[3], top_minus, tip_end],
         "low": [zero, zero, land, zero, zero, tips.height[z + following]],
         "high": [zero, zero, land, zero, zero, tips.height[following]],
         "corner": [True, False, False, False, False, True],
         "tooth": [*[number[:count]] * 3, *[number[following]] * 3],
-        "joint": [zero, reach[:count], zero, reach[z + following], zero, zero],
     }
     columns = {
         name: np.stack([np.broadcast_to(value, count) for value in values], axis=1).ravel()
@@ -133,11 +128,8 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
     Returns
     -------
     (k,) int array
-        Spaces with an undercut flank, with a root sharper than the dedendum, or without a land; all
-        that the mate cuts.
+        Spaces with an undercut flank, with a root sharper than the dedendum, or without a land.
     """
-    if toothing.cutter.mated:
-        return np.arange(len(rows.kind) // ROWS_PER_TOOTH)
     z = len(toothing.numbers)
     undercut = np.isfinite(cusps.dedendum)
     loops = undercut[:z] | np.roll(undercut[z:], -1)

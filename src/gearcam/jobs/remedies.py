@@ -8,6 +8,7 @@ the change is kept if it is not refused, what was an error is gone, and no other
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -37,7 +38,7 @@ _LIKELY: Final = 1.5
 _SHARE: Final = 0.6
 """Part of the time that tooth counts may take where there are other ways."""
 
-_PARTS: Final = 100
+_PARTS: Final = 40
 """Steps between the near and the far end of a way."""
 
 _INSIDE: Final = 1e-3
@@ -129,18 +130,16 @@ def remedies(
     ways = list(refusal.ways if refusal else ())
     if job.design.kind == "cam":
         ways += _larger_cam(search.document)
-    elif refusal is None:
-        ways += _ways_of_errors(search)
-    elif not ways and not refusal.more_teeth:
-        ways += [*_other_ratios(search), *_EDGES]
-    factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
-    if factor:
-        ways += _milder(search)
-        search.until = search.begin + patience * (_SHARE if ways else 1.0)
-        search.more_teeth(factor)
-        search.until = search.begin + patience
+    else:
+        factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
+        ways += _of_a_pair(search, refusal, factor)
+        if factor:
+            search.until = search.begin + patience * (_SHARE if ways else 1.0)
+            search.more_teeth(factor)
+            search.until = search.begin + patience
     for way in ways:
-        search.along(way)
+        if not search.along(way) and (both := _for_both(way)) is not None:
+            search.along(both)
     return Remedies(
         found=tuple(search.found),
         tried=tuple(search.tried),
@@ -189,7 +188,7 @@ class _Search:
         """Whether the flanks alone already forbid what is asked, which takes no outline to know."""
         if other.design.kind == "cam":
             return False
-        from gearcam.gears.joints import contact_bound
+        from gearcam.gears.bound import contact_bound
 
         return contact_bound(*cast("GearPairJob", other).pair.toothings) < 1.0
 
@@ -198,29 +197,32 @@ class _Search:
         design = changed(self.job.design, changes)
         self.found.append(Remedy(changes=changes, less=less or {}, design=design))
 
-    def along(self, way: Way) -> None:
-        """Find the smallest change along a way."""
+    def along(self, way: Way) -> bool:
+        """Find the smallest change along a way; whether there is one."""
         if self.over():
-            return
+            return False
         near = {key: way.near.get(key, value_at(self.document, key)) for key in way.far or way.near}
         if any(value is None for value in near.values()):
-            return
+            return False
+        if way.far and _between(near, way.far, 1.0) == _between(near, {}, 0.0):
+            return False  # it is there already
         if way.near:
             first = _between(near, way.far, _INSIDE) if way.far else _tidy(near)
             if self.cures(first):
                 self.keep(first)
-                return
+                return True
         low, high = 0, _PARTS if way.far else 0
         while high and not self.over() and not self.cures(_between(near, way.far, high / _PARTS)):
             high //= 2
         if not high or self.over():
-            return
+            return False
         while high - low > 1 and not self.over():
             middle = (low + high) // 2
             does = self.cures(_between(near, way.far, middle / _PARTS))
             low, high = (low, middle) if does else (middle, high)
         ends = [_between(near, way.far, part / _PARTS) for part in (high, low)]
         self.keep(ends[0], ends[1] if low else None)
+        return True
 
     def more_teeth(self, factor: float) -> None:
         """Find the fewest teeth in the same ratio, `factor` times as many being likely."""
@@ -246,6 +248,15 @@ class _Search:
             small = {"pair.module_mm": float(f"{module * common / high:.6g}")}
             if self.cures({**teeth(high), **small}):
                 self.keep({**teeth(high), **small})
+
+
+def _for_both(way: Way) -> Way | None:
+    """Return a way of one wheel's blank as one of both, None where it is none."""
+    keys = [*way.near, *way.far]
+    if not keys or not all(re.fullmatch(r"blank\.\w+\[\d\]", key) for key in keys):
+        return None
+    near, far = ({key[:-3]: end for key, end in ends.items()} for ends in (way.near, way.far))
+    return Way(near=near, far=far)
 
 
 def _between(near: Changes, far: Changes, share: float) -> dict[str, object]:
@@ -284,6 +295,17 @@ def _milder(search: _Search) -> Iterator[Way]:
         far["law.ratios"] = mean
     if far:
         yield Way(far=far)
+
+
+def _of_a_pair(search: _Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Way]:
+    """Yield ways of a pair beside more teeth and what its refusal names."""
+    if refusal is None:
+        yield from _ways_of_errors(search)
+    elif not refusal.ways and not factor:
+        yield from _other_ratios(search)
+        yield from _EDGES
+    if factor:
+        yield from _milder(search)
 
 
 def _other_ratios(search: _Search) -> Iterator[Way]:

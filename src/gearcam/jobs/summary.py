@@ -107,7 +107,7 @@ def _helix(job: GearPairJob) -> dict[str, Any]:
 def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
     cutter, radius = gear.toothing.cutter, gear.convex_radius
     blank = job.design.blank.wheel(gear.wheel)
-    tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
+    tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kind == "pinion" else {}
     tool["cutter_tip_radius_mm"] = cutter.tip_radius
     return {
         "name": gear.name,
