@@ -20,6 +20,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam import remedies
 from gearcam.console import (
     cam_lines,
     complain,
@@ -351,7 +352,8 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
             written = action(job, progress)
     except InfeasibleError as error:
         complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
-        _tell_remedies(job, complain, error)
+        for line in remedy_lines(remedies(job, error)):
+            complain(f"  {line}")
         return IMPOSSIBLE
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
     told = [
@@ -366,20 +368,10 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         found = written.summary["meshing"]
         complain(f"{file}: interrupted: {found['steps_done']} of {found['steps']} steps are kept")
         return INTERRUPTED
-    if any(finding.severity == "error" for finding in written.findings):
-        _tell_remedies(job, say)
-        return FINDINGS
-    return GOOD
-
-
-def _tell_remedies(
-    job: Any, tell: Callable[[str], None], refusal: InfeasibleError | None = None
-) -> None:
-    """Search for remedies and say what was found."""
-    from gearcam.jobs.remedies import remedies
-
-    for line in remedy_lines(remedies(job, refusal)):
-        tell(textwrap.indent(line, "  "))
+    errors = any(finding.severity == "error" for finding in written.findings)
+    for line in remedy_lines(remedies(job)) if errors else ():
+        say(f"  {line}")
+    return FINDINGS if errors else GOOD
 
 
 def _demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:
