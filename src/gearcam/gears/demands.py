@@ -68,10 +68,10 @@ def settle_rack(asked: Rack, x: float) -> BasicRack:
     tip = asked.tip_radius
     if tip is None:
         tip = min(usual.tip_radius, max(0.0, _SHARE * largest))
-    if asked.dedendum is None:  # it could yield as far as the tip radius asks
-        largest = _widest_tip(asked.pressure_angle)
     made = replace(made, tip_radius=tip)
-    _demand_rack(made, largest)
+    # a dedendum that is not given could yield as far as the tip radius asks
+    free = asked.dedendum is None
+    _demand_rack(made, _widest_tip(asked.pressure_angle) if free else _largest_tip(made))
     return made
 
 
