@@ -71,12 +71,6 @@ def profile(name: str, tolerance: float | None = None) -> GearPairJob:
     )
 
 
-def unadvised(made: GearPairJob) -> GearPairJob:
-    """Return a job that refuses without the search for what would work."""
-    made._advises = False
-    return made
-
-
 def explained(made: GearPairJob) -> float:
     """Overlap that two chord errors explain: a lens of that depth on each of four flank pairs.
 

@@ -12,7 +12,7 @@ from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Kind, Toothing, trace
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Wheel, roll
-from gearcam.gears.spec import Rack
+from gearcam.gears.spec import BasicRack
 from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.phases import Phases
@@ -68,7 +68,7 @@ def toothings(name: str) -> tuple[Toothing, Toothing]:
 
     def toothing(wheel: Wheel) -> Toothing:
         concave = -float(rolling.curvature_extremes(wheel)[1].min())
-        cutter = choose_cutter(Rack(), module, concave, f"wheel {wheel}")
+        cutter = choose_cutter(BasicRack(), module, concave)
         return Toothing(rolling=rolling, wheel=wheel, teeth=case.teeth, cutter=cutter)
 
     return toothing(1), toothing(2)

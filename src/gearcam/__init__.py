@@ -4,6 +4,7 @@
     result = gearcam.build(design)
     result.pair.module, result.findings, result.gear1.outline
     result.write("output", files=["dxf"])
+    gearcam.remedies(result).found  # where it is refused or has errors: what would work
 
 Importing the package loads nothing else: `load` and `build` bring in what they need.
 """
@@ -16,10 +17,13 @@ if TYPE_CHECKING:
     import os
 
     from gearcam.design import CamDesign, Design, GearPairDesign
+    from gearcam.errors import InfeasibleError
+    from gearcam.jobs import Job
     from gearcam.jobs.cam import CamJob
     from gearcam.jobs.gear_pair import GearPairJob
+    from gearcam.jobs.remedies import Remedies
 
-__all__ = ["__version__", "build", "load"]
+__all__ = ["__version__", "build", "load", "remedies"]
 
 __version__ = "0.1.0"
 
@@ -67,3 +71,27 @@ def build(design: GearPairDesign | CamDesign) -> GearPairJob | CamJob:
     from gearcam.jobs import make_job
 
     return make_job(design)
+
+
+def remedies(
+    job: Job, refusal: InfeasibleError | None = None, *, patience: float = 6.0
+) -> Remedies:
+    """Search for changes with which a refused design, or one with errors, can be made.
+
+    Parameters
+    ----------
+    job : Job
+        From `build`.
+    refusal : InfeasibleError, optional
+        How it was refused; found by building where left out.
+    patience : float, s
+        Time after which no other design is tried.
+
+    Returns
+    -------
+    Remedies
+        Each was built: nothing is refused, what was an error is gone, and no other has come.
+    """
+    from gearcam.jobs.remedies import remedies as search
+
+    return search(job, refusal, patience=patience)

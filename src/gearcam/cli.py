@@ -20,6 +20,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam import remedies
 from gearcam.console import (
     DEBUG,
     cam_lines,
@@ -31,6 +32,7 @@ from gearcam.console import (
     meshing_lines,
     pair_lines,
     progress_bar,
+    remedy_lines,
     say,
     written_lines,
 )
@@ -337,9 +339,6 @@ def _each(
             complain(f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}")
             complain(textwrap.indent(str(error), "  "))
             codes.append(WRONG)
-        except InfeasibleError as error:
-            complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
-            codes.append(IMPOSSIBLE)
         except (WriteError, MissingExtraError) as error:
             complain(f"{file}: {error}")
             codes.append(WRONG)
@@ -359,8 +358,14 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     from gearcam.jobs import make_job  # a file that is refused needs none of it
 
     job = make_job(design)
-    with progress_bar(file) as progress:
-        written = action(job, progress)
+    try:
+        with progress_bar(file) as progress:
+            written = action(job, progress)
+    except InfeasibleError as error:
+        complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
+        for line in remedy_lines(remedies(job, error)):
+            complain(f"  {line}")
+        return IMPOSSIBLE
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
     told = [
         pair_lines(written.summary),
@@ -374,7 +379,10 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         found = written.summary["meshing"]
         complain(f"{file}: interrupted: {found['steps_done']} of {found['steps']} steps are kept")
         return INTERRUPTED
-    return FINDINGS if any(finding.severity == "error" for finding in written.findings) else GOOD
+    errors = any(finding.severity == "error" for finding in written.findings)
+    for line in remedy_lines(remedies(job)) if errors else ():
+        say(f"  {line}")
+    return FINDINGS if errors else GOOD
 
 
 def _demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:

@@ -6,6 +6,7 @@ Results go to stdout, what went wrong to stderr; piped output is plain text.
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import sys
 import textwrap
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from gearcam.errors import InfeasibleError
     from gearcam.findings import Finding
     from gearcam.jobs import Written
+    from gearcam.jobs.remedies import Remedies
 
 DEBUG: Final = "GEARCAM_DEBUG"
 """The variable that asks for tracebacks."""
@@ -35,6 +37,13 @@ def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     elif module is not None:
         way = pair["way_per_turn_mm"]
         yield f"wheel and rack, {way:.6g} mm a turn, module {module:.6g} mm, teeth {teeth}"
+    rack = pair.get("rack", {})
+    yielded = [
+        f"{name} {rack[name]:.6g} for the default {default:.6g}"
+        for name, default in rack.get("yielded", {}).items()
+    ]
+    if yielded:
+        yield f"of the rack gave way to given values: {', '.join(yielded)}"
 
 
 def cam_lines(summary: Mapping[str, Any]) -> Iterator[str]:
@@ -208,6 +217,34 @@ def infeasible_text(error: InfeasibleError) -> str:
     lines += [", ".join(shown)] if shown else []
     lines += error.nearest.split("; ") if error.nearest else []
     return "\n".join(wrapped(line, first="  ", rest="      ") for line in lines)
+
+
+def remedy_lines(found: Remedies) -> Iterator[str]:
+    """Yield what a search for remedies found, and how far it came."""
+    if found.found:
+        yield "built without errors with one of these:"
+    for remedy in found.found:
+        less = f"  (not yet with {_changes(remedy.less)})" if remedy.less else ""
+        yield f"  {_changes(remedy.changes)}{less}"
+    keys = ", ".join(found.tried)
+    if found.gave_up:
+        sought = "more" if found.found else "a remedy"
+        yield f"the search for {sought} was given up after {found.seconds:g} s"
+    elif keys and not found.found:
+        yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
+
+
+def _changes(changes: Mapping[str, object]) -> str:
+    return " and ".join(f"{key} = {_value(value)}" for key, value in changes.items())
+
+
+def _value(value: object) -> str:
+    """Write a value as a design file holds it."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return json.dumps(value)
 
 
 def wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:

@@ -5,14 +5,14 @@ Three kinds of refusal, each from a common base and from the builtin that fits:
 * `DesignError`: the design file (or the call) is wrong by reading it. It carries every problem of
   the file at once, each with its place.
 * `InfeasibleError`: the design reads well, but computing shows that it cannot be made. It carries
-  the number that fails, the limit, and the nearest feasible value where one is known.
+  the number that fails, the limit, and the ways in which it may be lifted.
 * `WriteError`: the disk refuses.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 
 class GearcamError(Exception):
@@ -71,6 +71,24 @@ class DesignError(GearcamError, ValueError):
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Way:
+    """A change of a design that may lift a refusal; nobody knows before it is built.
+
+    Parameters
+    ----------
+    near : mapping of str to value
+        The smallest change that may do: values by dotted keys of the design file, in its units;
+        empty for what the design has.
+    far : mapping of str to value
+        The same as far as the change can go, with the keys of `near`, if that is not one change
+        only.
+    """
+
+    near: Mapping[str, object] = field(default_factory=dict)
+    far: Mapping[str, object] = field(default_factory=dict)
+
+
 class InfeasibleError(GearcamError, ValueError):
     """The design reads well but cannot be made.
 
@@ -85,11 +103,12 @@ class InfeasibleError(GearcamError, ValueError):
     unit : str
         Unit of both.
     nearest : str
-        The nearest feasible value of what the user would change.
-    suggested : mapping
-        The same for programs: value by key of the design file; empty where none is known.
-    more_teeth : bool
-        Whether more teeth would help.
+        What else is to be known: what the numbers are, or the rule. No promise: what was built is
+        found by `gearcam.jobs.remedies`.
+    ways : sequence of Way
+        Changes of the design that may lift the refusal.
+    more_teeth : float
+        How many times more teeth may lift it, or a smaller swing of the ratio; 0 where they cannot.
     """
 
     def __init__(
@@ -101,11 +120,11 @@ class InfeasibleError(GearcamError, ValueError):
         limit: float | None = None,
         unit: str = "",
         nearest: str = "",
-        suggested: Mapping[str, object] | None = None,
-        more_teeth: bool = False,
+        ways: Sequence[Way] = (),
+        more_teeth: float = 0.0,
     ) -> None:
         self.what, self.where, self.nearest, self.unit = what, where, nearest, unit
-        self.suggested, self.more_teeth = dict(suggested or {}), more_teeth
+        self.ways, self.more_teeth = tuple(ways), more_teeth
         self.value, self.limit = value, limit
         text = f"{what} ({where})" if where else what
         numbers = ", ".join(

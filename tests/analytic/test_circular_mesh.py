@@ -77,7 +77,8 @@ class Spur:
 
 def spur(teeth: tuple[int, int], rack: Rack) -> tuple[Spur, tuple[Gear, Gear]]:
     made = job(Constant(), teeth, module=MODULE, rack=rack)
-    return Spur(*teeth, rack.pressure_angle, rack.addendum), made.gears
+    used = made.pair.rack
+    return Spur(*teeth, used.pressure_angle, used.addendum), made.gears
 
 
 @pytest.mark.parametrize(("teeth", "rack"), CASES)
@@ -94,7 +95,7 @@ def test_contact_ratio_and_active_radii(teeth: tuple[int, int], rack: Rack, side
     radii = np.stack([np.abs(found.point), np.abs(found.point - rolling.center_distance)])
     lowest = [float(values.min()) for values in radii]
     assert lowest == pytest.approx(truth.active_radii, rel=1e-9)
-    tips = [r + rack.addendum * MODULE for r in (truth.r1, truth.r2)]
+    tips = [r + truth.addendum * MODULE for r in (truth.r1, truth.r2)]
     assert [float(values.max()) for values in radii] == pytest.approx(tips, rel=1e-9)
 
 

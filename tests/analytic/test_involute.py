@@ -10,7 +10,7 @@ import pytest
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import roll
-from gearcam.gears.spec import Rack
+from gearcam.gears.spec import BasicRack
 from gearcam.laws.base import Lobes
 from gearcam.laws.constant import Constant
 from gearcam.tolerances import DEFAULT
@@ -30,7 +30,7 @@ def wheel(number: Any) -> Toothing:
         rolling=rolling,
         wheel=number,
         teeth=TEETH,
-        cutter=choose_cutter(Rack(), MODULE, 0.0, "a circular wheel"),
+        cutter=choose_cutter(BasicRack(), MODULE, 0.0),
     )
 
 

@@ -10,6 +10,7 @@ import pytest
 import shapely
 
 from gearcam.errors import InfeasibleError
+from gearcam.gears.spec import Rack
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
@@ -93,7 +94,7 @@ def test_the_play_is_what_was_asked_for(name: str) -> None:
 @pytest.mark.parametrize(("x", "works"), [(0.85, True), (0.8501, False), (-0.8501, False)])
 def test_a_shift_that_leaves_no_root_is_refused(x: float, works: bool) -> None:
     """1.25 - 0.38/0.95 = 0.85."""
-    made = job(Constant(), (60, 60), x=x)
+    made = job(Constant(), (60, 60), x=x, rack=Rack(dedendum=1.25, tip_radius=0.38))
     if works:
         assert made.pair.toothings[0].cutter.dedendum == pytest.approx(0.4)
     else:

@@ -15,7 +15,7 @@ import pytest
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import Wheel, roll
-from gearcam.gears.spec import Rack
+from gearcam.gears.spec import BasicRack
 from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -92,7 +92,7 @@ def wheels(name: str) -> tuple[Toothing, Toothing]:
         module=None,
         tolerances=DEFAULT,
     )
-    cutter = choose_cutter(Rack(), case.module, 0.0, "a wheel")
+    cutter = choose_cutter(BasicRack(), case.module, 0.0)
     first, second = (
         Toothing(rolling=rolling, wheel=number, teeth=36, cutter=cutter) for number in (1, 2)
     )

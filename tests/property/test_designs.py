@@ -23,7 +23,7 @@ from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
-from helpers_pairs import Assembly, explained, job, unadvised
+from helpers_pairs import Assembly, explained, job
 
 MODULE = 2.0
 """mm; the size is a matter of scale, which has a test of its own."""
@@ -136,7 +136,7 @@ def demand_pair(given: Given) -> GearPairJob | None:
     What a refusal advises is proved in test_families.
     """
     law, teeth, rack, tolerance = given
-    made = unadvised(job(law, teeth, module=MODULE, tolerance=tolerance * MODULE, rack=rack))
+    made = job(law, teeth, module=MODULE, tolerance=tolerance * MODULE, rack=rack)
     try:
         _ = made.findings
     except InfeasibleError as error:

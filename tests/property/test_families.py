@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,8 @@ import shapely
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
+import gearcam
+from gearcam.design.spec import changed
 from gearcam.errors import InfeasibleError
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.centrodes import EccentricCircle, Limacon, Lobed
@@ -34,7 +35,7 @@ from gearcam.laws.spiral import LogSpiral
 from gearcam.laws.table import Table
 from gearcam.meshing.halves import halve
 from gearcam.meshing.overlap import Turning
-from helpers_pairs import explained, job, unadvised
+from helpers_pairs import explained, job
 
 MODULE = 2.0
 TURN = 2 * math.pi
@@ -234,27 +235,22 @@ def demand_free(made: GearPairJob) -> None:
     assert areas.max() <= explained(made)
 
 
-def demand_advice(refused: InfeasibleError, given: Given) -> None:
-    """The tooth counts that a refusal names build, and one step fewer is refused."""
-    law, teeth, x = given
-    assert refused.nearest
-    assert "pair.teeth" in refused.suggested, str(refused)
-    advised: Any = refused.suggested["pair.teeth"]
-    assert advised[0] > teeth[0]
-    for gear in job(law, advised, module=MODULE, x=x).gears:
-        assert shapely.LinearRing(gear.outline).is_simple
-    if "law.eccentricity" in refused.suggested:
-        largest: Any = refused.suggested["law.eccentricity"]
-        for gear in job(replace(law, eccentricity=largest), teeth, module=MODULE, x=x).gears:
-            assert shapely.LinearRing(gear.outline).is_simple
-        more = replace(law, eccentricity=1.01 * largest)
-        with pytest.raises(InfeasibleError):
-            _ = unadvised(job(more, teeth, module=MODULE, x=x)).gears
-    step = math.gcd(*advised)
-    fewer = tuple(count - count // step for count in advised)
-    if "fewer may do" not in refused.nearest:
-        with pytest.raises(InfeasibleError):
-            _ = unadvised(job(law, fewer, module=MODULE, x=x)).gears  # type: ignore[arg-type]
+def demand_remedies(refused: GearPairJob) -> None:
+    """What the search names builds, and the next smaller change is refused or has errors."""
+    found = gearcam.remedies(refused)
+    assert found.found or found.gave_up
+    for remedy in found.found:
+        assert not has_errors(remedy.design)
+        assert not remedy.less or has_errors(changed(refused.design, remedy.less))
+
+
+def has_errors(design: Any) -> bool:
+    """Whether a design is refused or builds with errors."""
+    try:
+        findings = gearcam.build(design).findings
+    except InfeasibleError:
+        return True
+    return any(finding.severity == "error" for finding in findings)
 
 
 def demand(given: Given) -> bool:
@@ -270,7 +266,7 @@ def demand(given: Given) -> bool:
         refused = None
     assert time.process_time() - start < 10.0
     if refused is not None:
-        demand_advice(refused, given)
+        demand_remedies(made)
         return False
     for gear in made.gears:
         ring = shapely.LinearRing(gear.outline)

@@ -13,6 +13,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 import shapely
+from numpy.typing import NDArray
 
 from gearcam.drawings import Drawing, Feature, cut_drawing, wheel_drawing
 from gearcam.export.cut_svg import cut_svg
@@ -43,7 +44,7 @@ class Line:
     colour: str
     width: float
     layer: str
-    points: np.ndarray
+    points: NDArray[np.complex128]
     closed: bool
 
     @property
@@ -74,9 +75,9 @@ def arc(start: complex, end: complex, radius: float, sweep: bool) -> np.ndarray:
     return center + (start - center) * np.exp(1j * turn * np.arange(1, count + 1) / count)
 
 
-def points_of(data: str) -> tuple[np.ndarray, bool]:
+def points_of(data: str) -> tuple[NDArray[np.complex128], bool]:
     """Read path data of the commands M, L, A and Z."""
-    made: list[np.ndarray] = []
+    made: list[NDArray[np.complex128]] = []
     closed = False
     for word, rest in re.findall(r"([MLAZ])([^MLAZ]*)", data):
         numbers = [float(one) for one in rest.split()]
@@ -149,14 +150,13 @@ def test_one_part_is_drawn_in_its_size_and_not_mirrored(kerf: float) -> None:
     def there(one: shapely.Polygon) -> shapely.Polygon:
         return shapely.affinity.translate(one, *shift)
 
-    rounds = {"quad_segs": 256}
-    demand_same(there(outer), part().contour.polygon.buffer(0.5 * kerf, **rounds), tolerance)
+    demand_same(there(outer), part().contour.polygon.buffer(0.5 * kerf, quad_segs=256), tolerance)
     for kind in ("BORE", "HOLE", "SLOT"):
         (got,) = sheet.regions(kind.lower())
         (opening,) = [one for one in part().openings if one.kind == kind]
         assert not isinstance(opening.shape, Contour)
         edge = shapely.Polygon(opening.shape.points(1e-5))
-        demand_same(there(got), edge.buffer(-0.5 * kerf, **rounds), tolerance)
+        demand_same(there(got), edge.buffer(-0.5 * kerf, quad_segs=256), tolerance)
         mirrored = shapely.affinity.scale(got, -1.0, origin=outer.centroid)
         assert there(mirrored).symmetric_difference(edge).area > 0.3 * edge.length
     (mark,) = sheet.regions("mark")

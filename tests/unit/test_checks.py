@@ -254,15 +254,15 @@ def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:
     assert cut.severity == "error"
 
 
-def test_the_largest_module_that_the_message_names_is_the_largest() -> None:
-    """Tooth counts on either side of the named module: undercut above it only."""
+def test_the_fewest_teeth_without_undercut_are_named() -> None:
+    """With the fewest teeth there is no undercut, with one less there is, and so they are named."""
     law = Ellipse(eccentricity=0.5)
-    made = job(law, (18, 18))
-    named = codes(made)["undercut"].limit
-    assert named is not None
-    teeth = math.ceil(18 / named)
+    found = codes(job(law, (18, 18)))["undercut"]
+    assert found.limit is not None
+    teeth = int(found.limit)
     assert "undercut" not in codes(job(law, (teeth, teeth)))
-    assert f"{named:.4f} mm" in codes(made)["undercut"].message
+    assert "undercut" in codes(job(law, (teeth - 1, teeth - 1)))
+    assert f"[{teeth}, {teeth}]" in found.message
 
 
 def test_contact_ratio_of_circular_wheels_is_the_textbooks() -> None:

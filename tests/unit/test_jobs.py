@@ -38,7 +38,7 @@ TOP = [
 """Keys of every summary; ``solids`` comes with meshes, ``stale`` with old files."""
 
 PAIR = {"center_distance_mm", "module_mm", "teeth", "face_width_mm", "ratio", "solved"}
-PAIR |= {"x", "backlash_mm"}
+PAIR |= {"x", "backlash_mm", "rack"}
 CENTRODE = {"length_mm", "min_convex_radius_mm", "max_concave_curvature_per_mm", "closed"}
 GEAR = {"cutter", "undercut_teeth", "tip_thickness_min_mm", "outline"}
 OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}
@@ -254,7 +254,7 @@ def test_a_check_of_a_new_design_writes_the_summary_only(tmp_path: Path) -> None
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "bore larger than the root": ({"bores": (40.0, 8.0)}, "bore"),
     "tolerance coarser than m/50": ({"distance": 44.0, "tolerance": 0.05}, "too coarse"),
-    "tip radius too large": ({"rack": Rack(tip_radius=0.5)}, "tip radius"),
+    "tip radius too large": ({"rack": Rack(dedendum=1.25, tip_radius=0.5)}, "tip radius"),
     "rack deeper than its point": ({"rack": Rack(dedendum=2.4, tip_radius=0.0)}, "pointed"),
     "no closure": (
         {"law": Phases(knots=(0.0, 3.0, 2 * math.pi), ratios=(1.5, 0.9, 1.5))},

@@ -20,7 +20,7 @@ from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
-from helpers_pairs import Assembly, job, unadvised
+from helpers_pairs import Assembly, job
 
 SLOWEST = 5.0
 """Seconds of work, however busy the machine is; the one that this was written on takes a tenth."""
@@ -48,7 +48,7 @@ def gaps(outline: Outline) -> float:
 def built_or_refused(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairJob | None:
     """The job, proved; None if the design was refused in a way that helps."""
     start = time.process_time()
-    made = unadvised(job(law, teeth, **given))  # advice is proved in test_families
+    made = job(law, teeth, **given)  # advice is proved in test_families
     try:
         _ = made.gears
     except InfeasibleError as error:
@@ -178,7 +178,7 @@ RACKS = {
     "deep": Rack(dedendum=2.0, tip_radius=0.0),
     "shallow": Rack(addendum=0.4, dedendum=0.5, tip_radius=0.1),
     "hardly rounded": Rack(tip_radius=1e-6),
-    "fully rounded": Rack(tip_radius=LARGEST_TIP),
+    "fully rounded": Rack(dedendum=1.25, tip_radius=LARGEST_TIP),
     "centre of the tip on the pitch line": Rack(addendum=0.3, dedendum=0.38, tip_radius=0.38),
     "centre near the pitch line": Rack(addendum=0.3, dedendum=0.381, tip_radius=0.38),
     "14.5 degrees": Rack(pressure_angle=math.radians(14.5)),
@@ -202,11 +202,16 @@ def test_racks_of_all_sorts(rack: str, law: Any) -> None:
     ("rack", "what", "value", "limit"),
     [
         # rho*(1/cos(alpha) - tan(alpha)) <= pi/4 - hf*tan(alpha)
-        (Rack(tip_radius=0.5), "tip radius", 0.5, 0.4719),
+        (Rack(dedendum=1.25, tip_radius=0.5), "tip radius", 0.5, 0.4719),
         (Rack(dedendum=2.0, tip_radius=0.1), "tip radius", 0.1, 0.08206),
-        (Rack(pressure_angle=math.radians(30)), "tip radius", 0.38, 0.11035),
+        (
+            Rack(pressure_angle=math.radians(30), dedendum=1.25, tip_radius=0.38),
+            "tip radius",
+            0.38,
+            0.11035,
+        ),
         # hf*tan(alpha) <= pi/4
-        (Rack(pressure_angle=math.radians(35)), "dedendum", 1.25, 1.12166),
+        (Rack(pressure_angle=math.radians(35), dedendum=1.25), "dedendum", 1.25, 1.12166),
         (Rack(dedendum=2.5, tip_radius=0.0), "dedendum", 2.5, 2.15785),
     ],
 )
@@ -217,7 +222,6 @@ def test_a_rack_that_cannot_be_made_is_refused_with_its_limit(
         _ = job(Constant(), (40, 40), rack=rack).pair
     assert caught.value.value == value
     assert caught.value.limit == pytest.approx(limit, abs=5e-5)
-    assert f"{caught.value.limit:.6g}" in str(caught.value)
 
 
 @pytest.mark.parametrize("law", [Constant(), Ellipse(eccentricity=0.3)])
@@ -247,8 +251,8 @@ LOOPS = [
     *[(Ellipse(eccentricity=0.6), z, Rack()) for z in (8, 9, 12, 21)],
     (Ellipse(eccentricity=0.2), 17, Rack()),
     # Without a land two fillets touch where they meet, and that is no crossing.
-    *[(Constant(), z, Rack(tip_radius=LARGEST_TIP)) for z in (8, 12, 16)],
-    (Ellipse(eccentricity=0.4), 17, Rack(tip_radius=LARGEST_TIP)),
+    *[(Constant(), z, Rack(dedendum=1.25, tip_radius=LARGEST_TIP)) for z in (8, 12, 16)],
+    (Ellipse(eccentricity=0.4), 17, Rack(dedendum=1.25, tip_radius=LARGEST_TIP)),
 ]
 
 
@@ -282,7 +286,7 @@ def errors_of(made: GearPairJob) -> list[str]:
 def test_a_shaft_outside_its_wheel_is_refused(e: float, z: int) -> None:
     """The near focus lies less than a dedendum inside the centrode: a*(1 - e) < 1.25 m."""
     rack = Rack(addendum=0.8, dedendum=1.0, tip_radius=0.3)
-    made = unadvised(job(Ellipse(eccentricity=e), (z, z), rack=rack))
+    made = job(Ellipse(eccentricity=e), (z, z), rack=rack)
     assert 0.5 * made.pair.center_distance * (1 - e) < 1.0
     with pytest.raises(InfeasibleError, match=r"shaft|axis"):
         _ = made.gears

@@ -47,8 +47,7 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Finding]:
         yield Finding(
             code="pressure-angle",
             severity="warning",
-            message=f"The pressure angle on the {kind} reaches {_deg(worst.value)}; a larger prime "
-            "radius, a longer phase or another offset makes it smaller.",
+            message=f"The pressure angle on the {kind} reaches {_deg(worst.value)}.",
             value=math.degrees(abs(worst.value)),
             limit=math.degrees(limit),
             unit="deg",

@@ -207,7 +207,7 @@ class DiscCam:
             raise InfeasibleError(
                 "the profile crosses itself, and what is left of it cannot be told",
                 where="[cam]",
-                nearest="a larger prime radius, a smaller roller, or longer phases",
+                nearest="no piece of it has a place in the order of the others",
             )
         return made
 
@@ -326,7 +326,7 @@ def make_cam(
             where="motion",
             value=low if not mechanism.oscillating else math.degrees(low),
             unit="deg" if mechanism.oscillating else "mm",
-            nearest="a larger prime or base radius, or lifts that do not go below zero",
+            nearest="this is the lowest lift",
         )
     return made
 
@@ -343,7 +343,7 @@ def _demand_swing(made: DiscCam, low: float, high: float) -> None:
             value=math.degrees((low if low <= least else high) - mechanism.start),
             limit=math.degrees((least if low <= least else most) - mechanism.start),
             unit="deg",
-            nearest="a lift within the limit",
+            nearest="these are lifts",
         )
     if mechanism.flat and not (slowest := made.program.range_of(1)[0]) > -1.0 + _STANDSTILL:
         raise InfeasibleError(
@@ -351,5 +351,5 @@ def _demand_swing(made: DiscCam, low: float, high: float) -> None:
             where="motion",
             value=slowest,
             limit=-1.0,
-            nearest="the limit is -1 rad of swing per rad of the cam: a longer return",
+            nearest="these are rad of swing per rad of the cam",
         )

@@ -23,7 +23,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +104,13 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
                 value=abs(follower.offset),
                 limit=size,
                 unit="mm",
-                nearest=f"an offset below {size:.6g} mm either way",
+                nearest="the limit, either way, is the prime radius",
+                ways=(
+                    Way(
+                        near={"follower.offset_mm": math.copysign(size, follower.offset)},
+                        far={"follower.offset_mm": 0.0},
+                    ),
+                ),
             )
         height = math.sqrt((size - follower.offset) * (size + follower.offset))
         return Mechanism(start=height, offset=follower.offset, **kind)
@@ -120,7 +126,8 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
             value=size,
             limit=low if size <= low else high,
             unit="mm",
-            nearest=f"with this arm and pivot a prime radius between {low:.6g} and {high:.6g} mm",
+            nearest=f"arm and pivot allow {low:.6g} to {high:.6g} mm, both excluded",
+            ways=_between("cam.prime_radius_mm", size, low, high),
         )
     # half the angle from the sides: exact where the triangle is nearly flat
     half = math.atan2(
@@ -128,6 +135,13 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
         math.sqrt((pivot + arm - size) * (pivot + arm + size)),
     )
     return Mechanism(start=2.0 * half, arm=arm, pivot=pivot, **kind)
+
+
+def _between(key: str, size: float, low: float, high: float) -> tuple[Way, ...]:
+    """Return the way of a size from the limit that it passes to the middle of what is allowed."""
+    if high <= 0.0:
+        return ()
+    return (Way(near={key: low if size <= low else high}, far={key: 0.5 * (low + high)}),)
 
 
 def _given(value: float | None, what: str) -> float:
@@ -146,10 +160,11 @@ def _swinging_face(follower: FollowerSpec, size: float, pivot: float) -> Mechani
             value=size,
             limit=low if size <= low else high,
             unit="mm",
-            nearest="with this pivot and face offset a base radius between "
-            f"{max(low, 0.0):.6g} and {high:.6g} mm"
-            if high > 0.0
-            else f"a face offset below {pivot:.6g} mm",
+            nearest=f"pivot and face offset allow {low:.6g} to {high:.6g} mm, both excluded",
+            ways=(
+                *_between("cam.base_radius_mm", size, max(low, 0.0), high),
+                Way(far={"follower.face_offset_mm": 0.0}),
+            ),
         )
     return Mechanism(
         flat=True,

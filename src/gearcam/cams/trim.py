@@ -127,7 +127,7 @@ def trimmed(
     raise InfeasibleError(
         "the profile crosses itself so often that what is left cannot be told",
         where="[cam]",
-        nearest="a larger prime radius, or a smaller roller",
+        nearest="no piece of it has a place in the order of the others",
     )
 
 

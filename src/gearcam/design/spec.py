@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Final, Protocol
 
 from gearcam.design.examine import examine
 from gearcam.design.kinds import KINDS
-from gearcam.design.wording import MISSING, dotted
+from gearcam.design.wording import MISSING, Fault, dotted
 from gearcam.errors import DesignError, InfeasibleError, Problem
 
 HASH_DIGITS: Final = 16
@@ -87,17 +88,21 @@ def settle(design: DesignLike, wanted: Iterable[Wanted]) -> None:
     _demand_types(design, wanted)
     faults = examine(document_of(design)).faults
     if faults:
-        raise DesignError(
-            Problem(
-                message=fault.message,
-                file=design.source,
-                key=dotted(fault.path),
-                value=None if fault.value is MISSING else fault.value,
-                allowed=fault.allowed,
-                hint=fault.hint,
-            )
-            for fault in faults
+        raise _refusal(faults, design)
+
+
+def _refusal(faults: Iterable[Fault], design: DesignLike) -> DesignError:
+    return DesignError(
+        Problem(
+            message=fault.message,
+            file=design.source,
+            key=dotted(fault.path),
+            value=None if fault.value is MISSING else fault.value,
+            allowed=fault.allowed,
+            hint=fault.hint,
         )
+        for fault in faults
+    )
 
 
 def _demand_types(design: DesignLike, wanted: Iterable[Wanted]) -> None:
@@ -196,3 +201,51 @@ def _rows(file: str) -> list[list[str]]:
         return [cells for _, cells in read_rows(file)]
     except ColumnsError as error:
         raise InfeasibleError(str(error), where=file) from error
+
+
+def changed(design: Any, changes: Mapping[str, object]) -> Any:
+    """Return a design with other values of some keys.
+
+    Parameters
+    ----------
+    design : DesignLike
+        A design of any kind.
+    changes : mapping of str to value
+        New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units.
+
+    Returns
+    -------
+    DesignLike
+        Of the same kind.
+
+    Raises
+    ------
+    DesignError
+        If a value is not what the file may hold.
+    """
+    document = document_of(design)
+    for key, value in changes.items():
+        *path, last = path_of(key)
+        place: Any = document
+        for step in path:
+            place = place[step]
+        place[last] = value
+    found = examine(document)
+    if found.faults:
+        raise _refusal(found.faults, design)
+    return type(design)(source=design.source, **found.parts)
+
+
+def value_at(document: Any, key: str) -> Any:
+    """Return the value of a dotted `key` in a `document`, None where it has none."""
+    for step in path_of(key):
+        try:
+            document = document[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return document
+
+
+def path_of(key: str) -> tuple[str | int, ...]:
+    """Return the steps of a dotted key, such as ``law.ratios[1]``."""
+    return tuple(int(step) if step.isdigit() else step for step in re.findall(r"[^.\[\]]+", key))

@@ -32,8 +32,7 @@ def closure(subject: Subject, limit: float) -> Iterator[Finding]:
         yield Finding(
             code="closure",
             severity="warning",
-            message="The law does not close exactly: give the ratios with more digits, or leave "
-            'one to "solve".',
+            message="The law does not close exactly: over a lobe the driven angle is off by this.",
             value=math.degrees(miss),
             limit=math.degrees(limit),
             unit="deg",
@@ -101,16 +100,16 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
 def concave(subject: Subject, limit: float) -> Iterator[Finding]:
     """Note a concave part, which a rack or hob cannot cut."""
     for gear in subject.gears:
-        curvature = gear.concave_curvature
-        if gear.toothing.cutter.kc > 0.0 and 1.0 / curvature < limit:
+        cutter, radius = gear.toothing.cutter, gear.concave_radius
+        if cutter.kind == "pinion" and radius < limit:
             place = float(gear.curvature_places[np.argmin(gear.curvatures)])
-            cutter = 2.0 / (gear.toothing.cutter.kc * subject.pair.module)
+            count = 2.0 / (cutter.kc * subject.pair.module)
             yield Finding(
                 code="concave",
                 severity="note",
                 message="The centrode is concave here: no rack or hob can cut this wheel; its "
-                f"fillets are those of a pinion cutter with up to {cutter:.3g} teeth.",
-                value=1.0 / curvature,
+                f"fillets are those of a pinion cutter with up to {count:.3g} teeth.",
+                value=radius,
                 limit=limit if limit < _ANY_RADIUS else None,
                 unit="mm",
                 where=f"wheel {gear.wheel}, {angle_text(place)}",
@@ -132,8 +131,8 @@ def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="sharp",
                 severity="warning",
-                message=f"The centrode bends with a radius of {gear.convex_radius:.6g} mm here; "
-                "take more teeth or a smaller swing of the ratio.",
+                message=f"The centrode bends with a radius of {gear.convex_radius:.6g} mm here. "
+                f"{subject.with_teeth(limit / radius)} the limit is kept.",
                 value=radius,
                 limit=limit,
                 unit="modules",
@@ -151,18 +150,17 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn where teeth are wide for a concave part: tips crowd, and only a tiny cutter fits."""
     for gear in subject.gears:
         cutter = gear.toothing.cutter
-        if cutter.kc == 0.0:
+        if cutter.kind != "pinion":
             continue
         count = 2.0 / (cutter.kc * subject.pair.module)
         if count < limit:
             place = float(gear.curvature_places[np.argmin(gear.curvatures)])
-            fewest = math.ceil(gear.toothing.teeth * limit / count)
             yield Finding(
                 code="concave-teeth",
                 severity="warning",
                 message="The teeth are wide for this concave part, whose radius is "
-                f"{1.0 / gear.concave_curvature:.6g} mm; with {fewest} teeth on this wheel the "
-                "limit is kept.",
+                f"{gear.concave_radius:.6g} mm. {subject.with_teeth(limit / count)} the limit is "
+                "kept.",
                 value=count,
                 limit=limit,
                 unit="teeth",
@@ -194,8 +192,9 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="pressure-angle",
                 severity="warning",
-                message="The tooth force stands so steep that it mostly loads the bearings; a "
-                "smaller swing of the ratio or rack.pressure_angle_deg lessens it.",
+                message="The tooth force stands so steep that it mostly loads the bearings: the "
+                f"rack's {math.degrees(subject.pair.rack.pressure_angle):.6g} deg and the slope of "
+                "the centrode add up.",
                 value=math.degrees(float(angles[worst])),
                 limit=math.degrees(limit),
                 unit="deg",
@@ -229,8 +228,7 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="self-crossing",
                 severity="warning",
-                message="Little is left between the first and the last tooth; a shorter way or "
-                "more teeth leave more.",
+                message="Little is left between the first and the last tooth.",
                 value=math.degrees(gap),
                 limit=math.degrees(limit),
                 unit="deg",
@@ -273,7 +271,7 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa:
     """Warn if the pinion cutter would cut a tooth far from the space it is in."""
     for gear in subject.gears:
         cutter = gear.toothing.cutter
-        if cutter.kc == 0.0 or not gear.toothing.closed:
+        if cutter.kind != "pinion" or not gear.toothing.closed:
             continue
         length, count = gear.pair.rolling.length(gear.wheel), 180
         s = length * np.arange(count) / count

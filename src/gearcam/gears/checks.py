@@ -13,9 +13,10 @@ import numpy as np
 
 from gearcam.findings import Finding, Severity, check
 from gearcam.gears import centrode_checks
+from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, KIND, Subject
-from gearcam.quantities import LENGTH, NUMBER, Param
+from gearcam.quantities import LENGTH, NUMBER, Param, rounded_down
 
 __all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
 
@@ -32,10 +33,11 @@ def tooth_ranges(numbers: tuple[int, ...] | list[int]) -> str:
 
 
 def largest_module(gear: Gear) -> float:
-    """Return the largest module without undercut below the pitch curve, mm.
+    """Return the largest module without undercut, on either side of the pitch curve, mm.
 
-    ``m = rho_min*sin(alpha)^2/h`` with the depth h of the straight flank in modules, 1 for the
-    common rack (0.99997 exactly, which counts as full).
+    ``m = rho_min*sin(alpha)^2/h`` on convex parts with the depth h of the straight flank in
+    modules, 1 for the common rack (0.99997 exactly, which counts as full), and on concave parts
+    with the depth to which the mate's flanks go. Enough, not always needed: a flank may end sooner.
 
     Parameters
     ----------
@@ -47,10 +49,19 @@ def largest_module(gear: Gear) -> float:
     float
         For the same centre distance and other tooth counts.
     """
-    cutter, module = gear.toothing.cutter, gear.pair.module
-    # As a rack, also under a pinion: at a smaller module the pinion comes closer to it.
-    depth = round((cutter.depth + cutter.tip_radius * math.sin(cutter.alpha)) / module, 4)
-    return gear.convex_radius * math.sin(cutter.alpha) ** 2 / depth
+    radii = (gear.convex_radius, gear.concave_radius)
+    own, mate = gear.toothing.cutter, gear.pair.toothings[2 - gear.wheel].cutter
+    square = math.sin(own.alpha) ** 2
+    return min(
+        radius * square / _straight_depth(cutter)
+        for radius, cutter in zip(radii, (own, mate), strict=True)
+    )
+
+
+def _straight_depth(cutter: Cutter) -> float:
+    """Depth of the straight flank, modules, of a rack: at a smaller module a pinion nears it."""
+    depth = cutter.depth + cutter.tip_radius * math.sin(cutter.alpha)
+    return math.ceil(depth * math.pi / cutter.pitch * 1e4 - 0.5) / 1e4
 
 
 @check(
@@ -76,22 +87,21 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
         flanks, best = gear.profile.flanks, largest_module(gear)
         below = np.isfinite(flanks.cusps.dedendum)
         message = f"Flanks end at a cusp above the pitch curve; {left}."
+        factor = subject.pair.module / best
+        fewest = math.ceil(gear.toothing.teeth * factor * (1.0 - 1e-12))
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
-            fewest = math.ceil(gear.toothing.teeth * subject.pair.module / best)
             message = (
-                f"Undercut takes up to {lost:.4g} mm from the root end of these flanks; {left}. "
-                f"Without undercut: a module up to {best:.4f} mm, which is {fewest} teeth or more "
-                "on this wheel."
+                f"Undercut takes up to {lost:.4g} mm from the root end of these flanks; {left}."
             )
         yield Finding(
             code="undercut",
             severity=severity,
-            message=message,
-            value=subject.pair.module,
-            limit=best if below.any() else None,
-            unit="mm",
+            message=f"{message} {subject.with_teeth(factor)} this wheel has no undercut.",
+            value=gear.toothing.teeth,
+            limit=fewest,
+            unit="teeth",
             where=f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
         )
 
@@ -112,7 +122,7 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="thin-tip",
                 severity="warning",
-                message=f"Teeth are {state} at the tip; a smaller rack.addendum thickens them.",
+                message=f"Teeth are {state} at the tip.",
                 value=float(thickness.min()),
                 limit=limit,
                 unit="modules",
@@ -156,10 +166,12 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
         if bore is None:
             continue
         rim = gear.least_radius - 0.5 * bore
-        if rim < limit * subject.pair.module:
+        if rim < limit * subject.pair.module * (1.0 - 1e-9):  # the bore named keeps it
             largest = 2.0 * (gear.least_radius - limit * subject.pair.module)
             hint = (
-                f"a bore up to {largest:.6g} mm keeps the limit" if largest > 0 else "no bore does"
+                f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the limit"
+                if largest > 0
+                else "no bore keeps the limit"
             )
             yield Finding(
                 code="thin-rim",

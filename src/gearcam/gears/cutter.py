@@ -12,8 +12,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from gearcam.errors import InfeasibleError
-from gearcam.gears.spec import Rack
+from gearcam.gears.spec import BasicRack
 
 _CONCAVE_MARGIN = 1.15
 """kc over the sharpest concave curvature: enough for clearance, and still a large cutter."""
@@ -90,16 +89,30 @@ class Cutter:
         return edge + rise / kc
 
     @property
+    def fits(self) -> bool:
+        """Whether a tooth of it is as deep as the dedendum before it is pointed."""
+        return self.offset <= self.half_space * (1.0 + 1e-9)
+
+    @cached_property
+    def least_concave_radius(self) -> float:
+        """Smallest concave radius that leaves a sharp-cornered pinion's tooth a land, mm."""
+        low, high = 0.0, self.kc
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            fits = replace(self, kc=middle).offset <= self.half_space
+            low, high = (middle, high) if fits else (low, middle)
+        return _CONCAVE_MARGIN / low if low > 0.0 else math.inf
+
+    @property
     def joint_height(self) -> float:
         """Rack height of the joint of flank and fillet, mm, negative: below the pitch curve."""
         return -self.reach * math.sin(self.alpha) * math.cos(self.alpha)
 
 
 def choose_cutter(
-    rack: Rack,
+    rack: BasicRack,
     module: float,
     concave_curvature: float,
-    where: str,
     *,
     shift: float = 0.0,
     backlash: float = 0.0,
@@ -109,14 +122,12 @@ def choose_cutter(
 
     Parameters
     ----------
-    rack : Rack
+    rack : BasicRack
         Heights in modules.
     module : float, mm
         Module.
     concave_curvature : float, 1/mm
         Largest ``-kappa`` of the centrode; not positive for a convex one.
-    where : str
-        The wheel, for messages.
     shift : float
         Profile shift of this wheel, in modules.
     backlash : float, mm
@@ -127,12 +138,7 @@ def choose_cutter(
     Returns
     -------
     Cutter
-        The rack for a convex centrode, else a pinion.
-
-    Raises
-    ------
-    InfeasibleError
-        If no tooth of such a cutter can be as deep as the rack asks: the concave part is too tight.
+        The rack for a convex centrode, else a pinion; see `Cutter.fits`.
     """
     kc = _CONCAVE_MARGIN * concave_curvature if concave_curvature * module > _FLAT else 0.0
     cutter = Cutter(
@@ -147,20 +153,6 @@ def choose_cutter(
     )
     if kc > 0.0 and cutter.offset > cutter.half_space:
         cutter = _blunt(cutter)
-    if cutter.offset > cutter.half_space * (1.0 + 1e-9):
-        smallest = _smallest_concave_radius(cutter)
-        raise InfeasibleError(
-            "a concave part of the centrode is too tight: a pinion cutter that fits into it has "
-            "pointed teeth",
-            where=where,
-            value=1.0 / concave_curvature,
-            limit=smallest,
-            unit="mm",
-            nearest=f"the smallest concave radius is {1.0 / concave_curvature:.6g} mm and must be "
-            f"at least {smallest:.6g} mm: lower the ratio's swing, take a smaller module (more "
-            "teeth) or a smaller rack.dedendum",
-            more_teeth=True,
-        )
     return widened(cutter, clearance)
 
 
@@ -196,13 +188,3 @@ def _blunt(cutter: Cutter) -> Cutter:
         fits = replace(cutter, tip_radius=middle).offset <= cutter.half_space
         low, high = (middle, high) if fits else (low, middle)
     return replace(cutter, tip_radius=low)
-
-
-def _smallest_concave_radius(cutter: Cutter) -> float:
-    """Smallest concave radius that leaves a sharp-cornered pinion's tooth a land, by bisection."""
-    low, high = 0.0, cutter.kc
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        fits = replace(cutter, kc=middle).offset <= cutter.half_space
-        low, high = (middle, high) if fits else (low, middle)
-    return _CONCAVE_MARGIN / low if low > 0.0 else math.inf

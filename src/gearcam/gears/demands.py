@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
-from gearcam.errors import InfeasibleError
-from gearcam.gears.spec import Finish, PairSpec, Rack
+from gearcam.errors import InfeasibleError, Way
+from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
 
 _TIP_PART = 0.95
 """Largest tip radius over the dedendum: with its centre on the pitch line a tip arc would cut the
@@ -17,40 +18,108 @@ _LEAST_ADDENDUM = 0.1
 _MOST_PLAY = 2.0
 """Largest backlash over half the thickness of the thinner teeth: half of them is left."""
 
+_SHARE = 0.98
+"""Share of the room that a default takes which yields: a land is left."""
 
-def demand_rack(rack: Rack) -> None:
-    """Refuse a rack without clearance, or whose tooth tip has no land.
+_SHALLOW = 0.8
+"""Addendum over dedendum of the common rack, where one of them follows the other."""
+
+_ROUNDING = 1e-12
+
+
+def settle_rack(asked: Rack, x: float) -> BasicRack:
+    """Return the basic rack: what is given as given, defaults where they fit, else nearest to them.
+
+    The tip radius yields first, then the dedendum, the addendum last.
 
     Parameters
     ----------
-    rack : Rack
-        Basic rack.
+    asked : Rack
+        As in the design.
+    x : float
+        Profile shift, in modules.
+
+    Returns
+    -------
+    BasicRack
 
     Raises
     ------
     InfeasibleError
-        Naming the largest tip radius.
+        If the given values contradict each other.
     """
+    usual, shift = BasicRack(), abs(x)
+    deepest = _SHARE * _deepest(asked.pressure_angle, asked.tip_radius or 0.0)
+    if asked.dedendum is not None:
+        deepest = asked.dedendum
+    addendum = asked.addendum
+    if addendum is None:
+        wanted = max(usual.addendum, shift + _LEAST_ADDENDUM)
+        addendum = wanted if wanted <= deepest else max(_SHALLOW * deepest, shift + _LEAST_ADDENDUM)
+    dedendum = asked.dedendum
+    if dedendum is None:
+        room = shift + (asked.tip_radius or 0.0) / _TIP_PART
+        wanted = usual.dedendum if usual.dedendum >= addendum else addendum / _SHALLOW
+        dedendum = max(min(max(wanted, room), deepest), addendum)
+    made = BasicRack(
+        pressure_angle=asked.pressure_angle, addendum=addendum, dedendum=dedendum, tip_radius=0.0
+    )
+    largest = min(_largest_tip(made), _TIP_PART * (dedendum - shift))
+    tip = asked.tip_radius
+    if tip is None:
+        tip = min(usual.tip_radius, max(0.0, _SHARE * largest))
+    made = replace(made, tip_radius=tip)
+    # a dedendum that is not given could yield as far as the tip radius asks
+    free = asked.dedendum is None
+    _demand_rack(made, _widest_tip(asked.pressure_angle) if free else _largest_tip(made))
+    return made
+
+
+def _deepest(alpha: float, tip_radius: float) -> float:
+    """Dedendum at which a rack's tooth is pointed: ``rho/cos + (hf - rho)*tan = pi/4``."""
+    return tip_radius + (0.25 * math.pi - tip_radius / math.cos(alpha)) / math.tan(alpha)
+
+
+def _largest_tip(rack: BasicRack) -> float:
+    """Largest tip radius that leaves a rack's tooth a land; negative where nothing does."""
     alpha, depth = rack.pressure_angle, rack.dedendum
+    room = 0.25 * math.pi - depth * math.tan(alpha)
+    return min(room / (1.0 / math.cos(alpha) - math.tan(alpha)), _TIP_PART * depth)
+
+
+def _widest_tip(alpha: float) -> float:
+    """Largest tip radius of a rack whose dedendum is the nearest that leaves it a land."""
+    part, tangent = _SHARE * _TIP_PART, math.tan(alpha)
+    return part * 0.25 * math.pi / (tangent + part * (1.0 / math.cos(alpha) - tangent))
+
+
+def _demand_rack(rack: BasicRack, largest: float) -> None:
+    """Refuse a rack without clearance, or whose tooth tip has no land."""
+    depth, angle = rack.dedendum, f"a pressure angle of {math.degrees(rack.pressure_angle):.6g} deg"
     if depth < rack.addendum:
         raise InfeasibleError(
             "the dedendum is less than the addendum: teeth would run into the mate's root",
             where="rack.dedendum",
             value=depth,
             limit=rack.addendum,
-            nearest=f"at least {rack.addendum:.6g}, better {1.25 * rack.addendum:.6g}",
+            nearest="the limit is the addendum",
+            ways=(
+                Way(near={"rack.dedendum": rack.addendum / _SHALLOW}),
+                Way(near={"rack.addendum": _SHALLOW * depth}),
+            ),
         )
-    half_space = 0.25 * math.pi
-    # rho/cos(alpha) + (hf - rho)*tan(alpha) <= pi/4
-    largest = (half_space - depth * math.tan(alpha)) / (1.0 / math.cos(alpha) - math.tan(alpha))
-    largest = min(largest, _TIP_PART * depth)
-    if largest < 0.0:
+    if _largest_tip(rack) < 0.0:
+        deepest = _deepest(rack.pressure_angle, 0.0)
         raise InfeasibleError(
             "the rack's tooth is pointed before it is as deep as the dedendum",
             where="rack.dedendum",
             value=depth,
-            limit=half_space / math.tan(alpha),
-            nearest=f"a dedendum up to {half_space / math.tan(alpha):.6g}",
+            limit=deepest,
+            nearest=f"the limit is where its flanks meet, at {angle}",
+            ways=(
+                Way(near={"rack.dedendum": 0.9 * deepest}),
+                Way(near={"rack.addendum": 0.7 * deepest}),
+            ),
         )
     if rack.tip_radius > largest * (1.0 + 1e-12):
         raise InfeasibleError(
@@ -58,16 +127,17 @@ def demand_rack(rack: Rack) -> None:
             where="rack.tip_radius",
             value=rack.tip_radius,
             limit=largest,
-            nearest=f"a tip radius up to {largest:.6g}",
+            nearest=f"the limit is for {angle}",
+            ways=(Way(near={"rack.tip_radius": 0.99 * largest}),),
         )
 
 
-def demand_shift(rack: Rack, spec: PairSpec, module: float) -> None:
+def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
     """Refuse a profile shift or a play that leaves a wheel without teeth or roots.
 
     Parameters
     ----------
-    rack : Rack
+    rack : BasicRack
         Basic rack.
     spec : PairSpec
         Shift and play.
@@ -80,13 +150,14 @@ def demand_shift(rack: Rack, spec: PairSpec, module: float) -> None:
         Naming the largest.
     """
     largest = min(rack.dedendum - rack.tip_radius / _TIP_PART, rack.addendum - _LEAST_ADDENDUM)
-    if abs(spec.x) > largest:
+    if abs(spec.x) > largest + _ROUNDING:
         raise InfeasibleError(
             "the profile shift leaves one wheel no root or no addendum",
             where="pair.x",
             value=spec.x,
             limit=math.copysign(largest, spec.x),
-            nearest=f"a shift from {-largest:.10g} to {largest:.10g} modules with this rack",
+            nearest="the limit is that of this rack",
+            ways=(Way(near={"pair.x": math.copysign(largest, spec.x)}, far={"pair.x": 0.0}),),
         )
     thinnest = 0.25 * math.pi - abs(spec.x) * math.tan(rack.pressure_angle)
     most = _MOST_PLAY * thinnest * module
@@ -97,18 +168,19 @@ def demand_shift(rack: Rack, spec: PairSpec, module: float) -> None:
             value=spec.backlash,
             limit=most,
             unit="mm",
-            nearest=f"up to {most:.10g} mm for a module of {module:.6g} mm",
+            nearest=f"the limit is that of a module of {module:.6g} mm",
+            ways=(Way(near={"pair.backlash_mm": most}, far={"pair.backlash_mm": 0.0}),),
         )
 
 
 def demand_clearance(
-    rack: Rack, spec: PairSpec, module: float, finish: tuple[Finish, Finish]
+    rack: BasicRack, spec: PairSpec, module: float, finish: tuple[Finish, Finish]
 ) -> None:
     """Refuse a clearance that leaves a wheel no teeth.
 
     Parameters
     ----------
-    rack : Rack
+    rack : BasicRack
         Basic rack.
     spec : PairSpec
         Shift and play.
@@ -134,5 +206,11 @@ def demand_clearance(
                 value=wheel.clearance,
                 limit=most,
                 unit="mm",
-                nearest=f"up to {most:.6g} mm for a module of {module:.6g} mm",
+                nearest=f"the limit is that of a module of {module:.6g} mm",
+                ways=(
+                    Way(
+                        near={f"blank.clearance_mm[{number}]": most},
+                        far={f"blank.clearance_mm[{number}]": 0.0},
+                    ),
+                ),
             )

@@ -137,15 +137,15 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         name = ("driver", "driven wheel")[toothing.wheel - 1]
         lobes = toothing.rolling.law.lobes
         travel = math.degrees(lobes.period if toothing.wheel == 1 else lobes.advance)
+        limit = travel * (2.0 * math.pi - _GAP) / span
         raise InfeasibleError(
             f"the ends of the {name} meet behind its shaft",
             where=f"wheel {toothing.wheel}",
             value=travel,
-            limit=travel * (2.0 * math.pi - _GAP) / span,
+            limit=limit,
             unit="deg",
-            nearest=f"this is how far the {name} turns, and with its end teeth it fills the "
-            "circle: shorten its way, or take more teeth",
-            more_teeth=travel < _WHOLE,
+            nearest=f"this is how far the {name} turns; with its end teeth it fills the circle",
+            more_teeth=travel / limit if travel < _WHOLE else 0.0,
         )
     hub = radius * inner / np.abs(inner)
     sweep = 2.0 * math.pi - span

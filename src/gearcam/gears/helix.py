@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.pair import GearPair
 from gearcam.gears.spec import HelixSpec
 
@@ -39,7 +39,8 @@ def leads(pair: GearPair, spec: HelixSpec) -> tuple[float, ...]:
             where="helix.steps",
             value=spec.steps,
             limit=1,
-            nearest="leave the table [helix] out",
+            nearest="they have one step",
+            ways=(Way(near={"helix.steps": 1}),),
         )
     pitch = pair.toothings[0].pitch
     offset = pitch / spec.steps if spec.offset is None else spec.offset

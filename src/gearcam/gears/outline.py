@@ -348,9 +348,8 @@ def _demand_simple(outline: Outline) -> None:
         value=toothing.pitch / np.pi,
         limit=largest,
         unit="mm",
-        nearest="this is the module, and the largest that is certainly free of undercut; take more "
-        "teeth, a smaller rack.dedendum or a larger rack.tip_radius",
-        more_teeth=True,
+        nearest="this is the module, and the largest that is free of undercut at this size",
+        more_teeth=toothing.pitch / (np.pi * largest) if largest else 2.0,
     )
 
 
@@ -372,6 +371,6 @@ def _demand_shaft(outline: Outline) -> None:
         value=module,
         limit=largest,
         unit="mm",
-        nearest=f"a module below {largest:.6g} mm (more teeth), or a smaller swing of the ratio",
-        more_teeth=True,
+        nearest="this is the module, and the one whose roots would reach the shaft at this size",
+        more_teeth=module / largest,
     )

@@ -9,13 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
+from gearcam.gears.bound import demand_cutters
 from gearcam.gears.cutter import choose_cutter
-from gearcam.gears.demands import demand_clearance, demand_rack, demand_shift
+from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, Wheel, roll
-from gearcam.gears.spec import Finish, PairSpec, Rack
+from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
 from gearcam.laws.base import RatioLaw
 from gearcam.laws.span import Lobes
 from gearcam.numeric.bulges import as_pairs
@@ -40,7 +41,7 @@ class GearPair:
         The centrodes.
     teeth : (int, int)
         Tooth counts.
-    rack : Rack
+    rack : BasicRack
         Basic rack.
     module : float, mm
         L/(pi*z).
@@ -50,7 +51,7 @@ class GearPair:
 
     rolling: Rolling
     teeth: tuple[int, int]
-    rack: Rack
+    rack: BasicRack
     module: float
     toothings: tuple[Toothing, Toothing]
 
@@ -94,8 +95,8 @@ class GearPair:
                 value=asked,
                 limit=limit,
                 unit="mm",
-                nearest=f"{'at least' if fine else 'at most'} {limit:.6g} mm for the module "
-                f"{self.module:.6g} mm",
+                nearest=f"the limit is for the module {self.module:.6g} mm",
+                ways=(Way(near={"output.chord_tolerance_mm": (1.001 if fine else 0.999) * limit}),),
             )
         return asked
 
@@ -151,6 +152,12 @@ class Gear:
         return max(0.0, -float(self.curvatures.min()))
 
     @property
+    def concave_radius(self) -> float:
+        """Smallest concave radius of the centrode, mm; infinite where it has no concave part."""
+        curvature = self.concave_curvature
+        return 1.0 / curvature if curvature > 0.0 else math.inf
+
+    @property
     def curvatures(self) -> Array:
         """All extremes of the centrode's curvature, 1/mm."""
         return self.pair.rolling.curvature_extremes(self.wheel)[1]
@@ -168,7 +175,7 @@ class Gear:
 def make_pair(
     law: RatioLaw,
     spec: PairSpec,
-    rack: Rack,
+    asked: Rack,
     tolerances: Tolerances,
     finish: tuple[Finish, Finish] = (Finish(), Finish()),
 ) -> GearPair:
@@ -180,8 +187,8 @@ def make_pair(
         For the lobes of the tooth counts.
     spec : PairSpec
         Sizes.
-    rack : Rack
-        Basic rack.
+    asked : Rack
+        Basic rack as it is asked for.
     tolerances : Tolerances
         Inner accuracy.
     finish : (Finish, Finish)
@@ -195,7 +202,7 @@ def make_pair(
     Raises
     ------
     InfeasibleError
-        If the rack cannot be made, or a concave part is too tight for a cutter.
+        If the rack cannot be made, or a concave part is too tight for the teeth.
     """
     if law.feeds and spec.center_distance is not None:
         raise InfeasibleError(
@@ -203,7 +210,7 @@ def make_pair(
             where="pair.center_distance_mm",
             value=spec.center_distance,
             unit="mm",
-            nearest="give module_mm instead: with the tooth count it is the size of the wheel",
+            nearest="module_mm is given instead: with the tooth count it is the size of the wheel",
         )
     rolling = roll(
         law,
@@ -213,7 +220,7 @@ def make_pair(
         tolerances=tolerances,
     )
     module = spec.module or rolling.length(1) / (math.pi * spec.teeth[0])
-    demand_rack(rack)
+    rack = settle_rack(asked, spec.x)
     demand_shift(rack, spec, module)
     demand_clearance(rack, spec, module, finish)
 
@@ -223,7 +230,6 @@ def make_pair(
             rack,
             module,
             concave,
-            f"wheel {wheel}",
             shift=spec.x if wheel == 1 else -spec.x,
             backlash=spec.backlash,
             clearance=finish[wheel - 1].clearance,
@@ -237,12 +243,10 @@ def make_pair(
             rounding=finish[wheel - 1].tip_rounding,
         )
 
+    toothings = toothing(1), toothing(2)
+    demand_cutters(*toothings)
     return GearPair(
-        rolling=rolling,
-        teeth=spec.teeth,
-        rack=rack,
-        module=module,
-        toothings=(toothing(1), toothing(2)),
+        rolling=rolling, teeth=spec.teeth, rack=rack, module=module, toothings=toothings
     )
 
 

@@ -9,24 +9,68 @@ from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, param
 
 @dataclass(frozen=True, kw_only=True)
 class Rack:
-    """The basic rack; heights in modules. The defaults are the common full-depth rack.
+    """The basic rack as it is asked for; heights in modules.
 
-    The tip radius is the largest that leaves a land: 0.38 leaves a straight flank to 0.999968
-    modules.
+    What is left out takes its default of `BasicRack`, or what fits to the values given (see
+    `settle_rack`).
     """
 
     pressure_angle: float = param(
         ANGLE, default=0.3490658503988659, ge=5, le=35, doc="pressure angle of the rack"
     )
-    addendum: float = param(
-        NUMBER, default=1.0, gt=0.1, le=2, doc="tooth height above the pitch curve, in modules"
+    addendum: float | None = param(
+        NUMBER,
+        default=None,
+        gt=0.1,
+        le=2,
+        doc="tooth height above the pitch curve, in modules; default 1, other where given values "
+        "leave no room for it",
     )
-    dedendum: float = param(
-        NUMBER, default=1.25, gt=0.1, le=2.5, doc="depth below the pitch curve, in modules"
+    dedendum: float | None = param(
+        NUMBER,
+        default=None,
+        gt=0.1,
+        le=2.5,
+        doc="depth below the pitch curve, in modules; default 1.25, other where given values leave "
+        "no room for it",
     )
-    tip_radius: float = param(
-        NUMBER, default=0.38, ge=0, le=1, doc="rounding of the cutter's tip, in modules"
+    tip_radius: float | None = param(
+        NUMBER,
+        default=None,
+        ge=0,
+        le=1,
+        doc="rounding of the cutter's tip, in modules; default 0.38, less where it does not fit",
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class BasicRack:
+    """The basic rack as it is used; the defaults are the common full-depth rack.
+
+    The tip radius is the largest that leaves a land: 0.38 leaves a straight flank to 0.999968
+    modules.
+
+    Parameters
+    ----------
+    pressure_angle : float, rad
+        Pressure angle.
+    addendum, dedendum, tip_radius : float
+        Height above and depth below the pitch curve, rounding of the cutter's tip, in modules.
+    """
+
+    pressure_angle: float = 0.3490658503988659
+    addendum: float = 1.0
+    dedendum: float = 1.25
+    tip_radius: float = 0.38
+
+    def yielded(self, asked: Rack) -> dict[str, float]:
+        """Return the defaults that gave way to what is `asked` for: their values, by name."""
+        return {
+            name: default
+            for name in ("addendum", "dedendum", "tip_radius")
+            if getattr(asked, name) is None
+            and getattr(self, name) != (default := getattr(BasicRack, name))
+        }
 
 
 @dataclass(frozen=True, kw_only=True)

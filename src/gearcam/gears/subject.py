@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -38,6 +39,13 @@ class Subject:
     pair: GearPair
     gears: tuple[Gear, Gear]
     bores: tuple[float | None, float | None]
+
+    def with_teeth(self, factor: float) -> str:
+        """Return in words with how many teeth, in the same ratio, all is `factor` times as wide."""
+        common = math.gcd(*self.pair.teeth)
+        each = math.ceil(common * factor * (1.0 + 1e-9))
+        counts = ", ".join(str(count // common * each) for count in self.pair.teeth)
+        return f"With pair.teeth = [{counts}] or more"
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:

@@ -44,7 +44,7 @@ def curvature_columns(
         raise InfeasibleError(
             "the undercut profile has cusps: their curvature cannot be studied",
             where="output.files",
-            nearest="a larger base radius, or no curvature study",
+            nearest="profiles without undercut have one; the other files do not need it",
         )
 
     def points(theta: Array) -> NDArray[np.complex128]:

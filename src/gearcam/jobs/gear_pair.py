@@ -7,8 +7,7 @@ each file. Every stage is timed once. Nothing is imported that the asked-for fil
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.design import GearPairDesign
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.helix import leads, stepped
@@ -72,37 +71,6 @@ class GearPairJob(Job):
             "checks": "findings",
         }
     )
-    _advises = True
-    """Whether a refusal comes with what would work; attempts at that do not."""
-
-    @contextmanager
-    def _advised(self) -> Iterator[None]:
-        """Say with a refusal how many teeth would do, where more of them help."""
-        try:
-            yield
-        except InfeasibleError as error:
-            if not (error.more_teeth and self._advises):
-                raise
-            from gearcam.jobs.feasible import advice, fewest_teeth, largest_eccentricity
-
-            value, limit = error.value or 1.0, error.limit or 1.0
-            factor, law = max(value / limit, limit / value), self.design.law
-            found = fewest_teeth(self.design.pair.teeth, factor, self._with_teeth)
-            largest = None
-            if hasattr(law, "eccentricity"):
-                largest = largest_eccentricity(
-                    law.eccentricity, lambda e: self._other(law=replace(law, eccentricity=e))
-                )
-            raise advice(error, found, largest) from None
-
-    def _with_teeth(self, teeth: tuple[int, int]) -> tuple[Gear, Gear]:
-        return self._other(pair=replace(self.design.pair, teeth=teeth))
-
-    def _other(self, **changes: Any) -> tuple[Gear, Gear]:
-        """Build the wheels of a changed design, without advice."""
-        other = GearPairJob(replace(self.design, **changes), self.tolerances)
-        other._advises = False
-        return other.gears
 
     @cached_property
     def law(self) -> RatioLaw:
@@ -116,7 +84,7 @@ class GearPairJob(Job):
     def pair(self) -> GearPair:
         """The centrodes with their cutters."""
         law = self.law
-        with self._stage("centrodes"), self._advised():
+        with self._stage("centrodes"):
             return make_pair(law, self.design.pair, self.design.rack, self.tolerances, self._finish)
 
     @property
@@ -145,19 +113,25 @@ class GearPairJob(Job):
         return self.gears, *((self._gear(1, pair), self._gear(2, pair)) for pair in pairs[1:])
 
     def _gear(self, wheel: Wheel, pair: GearPair) -> Gear:
-        with self._stage(f"gear{wheel}"), self._advised():
+        with self._stage(f"gear{wheel}"):
             tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
             gear = make_gear(pair, wheel, tolerance, self.tolerances)
             bore = self.bores[wheel - 1]
             if bore is not None and 0.5 * bore >= gear.least_radius:
-                largest = 2.0 * gear.least_radius
+                largest, key = 2.0 * gear.least_radius, f"blank.bore_diameter_mm[{wheel - 1}]"
                 raise InfeasibleError(
                     "the bore reaches the root of the teeth",
-                    where=f"wheel {wheel}, blank.bore_diameter_mm[{wheel - 1}]",
+                    where=f"wheel {wheel}, {key}",
                     value=bore,
                     limit=largest,
                     unit="mm",
-                    nearest=f"a bore below {largest:.6g} mm",
+                    nearest="the limit holds for the circle around bore and keyway",
+                    ways=(
+                        Way(
+                            near={key: largest - bore + self.design.blank.wheel(wheel).bore},
+                            far={key: 0.1 * largest},
+                        ),
+                    ),
                 )
             return gear
 

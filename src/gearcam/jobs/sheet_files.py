@@ -57,7 +57,7 @@ def sheet_files(job: GearPairJob, pair: Drawing, style: DxfStyle, ending: str) -
 
 
 def _common(job: GearPairJob) -> dict[str, str]:
-    rack, pair = job.design.rack, job.design.pair
+    rack, pair = job.pair.rack, job.design.pair
     facts = {
         "module": f"{job.pair.module:.6g} mm",
         "pressure angle": f"{math.degrees(rack.pressure_angle):.6g} deg",

@@ -71,6 +71,7 @@ def summarize(
             "face_width_mm": job.design.pair.face_width,
             "x": job.design.pair.x,
             "backlash_mm": job.design.pair.backlash,
+            "rack": _rack(job),
             **facts,
             "solved": solved,
         },
@@ -111,6 +112,19 @@ def kerf_entry(kerf: float) -> dict[str, float]:
     return {"kerf_mm": kerf} if kerf else {}
 
 
+def _rack(job: GearPairJob) -> dict[str, Any]:
+    """Return the basic rack as it was used, and the defaults that yielded to given values."""
+    rack = job.pair.rack
+    yielded = rack.yielded(job.design.rack)
+    return {
+        "pressure_angle_deg": math.degrees(rack.pressure_angle),
+        "addendum": rack.addendum,
+        "dedendum": rack.dedendum,
+        "tip_radius": rack.tip_radius,
+        **({"yielded": yielded} if yielded else {}),
+    }
+
+
 def _helix(job: GearPairJob) -> dict[str, Any]:
     from gearcam.gears.helix import leads
 
@@ -121,7 +135,7 @@ def _helix(job: GearPairJob) -> dict[str, Any]:
 def _gear(job: GearPairJob, gear: Gear) -> dict[str, Any]:
     cutter, radius = gear.toothing.cutter, gear.convex_radius
     blank = job.design.blank.wheel(gear.wheel)
-    tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kc > 0.0 else {}
+    tool = {"cutter_pitch_radius_mm": 1.0 / cutter.kc} if cutter.kind == "pinion" else {}
     tool["cutter_tip_radius_mm"] = cutter.tip_radius
     return {
         "name": gear.name,

@@ -115,7 +115,7 @@ def _demand_one_lobe(lobes: Lobes, name: str) -> None:
             where="pair.teeth",
             value=float(lobes.n1),
             limit=1.0,
-            nearest="give the driven wheel as many teeth as the driver, or a multiple of them",
+            nearest="the driven wheel's teeth are the driver's or a multiple of them then",
         )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import RatioLaw, make_law
 from gearcam.laws.span import Lobes, Span, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError, expand
@@ -176,6 +176,7 @@ def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
             where="law.lobes",
             value=given[0] / given[1],
             limit=lobes.n1 / lobes.n2,
-            nearest=f"lobes = [{lobes.n1}, {lobes.n2}] or a multiple, or other tooth counts",
+            nearest=f"the tooth counts ask for [{lobes.n1}, {lobes.n2}] or a multiple",
+            ways=(Way(near={"law.lobes": [lobes.n1, lobes.n2]}),),
         )
     return given[0]

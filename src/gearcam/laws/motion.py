@@ -97,7 +97,7 @@ class Motion:
                 where="pair.teeth",
                 value=float(lobes.n2),
                 limit=1.0,
-                nearest="give the driver as many teeth as the driven wheel, or a multiple of them",
+                nearest="the driver's teeth are the driven wheel's or a multiple of them then",
             )
         slide, radius = make_slide(compiled(self.slide or ""), float(self.rod or 0.0), lobes.period)
         knots, pieces, start = crank_angle(slide)

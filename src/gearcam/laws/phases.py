@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.span import Lobes, Span, Travel, demand_equal, driven_way
 from gearcam.laws.transitions import ARCS, Arc
@@ -141,6 +141,10 @@ def one_lobe(
         value=math.degrees(knots[-1]),
         limit=360 / lobes.n1,
         unit="deg",
+        nearest="the limit is one lobe",
+        ways=(
+            Way(near={"law.knots_deg": [360.0 / lobes.n1 * float(k / knots[-1]) for k in knots]}),
+        ),
     )
 
 
@@ -229,6 +233,7 @@ def _close(
             limit=math.degrees(lobes.advance),
             unit="deg",
             nearest=_closing_values(given, rest / weights, lobes.closed),
+            ways=_closing_ways(given, rest / weights, lobes.closed),
         )
     values = given.tolist()
     return [*values, values[0]] if lobes.closed else values, solved
@@ -236,7 +241,7 @@ def _close(
 
 def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> str:
     """Say which value each ratio must have for the law to close if only that one is changed."""
-    lines = ["it closes with one of these"]
+    lines = ["closure asks for one of these"]
     for index, (value, step) in enumerate(zip(given, change, strict=True)):
         closing = value + step
         both = closed and index == 0
@@ -244,6 +249,19 @@ def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> str:
         state = f"{closing:.10g}" if closing > 0 else f"none ({closing:.6g} is not positive)"
         lines.append(f"{name} = {state} instead of {value:.10g}")
     return "; ".join(lines)
+
+
+def _closing_ways(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[Way, ...]:
+    """Return a way for each ratio whose closing value is positive."""
+    values = [float(value) for value in given + change]
+    places = [[index] for index in range(len(values))]
+    if closed:
+        places[0].append(len(values))
+    return tuple(
+        Way(near={f"law.ratios[{place}]": value for place in where})
+        for where, value in zip(places, values, strict=True)
+        if value > 0.0
+    )
 
 
 def _solve_way(
@@ -267,13 +285,20 @@ def _solve_way(
     high = filled[index + 1] if index + 1 < len(filled) else 2.0 * math.pi
     if not low < place <= high or place == high < 2.0 * math.pi:
         ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
+        key = "law.driven_travel_deg"
         raise InfeasibleError(
             "no knot between its neighbours gives the driven wheel its way",
             where=f"law.knots_deg[{index}]",
             value=math.degrees(travel),
             limit=ways[0] if math.degrees(travel) < ways[0] else ways[1],
             unit="deg",
-            nearest=f"driven_travel_deg between {ways[0]:.10g} and {ways[1]:.10g} deg",
+            nearest=f"the knots allow {ways[0]:.10g} to {ways[1]:.10g} deg, both excluded",
+            ways=(
+                Way(
+                    near={key: ways[0] if math.degrees(travel) < ways[0] else ways[1]},
+                    far={key: 0.5 * (ways[0] + ways[1])},
+                ),
+            ),
         )
     return filled, list(ratios), {f"knots_deg[{index}]": math.degrees(place)}
 

@@ -9,7 +9,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.phases import arcs_law, one_lobe
 from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, driven_way
@@ -113,6 +113,8 @@ class ThreePhasePolynomial:
                 value=math.degrees(self.knots[3]),
                 limit=360 / lobes.n1,
                 unit="deg",
+                nearest="the limit is one lobe",
+                ways=(Way(near={"law.knots_deg[3]": 360.0 / lobes.n1}),),
             )
         first, second, third = (float(width) for width in np.diff(self.knots))
         k1 = self.knots[1]
@@ -127,7 +129,8 @@ class ThreePhasePolynomial:
                 where="law.lowest",
                 value=a,
                 limit=mean,
-                nearest=f"a lowest ratio below {mean:.10g}",
+                nearest="the limit is the mean ratio",
+                ways=(Way(near={"law.lowest": mean}, far={"law.lowest": 0.5 * mean}),),
             )
         b = a + p * rise
 
@@ -196,7 +199,8 @@ class Fourier:
                 where=angle_text(place),
                 value=smallest,
                 limit=0.0,
-                nearest=f"all coefficients times less than {share:.6g}",
+                nearest=f"with all coefficients times {share:.6g} it would just be 0",
+                ways=(Way(far={"law.cosines": 0.0, "law.sines": 0.0}),),
             )
         return make_law(lobes, knots, pieces, tolerances)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.driver import Shape, law_of_centrode
 from gearcam.laws.span import Lobes
@@ -75,7 +75,10 @@ class RoundedPolygon:
                 where="law.corners",
                 value=float(self.corners),
                 limit=float(lobes.n1),
-                nearest=f"a multiple of {lobes.n1} corners",
+                nearest=f"the tooth counts ask for a multiple of {lobes.n1}",
+                ways=(
+                    Way(near={"law.corners": max(1, round(self.corners / lobes.n1)) * lobes.n1}),
+                ),
             )
         largest = lobes.n1 / (lobes.n1 + lobes.n2)
         if not self.corner_radius < largest:
@@ -84,7 +87,13 @@ class RoundedPolygon:
                 where="law.corner_radius",
                 value=self.corner_radius,
                 limit=largest,
-                nearest=f"a corner radius below {largest:.10g} centre distances",
+                nearest="the limit, in centre distances, is a circular wheel's radius",
+                ways=(
+                    Way(
+                        near={"law.corner_radius": largest},
+                        far={"law.corner_radius": 0.2 * largest},
+                    ),
+                ),
             )
         height = self._side(lobes)
         knots, pieces = self._pieces(height)

@@ -118,7 +118,7 @@ def demand_equal(lobes: Lobes) -> None:
             where="pair.teeth",
             value=lobes.n1 / lobes.n2,
             limit=1.0,
-            nearest="give the same number twice",
+            nearest="this is the ratio of the counts",
         )
 
 

@@ -60,7 +60,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
         if worst >= limit and not found:
             continue
         tooth = int(pairs.tooth(1, pairs.numbers)[pairs.contact_ratios.argmin()])
-        message = "Few teeth carry at a time; a larger rack.addendum or more teeth help."
+        message = "Few teeth carry at a time."
         if found and all(stretch.edges for stretch in found):
             apart = max(stretch.apart for stretch in found)
             message = (
@@ -74,10 +74,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
                 "nothing drives at all."
             )
         elif worst < 1.0:
-            message = (
-                "This flank carries for less than a pitch; its neighbours drive meanwhile. A "
-                "larger rack.addendum or more teeth help."
-            )
+            message = "This flank carries for less than a pitch; its neighbours drive meanwhile."
         yield Finding(
             code="contact-ratio",
             severity="error" if found or worst < 1.0 else "warning",

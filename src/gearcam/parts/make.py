@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.openings import Place, openings
@@ -82,7 +82,13 @@ def _demand_within(hub: Hub, contours: Sequence[Contour], place: Place) -> None:
             value=hub.diameter,
             limit=room,
             unit="mm",
-            nearest=f"a hub below {room:.6g} mm",
+            nearest="the limit is where it would reach them",
+            ways=(
+                Way(
+                    near={place.key("hub_diameter_mm"): room},
+                    far={place.key("hub_diameter_mm"): 0.5 * room},
+                ),
+            ),
         )
 
 
@@ -103,5 +109,9 @@ def _demand_marks(part: Part, place: Place) -> None:
                 value=mark.diameter,
                 limit=max(0.0, 2.0 * room),
                 unit="mm",
-                nearest="a smaller mark_diameter_mm, or timing_marks = false",
+                nearest="the limit is the room around its middle",
+                ways=(
+                    Way(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
+                    Way(near={"blank.timing_marks": False}),
+                ),
             )

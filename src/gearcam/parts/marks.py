@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.parts.part import Mark
 
 MARK_DIAMETER: Final = 0.4
@@ -80,14 +80,15 @@ def timing_mark(
     lean = math.cos(tilt)
     rim = (pitch_radius - bore_reach) * lean - dedendum_mm
     if rim <= 0:
-        root = pitch_radius - dedendum_mm / lean
+        root = max(0.0, pitch_radius - dedendum_mm / lean)
         raise InfeasibleError(
             "no room for a timing mark between bore and root",
             where=f"direction {math.degrees(direction):.6g} deg",
             value=2 * bore_reach,
             limit=2 * root,
             unit="mm",
-            nearest=f"a bore or hub below {2 * root:.6g} mm leaves a rim there",
+            nearest="this is the circle around bore, keyway and hub, and the root there",
+            ways=(Way(near={"blank.timing_marks": False}),),
         )
     largest = RIM_PART * rim
     if diameter is not None and diameter > largest:
@@ -97,7 +98,11 @@ def timing_mark(
             value=diameter,
             limit=largest,
             unit="mm",
-            nearest=f"at most {largest:.6g} mm, or timing_marks = false",
+            nearest="the limit is a third of the rim",
+            ways=(
+                Way(near={"blank.mark_diameter_mm": 0.99 * largest}),
+                Way(near={"blank.timing_marks": False}),
+            ),
         )
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.part import Opening
@@ -70,6 +70,10 @@ class Place:
     def name(self) -> str:
         """What a person calls it."""
         return "cam" if self.wheel is None else f"wheel {self.wheel}"
+
+    def key(self, name: str) -> str:
+        """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""
+        return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
 
 def bore(blank: WheelBlank) -> Circle | Loop:
@@ -182,6 +186,15 @@ def _demand_apart(
                 raise _no_room(opening, solid, f"the {other.name}", place, blank.widening)
 
 
+_SMALLER: Final = (
+    ("bolt", "bolt_diameter_mm", 0.1),
+    ("bolt", "bolt_circle_mm", 0.1),
+    ("hub", "hub_diameter_mm", 0.1),
+    ("bore", "bore_diameter_mm", 0.1),
+)
+"""Words of a refusal, and what may be made smaller then, down to mm."""
+
+
 def _no_room(
     opening: Opening, solid: Polygon, what: str, place: Place, widening: float
 ) -> InfeasibleError:
@@ -189,16 +202,16 @@ def _no_room(
     from shapely import Point
 
     shape, value, limit = opening.shape, None, None
-    nearest = "make one of them smaller, or move it"
+    nearest = "each needs a place of its own"
     if isinstance(shape, Circle) and what == "the outline":
         center = Point(*shape.center)
         inside = solid.contains(center)
         value = shape.diameter - widening
         limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
         nearest = (
-            f"there a diameter below {limit:.6g} mm stays inside"
-            if limit and limit > 0.0
-            else "its middle lies outside the roots: take a smaller circle"
+            "the limit is the room around its middle"
+            if limit
+            else "its middle lies outside the roots"
         )
     return InfeasibleError(
         f"the {opening.name} meets {what}",
@@ -207,6 +220,11 @@ def _no_room(
         limit=limit,
         unit="mm",
         nearest=nearest,
+        ways=tuple(
+            Way(far={place.key(key): small})
+            for word, key, small in _SMALLER
+            if word in f"{opening.name} {what}"
+        ),
     )
 
 
@@ -222,7 +240,8 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
             where=f"{place.name}, blank.stop_pin_mm",
             value=blank.stop_pin,
             unit="mm",
-            nearest="leave stop_pin_mm out, or give an open law (driven_travel_deg)",
+            nearest="only wheels of an open law (driven_travel_deg) have one",
+            ways=(Way(near={place.key("stop_pin_mm"): 0.0}),),
         )
     start = 0.0 if place.wheel == 1 else math.pi - place.travel
     wide = blank.widened
@@ -236,7 +255,13 @@ def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
             value=blank.stop_pin,
             limit=room,
             unit="mm",
-            nearest=f"a pin below {room:.6g} mm",
+            nearest="the limit is the widest slot that has room",
+            ways=(
+                Way(
+                    near={place.key("stop_pin_mm"): room},
+                    far={place.key("stop_pin_mm"): 0.1 * room},
+                ),
+            ),
         )
     shape = _arc_slot(radius, start, place.travel, wide.stop_pin)
     return Opening(kind="SLOT", shape=shape, name="stop slot")
@@ -306,7 +331,7 @@ def _lightening(
                     size, center = float(spoke.length), np.array(spoke.coords[0])
         size -= _SEARCH * rim
         if center is None or size <= 0.0:
-            raise _no_lightening(number + 1, solid, core, place)
+            raise _no_lightening(number + 1, solid, core, rim, place)
         name = f"lightening hole {number + 1}"
         yield Opening(kind="HOLE", shape=Circle(center=center, diameter=2.0 * size), name=name)
 
@@ -321,7 +346,9 @@ def _sector(middle: float, half: float, far: float, web: float) -> Polygon:
     return Polygon([(point.real, point.imag) for point in (apex, *rays)])
 
 
-def _no_lightening(number: int, solid: Polygon, core: float, place: Place) -> InfeasibleError:
+def _no_lightening(
+    number: int, solid: Polygon, core: float, rim: float, place: Place
+) -> InfeasibleError:
     from shapely import Point
 
     least = solid.boundary.distance(Point(0.0, 0.0))
@@ -330,6 +357,10 @@ def _no_lightening(number: int, solid: Polygon, core: float, place: Place) -> In
         where=f"{place.name}, [blank]",
         value=least - core,
         unit="mm",
-        nearest="this is what lies between hub or bore and the nearest root: take a smaller rim_mm "
-        "or web_mm, or fewer holes",
+        nearest="this is what lies between hub or bore and the nearest root",
+        ways=(
+            Way(near={"blank.rim_mm": 0.5 * rim}),
+            Way(far={place.key("hub_diameter_mm"): 0.0}),
+            Way(near={place.key("lightening_holes"): 0}),
+        ),
     )

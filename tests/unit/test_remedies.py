@@ -1,0 +1,202 @@
+"""Every kind of remedy, followed in a real design file: built, the finding gone, no error new."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import gearcam
+from gearcam.cli import main
+from gearcam.console import remedy_lines
+from gearcam.errors import DesignError, InfeasibleError
+from gearcam.gears.bound import contact_bound
+from gearcam.gears.checks import Subject, largest_module
+from gearcam.jobs.remedies import Remedies
+from gearcam.laws.constant import Constant
+from helpers_documents import followed, job_of, written
+from helpers_pairs import job
+from helpers_remedies import CIRCLE, ERRORS, NAIL, REFUSED, UNDER, WARNED, pair
+
+DESIGNS = {name: (made[0], made[-1]) for name, made in (REFUSED | ERRORS).items()}
+
+
+@cache
+def search(name: str, folder: Path) -> Remedies:
+    """What the search finds, with time for slow machines."""
+    return gearcam.remedies(job_of(DESIGNS[name][0], folder), patience=20.0)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("remedies")
+
+
+def errors(document: Mapping[str, Any], folder: Path) -> set[str]:
+    """Codes of the errors of a design, ``refused`` where it is."""
+    try:
+        findings = job_of(document, folder).findings
+    except (InfeasibleError, DesignError):
+        return {"refused"}
+    return {finding.code for finding in findings if finding.severity == "error"}
+
+
+OTHER_RATIO = {"one lobe", "a crank's teeth", "teeth of an open pair"}
+"""Designs whose tooth counts are refused for their ratio."""
+
+LONG = {
+    "the same at a centre distance",
+    "teeth cut off",
+    "bolts meet the outline",
+    "a crank's teeth",
+    "a long way",
+    "rounded tips",
+}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in DESIGNS]
+)
+def test_what_a_search_names_is_true_when_followed(name: str, folder: Path) -> None:
+    document, keys = DESIGNS[name]
+    before = errors(document, folder)
+    assert before == (ERRORS[name][1] if name in ERRORS else {"refused"})
+    found = search(name, folder)
+    assert found.found
+    assert {key for remedy in found.found for key in remedy.changes} & keys
+    for remedy in found.found:
+        if name not in OTHER_RATIO and "pair.teeth" in remedy.changes:
+            (a, b), (z1, z2) = remedy.changes["pair.teeth"], document["pair"]["teeth"]  # type: ignore[misc]
+            assert a * z2 == b * z1
+        made = job_of(followed(document, remedy.changes), folder)
+        assert not {finding.code for finding in made.findings if finding.severity == "error"}
+        assert not {finding.code for finding in made.findings} & before
+        assert remedy.design.name == document["name"]
+
+
+@pytest.mark.parametrize("name", ["concave part too tight", "bore", "short teeth", "harmonics"])
+def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
+    document, _ = DESIGNS[name]
+    smaller = [remedy.less for remedy in search(name, folder).found if remedy.less]
+    before = errors(document, folder)
+    for less in smaller:
+        made = followed(document, less)
+        found = errors(made, folder)
+        if not found:
+            found = {finding.code for finding in job_of(made, folder).findings} & before
+        assert found
+    assert smaller or name == "bore"
+
+
+def told_teeth(message: str) -> list[int]:
+    """The tooth counts that a warning names."""
+    found = re.search(r"With pair\.teeth = \[(\d+), (\d+)\] or more", message)
+    assert found, message
+    return [int(count) for count in found.groups()]
+
+
+@pytest.mark.parametrize("name", WARNED)
+def test_tooth_counts_of_warnings_keep_the_lobes_and_are_true(name: str, folder: Path) -> None:
+    document, code = WARNED[name]
+    told = [found for found in job_of(document, folder).findings if found.code == code]
+    assert told
+    z1, z2 = document["pair"]["teeth"]
+    for finding in told:
+        wheel, teeth = finding.where.split(",")[0], told_teeth(finding.message)
+        assert teeth[0] * z2 == teeth[1] * z1
+        common = math.gcd(z1, z2)
+        step = [z1 // common, z2 // common]
+        more = [2 * teeth[0], 2 * teeth[1]]
+        for counts, gone in (
+            (teeth, True),
+            (more, True),
+            ([a - b for a, b in zip(teeth, step, strict=True)], code == "undercut"),
+        ):
+            left = job_of(followed(document, {"pair.teeth": counts}), folder).findings
+            there = any(f.code == code and f.where.startswith(wheel) for f in left)
+            assert there != gone or (code == "undercut" and counts not in (teeth, more))
+
+
+def test_concave_parts_count_in_the_largest_module_without_undercut() -> None:
+    gear = job(Constant(), (20, 30)).gear1
+    hollow = SimpleNamespace(
+        convex_radius=math.inf, concave_radius=9.0, wheel=1, toothing=gear.toothing, pair=gear.pair
+    )
+    # the mate's straight flank is one module deep
+    assert largest_module(hollow) == pytest.approx(9 * math.sin(math.radians(20)) ** 2)  # type: ignore[arg-type]
+
+
+def test_a_bore_that_a_thin_rim_names_keeps_the_limit_with_its_keyway(folder: Path) -> None:
+    blank = {"bore_diameter_mm": 31, "keyway_width_mm": 8, "keyway_depth_mm": 3}
+    document = pair(CIRCLE, [22, 22], blank=blank)
+    (finding, _) = (f for f in job_of(document, folder).findings if f.code == "thin-rim")
+    found = re.search(r"up to ([\d.]+) mm across, keyway included", finding.message)
+    assert found
+    # half a bore, and the corner of a keyway as deep beyond it as before
+    half = math.sqrt((float(found.group(1)) / 2) ** 2 - 16) - 3
+    for over, there in ((0.0, False), (0.01, True)):
+        changes = {"blank.bore_diameter_mm": 2 * half + over}
+        left = job_of(followed(document, changes), folder).findings
+        assert any(f.code == "thin-rim" for f in left) == there
+
+
+def test_a_search_that_takes_too_long_is_given_up_and_says_so(folder: Path) -> None:
+    made = job_of(DESIGNS["concave part too tight"][0], folder)
+    found = gearcam.remedies(made, patience=0.0)
+    assert found.gave_up
+    assert not found.found
+    assert [*remedy_lines(found)] == ["the search for a remedy was given up after 0 s"]
+
+
+def test_a_refusal_comes_without_a_search(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("gearcam.jobs.remedies.remedies", None)
+    with pytest.raises(InfeasibleError):
+        _ = job_of(DESIGNS["concave part too tight"][0], folder).findings
+
+
+def test_a_sound_design_needs_no_remedy(folder: Path) -> None:
+    found = gearcam.remedies(job_of(pair(CIRCLE, [20, 20]), folder))
+    assert found == Remedies()
+    assert [*remedy_lines(found)] == []
+
+
+def test_the_command_tells_what_was_built(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = folder / "told.toml"
+    file.write_text(written(DESIGNS["shift"][0]), encoding="utf-8")
+    assert main(["check", str(file), "-o", str(folder)]) == 3
+    told = capsys.readouterr().err
+    assert "built without errors with one of these:\n    pair.x = 0." in told
+    file.write_text(written(DESIGNS["short teeth"][0]), encoding="utf-8")
+    assert main(["check", str(file), "-o", str(folder)]) == 1
+    assert "    rack.addendum = 0." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("teeth", [(40, 40), (25, 60)])
+def test_flanks_alone_give_circular_wheels_their_contact_ratio(teeth: tuple[int, int]) -> None:
+    alpha, radii = math.radians(20), [0.5 * z for z in teeth]
+    length = sum(
+        math.sqrt((r + 1) ** 2 - (r * math.cos(alpha)) ** 2) - r * math.sin(alpha) for r in radii
+    )
+    made = job(Constant(), teeth)
+    ratio = length / (math.pi * math.cos(alpha))
+    assert contact_bound(*made.pair.toothings) == pytest.approx(ratio, abs=1e-9)
+
+
+def test_flanks_alone_bound_the_contact_ratio_and_refuse_what_cannot_drive(folder: Path) -> None:
+    for document in (NAIL, UNDER):
+        made = job_of(document, folder)
+        subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))
+        assert subject.contact_ratio <= contact_bound(*made.pair.toothings) + 1e-9
+    tight = {"type": "phases", "knots_deg": [0, 60, 360], "ratios": [1.8, 0.2, 1.8]}
+    with pytest.raises(InfeasibleError, match="touch for less than a pitch") as caught:
+        _ = job_of(pair(tight, [30, 30]), folder).pair
+    assert caught.value.value is not None
+    assert caught.value.value < 1.0 == caught.value.limit
+    with pytest.raises(InfeasibleError, match=r"would allow a contact ratio of 1\.44$"):
+        _ = job_of(pair(tight, [46, 46]), folder).pair
