@@ -109,7 +109,7 @@ def sheet_of(data: bytes) -> Sheet:
                     group.attrib["stroke"],
                     float(group.attrib["stroke-width"]),
                     path.attrib["class"],
-                    points.real + 1j * (tall - points.imag),
+                    1j * tall + np.conj(points),
                     closed,
                 )
             )
@@ -149,14 +149,13 @@ def test_one_part_is_drawn_in_its_size_and_not_mirrored(kerf: float) -> None:
     def there(one: shapely.Polygon) -> shapely.Polygon:
         return shapely.affinity.translate(one, *shift)
 
-    rounds = {"quad_segs": 256}
-    demand_same(there(outer), part().contour.polygon.buffer(0.5 * kerf, **rounds), tolerance)
+    demand_same(there(outer), part().contour.polygon.buffer(0.5 * kerf, quad_segs=256), tolerance)
     for kind in ("BORE", "HOLE", "SLOT"):
         (got,) = sheet.regions(kind.lower())
         (opening,) = [one for one in part().openings if one.kind == kind]
         assert not isinstance(opening.shape, Contour)
         edge = shapely.Polygon(opening.shape.points(1e-5))
-        demand_same(there(got), edge.buffer(-0.5 * kerf, **rounds), tolerance)
+        demand_same(there(got), edge.buffer(-0.5 * kerf, quad_segs=256), tolerance)
         mirrored = shapely.affinity.scale(got, -1.0, origin=outer.centroid)
         assert there(mirrored).symmetric_difference(edge).area > 0.3 * edge.length
     (mark,) = sheet.regions("mark")
@@ -232,7 +231,7 @@ def test_nested_parts_keep_a_gap_and_the_sheet_is_tight(name: str) -> None:
     for one, other in itertools.combinations(outlines, 2):
         assert one.distance(other) >= GAP - 1e-3
     box = shapely.union_all(outlines).bounds
-    labels = np.concatenate([line.points for line in sheet.lines if line.layer == "label"])
+    labels: Any = np.concatenate([one.points for one in sheet.lines if one.layer == "label"])
     low = min(box[0], labels.real.min()), min(box[1], labels.imag.min())
     assert low == pytest.approx((1.0, 1.0), abs=2e-3)
     assert box[2:] == pytest.approx(np.array(sheet.size) - 1.0, abs=2e-3)
