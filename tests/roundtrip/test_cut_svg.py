@@ -110,7 +110,7 @@ def sheet_of(data: bytes) -> Sheet:
                     group.attrib["stroke"],
                     float(group.attrib["stroke-width"]),
                     path.attrib["class"],
-                    points.real + 1j * (tall - points.imag),
+                    1j * tall + np.conj(points),
                     closed,
                 )
             )
@@ -232,7 +232,7 @@ def test_nested_parts_keep_a_gap_and_the_sheet_is_tight(name: str) -> None:
     for one, other in itertools.combinations(outlines, 2):
         assert one.distance(other) >= GAP - 1e-3
     box = shapely.union_all(outlines).bounds
-    labels = np.concatenate([line.points for line in sheet.lines if line.layer == "label"])
+    labels: Any = np.concatenate([one.points for one in sheet.lines if one.layer == "label"])
     low = min(box[0], labels.real.min()), min(box[1], labels.imag.min())
     assert low == pytest.approx((1.0, 1.0), abs=2e-3)
     assert box[2:] == pytest.approx(np.array(sheet.size) - 1.0, abs=2e-3)
