@@ -157,8 +157,7 @@ def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="tip-clearance",
                 severity="warning",
-                message="The tip nearly touches the mate's root, or does; a larger rack.dedendum "
-                "or centre distance helps.",
+                message="The tip comes as near to the mate's root as this, or touches it.",
                 value=least,
                 limit=limit,
                 unit="modules",

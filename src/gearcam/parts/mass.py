@@ -103,7 +103,7 @@ def mass_properties(part: Part, density: float) -> MassProperties:
     Parameters
     ----------
     part : Part
-        The part, as made: with holes, hubs, marks, its offset and its rounded edges.
+        The part, as made: with holes, hubs, marks, its clearance and its rounded edges.
     density : float, kg/m^3
         Of its material.
 
