@@ -23,18 +23,14 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam import remedies
 from gearcam.console import (
     DEBUG,
-    cam_lines,
+    all_lines,
     complain,
     fault_text,
-    finding_lines,
     infeasible_text,
     law_lines,
-    meshing_lines,
-    pair_lines,
     progress_bar,
     remedy_lines,
     say,
-    written_lines,
 )
 from gearcam.design import FORMATS, KINDS, demand_kind, load
 from gearcam.errors import (
@@ -367,14 +363,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
             complain(f"  {line}")
         return IMPOSSIBLE
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
-    told = [
-        pair_lines(written.summary),
-        cam_lines(written.summary),
-        meshing_lines(written.summary),
-        finding_lines(written.findings),
-        written_lines(written),
-    ]
-    say(textwrap.indent("\n".join(line for lines in told for line in lines), "  "))
+    say(textwrap.indent("\n".join(all_lines(written)), "  "))
     if not written.complete:
         found = written.summary["meshing"]
         complain(f"{file}: interrupted: {found['steps_done']} of {found['steps']} steps are kept")

@@ -159,6 +159,15 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
         yield wrapped(finding.message, first="      ", rest="      ")
 
 
+def all_lines(written: Written) -> Iterator[str]:
+    """Yield all that is said of what was `written`: sizes, study, findings, files."""
+    yield from pair_lines(written.summary)
+    yield from cam_lines(written.summary)
+    yield from meshing_lines(written.summary)
+    yield from finding_lines(written.findings)
+    yield from written_lines(written)
+
+
 def written_lines(written: Written) -> Iterator[str]:
     """Yield the files that were written, with their sizes, and those that were removed."""
     folder = written.directory

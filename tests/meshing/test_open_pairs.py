@@ -25,8 +25,9 @@ from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
 from gearcam.meshing.halves import Halves, halve
 from gearcam.meshing.overlap import Turning
+from gearcam.meshing.phases import phases
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.meshing.study import mount, phases, study
+from gearcam.meshing.study import mount, study
 from helpers_pairs import PROFILES, explained, job, profile
 
 Array = NDArray[np.float64]

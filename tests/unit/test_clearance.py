@@ -13,7 +13,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.make import make_part
+from gearcam.parts.make import finished, make_part
 from gearcam.parts.openings import Place
 from gearcam.parts.part import Opening, Part
 from gearcam.parts.shapes import Circle
@@ -28,7 +28,7 @@ def blank(**sizes: Any) -> WheelBlank:
 
 
 def made(contour: Contour, sizes: WheelBlank, place: Place = SLOTTED) -> Part:
-    return make_part("g", [contour], 10.0, sizes, place)
+    return make_part("g", [finished(contour, sizes, place)], 10.0, sizes, place)
 
 
 def region(opening: Opening, sagitta: float) -> shapely.Polygon:

@@ -14,7 +14,7 @@ import shapely
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.make import make_part
+from gearcam.parts.make import finished, make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Place, bore, openings
 from gearcam.parts.part import Mark, Opening, Part
@@ -34,7 +34,7 @@ def blank(**sizes: Any) -> WheelBlank:
 
 
 def made(contour: Contour, sizes: WheelBlank, place: Place = PLACE, **rest: Any) -> Part:
-    return make_part("g", [contour], 10.0, sizes, place, **rest)
+    return make_part("g", [finished(contour, sizes, place)], 10.0, sizes, place, **rest)
 
 
 def region(opening: Opening | Circle | Loop, sagitta: float = FINE) -> shapely.Polygon:

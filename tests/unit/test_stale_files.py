@@ -81,7 +81,7 @@ MEANS_THE_SAME = {
     "comment": ("[rack]", "# the rack\n[rack]   # of it"),
     "number written otherwise": ("module_mm = 2\n", "module_mm = 2.0e0\n"),
     "order of keys": ("module_mm = 2\nteeth = [22, 22]", "teeth = [22, 22]\nmodule_mm = 2"),
-    "default written out": ("pressure_angle_deg = 20", "pressure_angle_deg = 20\naddendum = 1"),
+    "default written out": ("module_mm = 2\n", "module_mm = 2\nx = 0\n"),
     "default left out": ("[rack]\npressure_angle_deg = 20\n", ""),
     "which files": ('["csv", "svg"]', '["stl"]'),
     "meshing": ("steps = 12", "steps = 90\nadvance_deg = 0.01"),

@@ -201,7 +201,9 @@ class FlankPairs:
         edges = np.unique(np.concatenate([[0.0], edges, [turn]]))
         edges = edges[np.append(np.diff(edges) > 1e-12 * turn, True)]
         edges[0] = 0.0
-        return edges[:-1], edges[1:], self._carrying(0.5 * (edges[:-1] + edges[1:]), start, end)
+        carrying = self._carrying(0.5 * (edges[:-1] + edges[1:]), start, end)
+        first = np.flatnonzero(np.append(True, np.diff(carrying) != 0))
+        return edges[first], np.append(edges[first[1:]], turn), carrying[first]
 
     def _carrying(self, phi1: Array, start: Array, end: Array) -> Ints:
         begun = np.searchsorted(np.sort(start), phi1, side="right")

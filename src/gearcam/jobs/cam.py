@@ -24,7 +24,6 @@ from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import CAM_KIND
 
 if TYPE_CHECKING:
-    from gearcam.parts.blank import WheelBlank
     from gearcam.parts.checks import PartsSubject
     from gearcam.parts.part import Part
 
@@ -102,14 +101,14 @@ class CamJob(Job):
     @cached_property
     def part(self) -> Part:
         """The cam as a part: bore, hub, holes, moved edges."""
-        from gearcam.parts.make import make_part
+        from gearcam.parts.make import finished, make_part
         from gearcam.parts.openings import RIM, Place
 
         profile, thickness = self.profile, self.design.cam.thickness
         with self._stage("part"):
             place = Place(wheel=None, module=_RIM_PART * thickness / RIM)
-            edge = _edge(profile, self.design.blank)
-            return make_part(NAME, [edge], thickness, self.design.blank, place)
+            blank = self.design.blank
+            return make_part(NAME, [finished(profile, blank, place)], thickness, blank, place)
 
     @property
     def contour(self) -> Contour:
@@ -194,23 +193,3 @@ class CamJob(Job):
         summary = self.summary(self._beside(folder, FOLLOWED), {"followed": facts})
         contents = {FOLLOWED: table_bytes(columns)}
         return finish(folder, contents, summary, self.findings, keep=True)
-
-
-def _edge(profile: Contour, blank: WheelBlank) -> Contour:
-    """Return a profile with its clearance and its rounded edges, in this order."""
-    if not (blank.clearance or blank.tip_rounding):
-        return profile
-    from gearcam.parts.parallel import moved, rounded, sized
-
-    clear = sized(
-        lambda size: moved(profile, -size),
-        blank.clearance,
-        "cam, blank.clearance_mm",
-        "clearance",
-    )
-    return sized(
-        lambda size: rounded(clear, size),
-        blank.tip_rounding,
-        "cam, blank.tip_rounding_mm",
-        "radius",
-    )

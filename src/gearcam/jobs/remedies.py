@@ -124,6 +124,8 @@ def remedies(
             errors = [finding for finding in job.findings if finding.severity == "error"]
         except InfeasibleError as error:
             refusal = error
+    elif not refusal.ways and not refusal.more_teeth and _builds(job):
+        return Remedies(seconds=patience)  # a study was refused, not the design
     search = _Search(job, frozenset(error.code for error in errors), patience)
     if refusal is None and not errors:
         return Remedies(seconds=patience)
@@ -146,6 +148,15 @@ def remedies(
         gave_up=search.gave_up,
         seconds=patience,
     )
+
+
+def _builds(job: Job) -> bool:
+    """Whether the design is not refused when it is built."""
+    try:
+        _ = job.findings
+    except InfeasibleError:
+        return False
+    return True
 
 
 class _Search:

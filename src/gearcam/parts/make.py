@@ -71,6 +71,40 @@ def make_part(
     return part
 
 
+def finished(contour: Contour, blank: WheelBlank, place: Place) -> Contour:
+    """Return an outline with its clearance and its rounded edges, in this order.
+
+    Parameters
+    ----------
+    contour : Contour
+        An outline that knows neither.
+    blank : WheelBlank
+        With both.
+    place : Place
+        What is ordered, for messages.
+
+    Returns
+    -------
+    Contour
+
+    Raises
+    ------
+    InfeasibleError
+        If they leave no outline, with sizes that do.
+    """
+    if not (blank.clearance or blank.tip_rounding):
+        return contour
+    from gearcam.parts.parallel import moved, rounded, sized
+
+    where = f"{place.name}, blank"
+    clear = sized(
+        lambda size: moved(contour, -size), blank.clearance, f"{where}.clearance_mm", "clearance"
+    )
+    return sized(
+        lambda size: rounded(clear, size), blank.tip_rounding, f"{where}.tip_rounding_mm", "radius"
+    )
+
+
 def _demand_within(hub: Hub, contours: Sequence[Contour], place: Place) -> None:
     from shapely import Point
 

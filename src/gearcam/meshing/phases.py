@@ -1,0 +1,89 @@
+"""The phases of a study: evenly over its stretch, or those of some teeth."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.errors import InfeasibleError
+from gearcam.gears.contact import DRIVE
+
+if TYPE_CHECKING:
+    from gearcam.meshing.study import Setup
+
+Array = NDArray[np.float64]
+
+_BESIDE = 0.15
+"""Phases studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""
+
+_STOP = 1e-7
+"""Share of the travel by which written degrees may pass a stop."""
+
+
+def phases(setup: Setup) -> Array:
+    """Return the phases of a study, rad.
+
+    Parameters
+    ----------
+    setup : Setup
+        The pair as mounted.
+
+    Returns
+    -------
+    (n,) array
+        All, or with `teeth` those at which the teeth are in contact or nearly.
+
+    Raises
+    ------
+    InfeasibleError
+        If there is none, or the stretch leaves the travel of open wheels or a rack.
+    """
+    spec = setup.spec
+    first, last = setup.stretch
+    if not last > first:
+        raise InfeasibleError(
+            f"the study ends at {np.degrees(last):.6g} deg before it begins",
+            where="meshing.from_deg",
+            nearest=f"below {np.degrees(last):.6g} deg",
+        )
+    phi1 = np.linspace(first, last, spec.steps, endpoint=not setup.closed)
+    if not setup.closed:
+        _demand_travel(first, last, setup.pairs[DRIVE].way)
+    if spec.teeth is None:
+        return phi1
+    pairs = setup.pairs[setup.side]
+    rolling = pairs.toothings[0].rolling
+    wanted = np.isin(pairs.tooth(1, pairs.numbers), spec.teeth)
+    start, end = (rolling.arc_length(edge[wanted]) for edge in pairs.arcs)
+    apart = rolling.arc_length(phi1)[:, None] - start
+    margin = _BESIDE * pairs.pitch
+    if pairs.closed:
+        apart = np.mod(apart + margin, rolling.length(1)) - margin
+    inside = (apart >= -margin) & (apart <= end - start + margin)
+    chosen = phi1[inside.any(axis=1)]
+    if not chosen.size:
+        angles = np.degrees(rolling.angle(0.5 * (start + end)))
+        raise InfeasibleError(
+            "none of the phases has one of these teeth in contact",
+            where="meshing.teeth",
+            nearest="their contact is about phi1 = "
+            + ", ".join(f"{angle:.4g}" for angle in angles)
+            + " deg; take more steps or another range",
+        )
+    return chosen
+
+
+def _demand_travel(first: float, last: float, travel: float) -> None:
+    """Refuse phases beyond the stops of open wheels and racks."""
+    early = first < -_STOP * travel
+    if early or last > (1.0 + _STOP) * travel:
+        raise InfeasibleError(
+            "the study leaves the travel of the pair",
+            where=f"meshing.{'from' if early else 'to'}_deg",
+            value=float(np.degrees(first if early else last)),
+            limit=0.0 if early else float(np.degrees(travel)),
+            unit="deg",
+            nearest=f"between 0 and {np.degrees(travel):.8g} deg",
+        )
