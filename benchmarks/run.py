@@ -10,6 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 import cam_cases
 import cases
+import law_cases
 from measuring import ROOT, Result, environment
 
 PAGE = ROOT / "docs" / "performance.md"
@@ -40,6 +41,7 @@ def main() -> int:
         cases.against_whole_outlines,
         cases.against_sweep,
         cases.against_ncgears,
+        law_cases.against_ellipse,
     ):
         result = case()
         results.append(result)

@@ -184,6 +184,23 @@ def test_costly_formulas_are_refused_at_once(text: str) -> None:
     assert time.process_time() - start < 0.5
 
 
+def test_a_part_that_is_written_twice_is_computed_once() -> None:
+    calls = []
+
+    def sine(x: np.ndarray) -> np.ndarray:
+        calls.append(x)
+        return np.sin(x)
+
+    x = np.array([0.3, 1.1])
+    text = "sin(2*phi1)**2 + sin(2*phi1)*sin(phi1*2) - 1/(sin(2*phi1))"
+    found = parse(text).evaluate(x, {"sin": sine})
+    s = np.sin(2 * x)
+    np.testing.assert_allclose(found, s**2 + s * s - 1 / s, rtol=1e-15)
+    assert len(calls) == 2
+    # zeros of both signs are two numbers
+    assert math.isnan(parse("1/(0*phi1 + 0) + 1/(phi1*(-0))").evaluate(x)[0])
+
+
 def test_long_formulas_within_the_limits_are_computed() -> None:
     assert parse("1+" * (MAX_LENGTH // 2 - 2) + "phi1").evaluate(1.0) == MAX_LENGTH // 2 - 1
     assert parse("-" * (MAX_LENGTH - 4) + "phi1").evaluate(1.0) == 1.0

@@ -10,7 +10,7 @@ import pytest
 
 from gearcam.numeric import jets
 from gearcam.numeric.chebyshev import NotSmoothError, expand
-from gearcam.numeric.jets import FUNCTIONS, Jet
+from gearcam.numeric.jets import FUNCTIONS, Jet, Value
 from gearcam.numeric.piecewise import Piece, extremes, integrate, piecewise
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
@@ -121,6 +121,63 @@ def test_an_integral_without_closed_form_agrees_with_one_that_has() -> None:
     x = np.linspace(0.0, 4.0, 31)
     np.testing.assert_allclose(a(x), np.sin(x), atol=1e-15)
     np.testing.assert_allclose(b(x), np.sin(x), atol=1e-14)
+
+
+def test_pieces_of_one_function_are_computed_at_once_each_with_its_parameters() -> None:
+    """Waves and cubics by turns, in closed form; one call a function however many pieces."""
+    calls = []
+
+    def wave(x: Jet, low: Value, height: Value) -> Jet:
+        calls.append("wave")
+        return height * jets.sin(x - low)
+
+    def area(x: Jet, low: Value, height: Value) -> Jet:
+        return -height * jets.cos(x - low)
+
+    count = 40
+    knots = 0.25 * np.arange(count + 1)
+    given = np.random.default_rng(5).uniform(0.5, 2.0, (count, 4))
+    pieces = [
+        Piece(jets.polynomial, jets.primitive, (float(low), *map(float, row)))
+        if k % 2
+        else Piece(wave, area, (float(low), float(row[0])))
+        for k, (low, row) in enumerate(zip(knots, given, strict=False))
+    ]
+    joined, total = piecewise(knots, pieces), integrate(knots, pieces, 1e-15)
+    x = np.concatenate([low + np.array([0.0, 0.07, 0.19]) for low in knots[:-1]])
+    found, areas, before = joined.derivatives(x, 3), total(x), 0.0
+    assert calls.count("wave") == 1
+    for k, (low, row) in enumerate(zip(knots[:-1], given, strict=True)):
+        here, t = slice(3 * k, 3 * k + 3), x[3 * k : 3 * k + 3] - low
+        cubic, height = np.polynomial.Polynomial(row), row[0]
+        turns = t + 0.5 * np.pi * np.arange(4)[:, None]
+        exact = [cubic.deriv(j)(t) for j in range(4)] if k % 2 else height * np.sin(turns)
+        np.testing.assert_allclose([f[here] for f in found], exact, rtol=1e-13, atol=1e-13)
+        own = cubic.integ()(t) if k % 2 else height * (1.0 - np.cos(t))
+        np.testing.assert_allclose(areas[here], before + own, rtol=1e-13, atol=1e-14)
+        before += float(cubic.integ()(0.25)) if k % 2 else height * (1.0 - math.cos(0.25))
+    assert joined.side(3, -1, 1) == pytest.approx(
+        [given[2, 0] * math.sin(0.25), given[2, 0] * math.cos(0.25)], rel=1e-14
+    )
+
+
+@pytest.mark.parametrize("order", [0, 1, 5])
+def test_polynomials_of_bent_jets_are_those_of_the_composed_polynomial(order: int) -> None:
+    powers = [0.3, -1.0, 0.5, 2.0]
+    kinds = (
+        (jets.polynomial, powers),
+        (jets.slope, [k * c for k, c in enumerate(powers)][1:]),
+        (jets.primitive, [0.0, *(c / (k + 1) for k, c in enumerate(powers))]),
+    )
+    for function, own in kinds:
+        for scale, bend in ((1.0, 0.0), (2.0, 0.0), (1.5, 0.4)):
+            x = Jet.variable(POINTS, order)
+            found = function(scale * x + bend * x * x, 0.2, *powers).derivatives()
+            for k, place in enumerate(POINTS):
+                plain = np.polynomial.Polynomial(own)
+                inner = np.polynomial.Polynomial([-0.2, scale, bend])
+                series = [plain(inner).deriv(j)(place) for j in range(order + 1)]
+                assert [float(v[k]) for v in found] == pytest.approx(series, rel=1e-11, abs=1e-11)
 
 
 def test_extremes_are_roots_of_the_slope_and_sides_of_knots() -> None:

@@ -44,7 +44,7 @@ class EccentricCircle:
             across = e * sin(x)
             return e * cos(x) + sqrt(1.0 - across * across)
 
-        return law_of_centrode([radius], [0.0, lobes.period], lobes, tolerances)
+        return law_of_centrode([Piece(radius)], [0.0, lobes.period], lobes, tolerances)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import RatioLaw, make_law
 from gearcam.laws.span import Lobes, Span, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError, expand
-from gearcam.numeric.jets import Jet
+from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import newton_in_bracket
 from gearcam.tolerances import Tolerances
@@ -20,12 +20,9 @@ Array = NDArray[np.float64]
 LOBES = "lobes of driver and driven wheel; in lowest terms as the tooth counts when left out"
 """What the key ``lobes`` means."""
 
-Shape = Callable[[Jet], Jet]
-"""Radius of the driver's centrode, at any scale, over the driver angle."""
-
 
 def law_of_centrode(
-    shapes: list[Shape],
+    shapes: list[Piece],
     knots: ArrayLike,
     lobes: Span,
     tolerances: Tolerances,
@@ -35,7 +32,7 @@ def law_of_centrode(
 
     Parameters
     ----------
-    shapes : list of n callables
+    shapes : list of n Piece
         The radius between the knots, at any scale.
     knots : (n + 1,) array, rad
         From 0 to the period.
@@ -61,13 +58,14 @@ def law_of_centrode(
     The driven angle falls as c grows, from infinity at the largest r, so that there is one root,
     between the largest r and the c that would close a wheel of that radius all around.
     """
-    radius = piecewise(knots, [Piece(shape) for shape in shapes])
+    radius = piecewise(knots, shapes)
     demand_positive(radius(np.linspace(0.0, lobes.period, 2049)), "r1", lobes)
     try:
         center = solve_center(radius, knots, lobes, tolerances)
     except NotSmoothError as error:
         raise rough("r1", error) from error
-    pieces = [Piece(_ratio(shape, center)) for shape in shapes]
+    ratios = {shape.function: _ratio(shape.function, center) for shape in shapes}
+    pieces = [Piece(ratios[shape.function], parameters=shape.parameters) for shape in shapes]
     found = {**(solved or {}), "center_distance_over_scale": center}
     return make_law(lobes, knots, pieces, tolerances, found)
 
@@ -95,9 +93,9 @@ def demand_positive(values: Array, name: str, lobes: Span) -> None:
             raise InfeasibleError(f"{name} {state}", where=angle_text(angles[bad][0]), limit=0.0)
 
 
-def _ratio(shape: Shape, center: float) -> Shape:
-    def ratio(x: Jet) -> Jet:
-        radius = shape(x)
+def _ratio(shape: Callable[..., Jet], center: float) -> Callable[..., Jet]:
+    def ratio(x: Jet, *parameters: Value) -> Jet:
+        radius = shape(x, *parameters)
         return radius / (center - radius)
 
     return ratio

@@ -23,7 +23,7 @@ from gearcam.laws.span import (
     travel_problems,
 )
 from gearcam.numeric.chebyshev import NotSmoothError, expand
-from gearcam.numeric.jets import FUNCTIONS, Jet
+from gearcam.numeric.jets import FUNCTIONS, Jet, Value
 from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
@@ -71,7 +71,7 @@ class Formula:
         demand_positive(function(Jet.variable(x, 0)).derivatives()[0], name, span)
         _demand_repeats(function, name, span)
         if self.ratio is None:
-            return law_of_centrode([function], [0.0, span.period], span, tolerances)
+            return law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
         try:
             return _from_ratio(function, span, tolerances)
         except NotSmoothError as error:
@@ -121,21 +121,21 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
             )
 
 
-def derivative(motion: Callable[[Jet], Jet]) -> Callable[[Jet], Jet]:
+def derivative(motion: Callable[..., Jet]) -> Callable[..., Jet]:
     """Return the derivative of a function of jets, itself one.
 
     Parameters
     ----------
     motion : callable
-        ``motion(jet) -> jet``.
+        ``motion(jet, *parameters) -> jet``.
 
     Returns
     -------
     callable
     """
 
-    def slope(x: Jet) -> Jet:
-        one_more = motion(Jet.variable(x.c[0], x.order + 1))
+    def slope(x: Jet, *parameters: Value) -> Jet:
+        one_more = motion(Jet.variable(x.c[0], x.order + 1), *parameters)
         slopes = [(k + 1) * value for k, value in enumerate(one_more.c[1:])]
         return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
 

@@ -4,8 +4,8 @@ A *formula* is made of numbers, ``pi``, the driver angle ``phi1`` (rad), the ope
 ``+ - * / **``, parentheses, and functions of one argument. The text is split into these words
 first, so that anything else is refused by its column in plain language; only then is it handed to
 Python's own grammar, and the syntax tree is checked against a list of allowed nodes and turned into
-a flat *program* for a stack of values. Nothing is ever executed by Python: no attributes,
-subscripts, comparisons, imports or other names can be reached.
+a flat *program*, in which what is written twice is computed once. Nothing is ever executed by
+Python: no attributes, subscripts, comparisons, imports or other names can be reached.
 
 Numbers are read as floats and parts without ``phi1`` are computed once, so neither ``9**9**9**9``
 nor a number of a thousand digits costs anything: what has no finite real value is refused at its
@@ -20,8 +20,8 @@ import difflib
 import math
 import operator
 import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -131,11 +131,12 @@ class FormulaError(GearcamError, ValueError):
 
 @dataclass(frozen=True)
 class _Step:
-    """One step of a program: push a constant or the variable, or take values, push the result."""
+    """One step of a program: a constant, the variable, or an operation on values of others."""
 
     kind: str  # "constant", "variable", "call", "unary", "binary"
     column: int
     payload: Any = None
+    operands: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +148,7 @@ class Expression:
     text : str
         The formula as written.
     program : tuple of steps
-        What a stack of values does, in order.
+        Each makes a value; the last one is the formula's.
     """
 
     text: str
@@ -174,13 +175,17 @@ class Expression:
             Also for a constant formula. Outside a function's domain the values are nan or inf,
             without a warning, for the caller to find and to name by their angle.
         """
-        stack: list[Any] = []
+        values: list[Any] = []
         with np.errstate(all="ignore"):
             if self.is_constant:
                 return x * 0.0 + self.program[0].payload
             for step in self.program:
-                _run(step, stack, x, functions)
-        return stack.pop()
+                if step.operands:
+                    function = functions[step.payload] if step.kind == "call" else step.payload
+                    values.append(function(*(values[k] for k in step.operands)))
+                else:
+                    values.append(step.payload if step.kind == "constant" else x)
+        return values[-1]
 
 
 def parse(text: str, variable: str = VARIABLE) -> Expression:
@@ -219,7 +224,7 @@ def parse(text: str, variable: str = VARIABLE) -> Expression:
         tree = ast.parse(flat.lstrip(), mode="eval")
     except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
         raise FormulaError("this cannot be read as a formula", allowed=ALLOWED) from error
-    return Expression(text, tuple(_program(tree.body, lead, variable)))
+    return Expression(text, _shared(_program(tree.body, lead, variable)))
 
 
 def _check_words(text: str, variable: str) -> None:
@@ -357,10 +362,9 @@ def _append(program: list[_Step], step: _Step) -> None:
     if any(operand.kind != "constant" for operand in operands):
         program.append(step)
         return
-    values = [operand.payload for operand in operands]
     function = getattr(math, step.payload) if step.kind == "call" else step.payload
     try:
-        result = function(*values)
+        result = function(*(operand.payload for operand in operands))
     except (ArithmeticError, ValueError):
         result = math.nan
     if isinstance(result, complex) or not math.isfinite(result):
@@ -379,18 +383,16 @@ def _check_exponent(step: _Step) -> None:
         )
 
 
-def _run(
-    step: _Step, stack: list[Any], x: Any, functions: Mapping[str, Callable[[Any], Any]]
-) -> None:
-    match step.kind:
-        case "constant":
-            stack.append(step.payload)
-        case "variable":
-            stack.append(x)
-        case "call":
-            stack.append(functions[step.payload](stack.pop()))
-        case "unary":
-            stack.append(step.payload(stack.pop()))
-        case _:
-            right = stack.pop()
-            stack.append(step.payload(stack.pop(), right))
+def _shared(program: Sequence[_Step]) -> tuple[_Step, ...]:
+    """Let every step say which values it takes, by their numbers; like steps become one."""
+    steps: list[_Step] = []
+    known: dict[tuple[Any, ...], int] = {}
+    stack: list[int] = []
+    for step in program:
+        rest = len(stack) - {"binary": 2, "unary": 1, "call": 1}.get(step.kind, 0)
+        operands = tuple(stack[rest:])
+        # by its text: 0.0 and -0.0 are two constants
+        stack[rest:] = [known.setdefault((repr(step.payload), operands), len(steps))]
+        if stack[-1] == len(steps):
+            steps.append(replace(step, operands=operands))
+    return tuple(steps)

@@ -339,8 +339,8 @@ class _Frame:
             -15 * p + 7 * v - a,
             6 * p - 3 * v + 0.5 * a,
         )
-        shape = polynomial([0.0, v0, 0.5 * a0, cubic, quartic, quintic])
-        return piecewise([0.0, 1.0], [Piece(shape)])
+        powers = (0.0, v0, 0.5 * a0, cubic, quartic, quintic)
+        return piecewise([0.0, 1.0], [Piece(polynomial, parameters=(0.0, *powers))])
 
     def end_state(self, number: int) -> tuple[float, float]:
         """Return velocity and acceleration at the end of a phase: its law fixes them by itself."""

@@ -8,20 +8,18 @@ digits, and turned.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import zip_longest
 from math import comb, factorial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.numeric.jets import Jet, sin
+from gearcam.numeric.jets import Jet, Value, polynomial, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 
 Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 Shape = Callable[[Jet], Jet]
 
 _NOTHING: Final = 1e-12
@@ -140,72 +138,31 @@ def total(one: Sequence[Fraction], two: Sequence[Fraction]) -> list[Fraction]:
 
 def from_both_ends(
     left: Sequence[Fraction | float], right: Sequence[Fraction | float], low: float, high: float
-) -> Shape:
+) -> Piece:
     """Return a polynomial that is computed from the nearer end of an interval.
 
     Parameters
     ----------
     left, right : sequences of numbers
-        Its coefficients of the powers of ``phi - low`` and of ``phi - high``.
+        Its coefficients of the powers of ``phi - low`` and of ``phi - high``, as many.
     low, high : float
         The interval.
 
     Returns
     -------
-    callable
+    Piece
         Its derivatives at either end are the coefficients there, to the last digit.
     """
-    pairs = [(float(a), float(b)) for a, b in zip(left, right, strict=True)]
-    middle = 0.5 * (low + high)
-
-    def function(x: Jet) -> Jet:
-        first = x.c[0] <= middle
-        t = x.c[0] - np.where(first, low, high)
-        nearer = [np.where(first, before, after) for before, after in pairs]
-        powers: list[Any] = _about(t, nearer, x.order)
-        step = Jet([0.0, *x.c[1:]])
-        result = Jet([powers[x.order], *[0.0] * x.order])
-        for value in powers[x.order - 1 :: -1] if x.order else []:
-            result = result * step + value
-        return result
-
-    return function
+    return Piece(_from_nearer, parameters=(low, high, *map(float, left), *map(float, right)))
 
 
-def _about(t: Array, powers: Sequence[Array], order: int) -> list[Array]:
-    """Return the coefficients of polynomials about places `t`, to an order at least."""
-    found = [*powers, *[np.zeros_like(t)] * (order + 1 - len(powers))]
-    # Horner's scheme, repeated
-    for k in range(order + 1):
-        for j in range(len(found) - 2, k - 1, -1):
-            found[j] = found[j] + t * found[j + 1]
-    return found
+def _from_nearer(x: Jet, low: Value, high: Value, *both: Value) -> Jet:
+    first, count = x.c[0] <= 0.5 * (low + high), len(both) // 2
+    nearer = [np.where(first, *pair) for pair in zip(both[:count], both[count:], strict=True)]
+    return polynomial(x, np.where(first, low, high), *nearer)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Spline(Piecewise):
-    """Polynomials between knots, each computed from the nearer end, all of them at once.
-
-    Parameters
-    ----------
-    left, right : (n, m) arrays
-        Coefficients of rising powers of the distance from the knots before and behind.
-    """
-
-    left: Array
-    right: Array
-
-    def on_pieces(self, index: Index, x: Array, order: int) -> Array:
-        """Return function and derivatives by given pieces (see `Piecewise.on_pieces`)."""
-        low, high = self.knots[index], self.knots[index + 1]
-        first = x <= 0.5 * (low + high)
-        powers = np.where(first[:, None], self.left[index], self.right[index]).T
-        found = _about(x - np.where(first, low, high), list(powers), order)[: order + 1]
-        found[0] = found[0] + self.offsets[index]
-        return np.array([factorial(k) * values for k, values in enumerate(found)])
-
-
-def spline(knots: ArrayLike, left: ArrayLike, right: ArrayLike) -> Spline:
+def spline(knots: ArrayLike, left: ArrayLike, right: ArrayLike) -> Piecewise:
     """Return the polynomials between knots, given by their coefficients at both ends.
 
     Parameters
@@ -213,22 +170,15 @@ def spline(knots: ArrayLike, left: ArrayLike, right: ArrayLike) -> Spline:
     knots : (n + 1,) array
         Rising.
     left, right : (n, m) arrays
-        See `Spline`; both describe the same polynomials.
+        Coefficients of rising powers of the distance from the knots before and behind; both
+        describe the same polynomials.
 
     Returns
     -------
-    Spline
+    Piecewise
+        Each computed from the nearer end.
     """
-    places, rows = np.asarray(knots, dtype=float), (np.asarray(left), np.asarray(right))
-    ends = zip(places[:-1].tolist(), places[1:].tolist(), strict=True)
-    pieces = [
-        from_both_ends(before, after, low, high)
-        for before, after, (low, high) in zip(*(r.tolist() for r in rows), ends, strict=True)
-    ]
-    return Spline(
-        knots=places,
-        pieces=tuple(pieces),
-        offsets=np.zeros(len(pieces)),
-        left=rows[0],
-        right=rows[1],
-    )
+    places = np.asarray(knots, dtype=float).tolist()
+    rows = np.asarray(left).tolist(), np.asarray(right).tolist()
+    ends = zip(*rows, places[:-1], places[1:], strict=True)
+    return piecewise(places, [from_both_ends(*each) for each in ends])

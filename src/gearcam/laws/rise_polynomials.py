@@ -14,7 +14,7 @@ from typing import ClassVar, Final
 
 from gearcam.laws.rise_pieces import from_both_ends, product, shifted, total
 from gearcam.laws.rises import RISES, ClosedForm, RiseClaim, RiseEntry
-from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
+from gearcam.numeric.piecewise import Piecewise, piecewise
 from gearcam.quantities import NUMBER, param
 
 _MOST: Final = 8
@@ -63,7 +63,7 @@ def two_ended(start: Sequence[float], end: Sequence[float]) -> Piecewise:
         S over phi, one piece.
     """
     left, right = of_least_degree([0.0, *start], [1.0, *end])
-    return piecewise([0.0, 1.0], [Piece(from_both_ends(left, right, 0.0, 1.0))])
+    return piecewise([0.0, 1.0], [from_both_ends(left, right, 0.0, 1.0)])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
-from gearcam.laws.driver import Shape, law_of_centrode
+from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.span import Lobes
-from gearcam.numeric.jets import Jet, cos, polynomial, sin, sqrt
+from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root
 from gearcam.quantities import COUNT, NUMBER, param
@@ -38,11 +38,11 @@ class BSpline:
         count = len(self.radii)
         knots = np.linspace(0.0, lobes.period, count + 1)
         control = np.array(self.radii)
+        scale = (count / lobes.period) ** np.arange(4)
 
-        def segment(k: int) -> Shape:
-            cubic = polynomial(_BASIS @ control[np.arange(k - 1, k + 3) % count])
-            start, rate = float(knots[k]), count / lobes.period
-            return lambda x: cubic((x - start) * rate)
+        def segment(k: int) -> Piece:
+            powers = scale * (_BASIS @ control[np.arange(k - 1, k + 3) % count])
+            return Piece(polynomial, parameters=(float(knots[k]), *powers.tolist()))
 
         return law_of_centrode([segment(k) for k in range(count)], knots, lobes, tolerances)
 
@@ -100,26 +100,34 @@ class RoundedPolygon:
         repeats = self.corners // lobes.n1
         sector = 2.0 * math.pi / self.corners
         grid = np.concatenate([knots[:-1] + k * sector for k in range(repeats)])
-        moved = [_moved(piece, k * sector) for k in range(repeats) for piece in pieces]
+        moved = [
+            replace(piece, parameters=(piece.parameters[0] + k * sector,))
+            for k in range(repeats)
+            for piece in pieces
+        ]
         solved = {"side_distance_over_center_distance": height}
         return make_law(lobes, np.append(grid, lobes.period), moved, tolerances, solved)
 
-    def _pieces(self, h: float) -> tuple[np.ndarray, list[Shape]]:
-        """Knots and ratios of one sector, from the middle of a side to that of the next."""
+    def _pieces(self, h: float) -> tuple[np.ndarray, list[Piece]]:
+        """Knots and ratios of one sector, from the middle of a side to that of the next.
+
+        The parameter of a piece is the angle about which it is symmetric.
+        """
         half = math.pi / self.corners
         c, d = self.corner_radius, (h - self.corner_radius) / math.cos(half)
         turn = math.atan2((h - c) * math.tan(half), h)
 
-        def side(middle: float) -> Shape:
-            return lambda x: h / (cos(x - middle) - h)
+        def side(x: Jet, middle: Value) -> Jet:
+            return h / (cos(x - middle) - h)
 
-        def corner(x: Jet) -> Jet:
-            across = d * sin(x - half)
-            radius = d * cos(x - half) + sqrt(c * c - across * across)
+        def corner(x: Jet, middle: Value) -> Jet:
+            across = d * sin(x - middle)
+            radius = d * cos(x - middle) + sqrt(c * c - across * across)
             return radius / (1.0 - radius)
 
         knots = np.array([0.0, turn, 2.0 * half - turn, 2.0 * half])
-        return knots, [side(0.0), corner, side(2.0 * half)]
+        shapes = ((side, 0.0), (corner, half), (side, 2.0 * half))
+        return knots, [Piece(shape, parameters=(middle,)) for shape, middle in shapes]
 
     def _side(self, lobes: Lobes) -> float:
         """Solve h: the driven angle grows with it, from that of a circle of the corner's radius."""
@@ -131,8 +139,8 @@ class RoundedPolygon:
         def excess(heights: np.ndarray) -> np.ndarray:
             found = []
             for h in np.atleast_1d(heights):
-                knots, shapes = self._pieces(float(h))
-                ratio = piecewise(knots, [Piece(shape) for shape in shapes])
+                knots, pieces = self._pieces(float(h))
+                ratio = piecewise(knots, pieces)
                 # the corner's peak is sharp where it comes near the other shaft: graded parts
                 grid = np.concatenate([knots[0] + np.linspace(0, 1, 5) * knots[1], _graded(knots)])
                 width = 0.5 * np.diff(grid)
@@ -150,10 +158,6 @@ def _graded(knots: np.ndarray) -> np.ndarray:
     """Places from the end of a side to the middle of its corner, denser towards the middle."""
     middle = 0.5 * (knots[1] + knots[2])
     return middle - (middle - knots[1]) * 0.5 ** np.append(np.arange(1, 24), np.inf)
-
-
-def _moved(shape: Shape, angle: float) -> Piece:
-    return Piece(lambda x: shape(x - angle))
 
 
 def _claims_spline() -> tuple[Claim, ...]:

@@ -6,8 +6,9 @@ The triangle of crank, rod and d gives the crank angle psi without cancellation,
 
     sin(psi/2)^2 = s*(2*rod - s)/(4*d),   cos(psi/2)^2 = (2 - s)*(2 + 2*rod - s)/(4*d).
 
-At a dead centre s has a double zero, and its root changes sign there: nearby, ``sqrt(s)`` is
-``t*sqrt(s/t^2)`` with s as a Taylor series in the angle t from the dead centre.
+At a dead centre s has a double zero, and its root changes sign there: ``sqrt(s)`` is
+``t*sqrt(s/t^2)``, with s as a Taylor series in the angle t from the dead centre. From it comes the
+series of psi, which is used nearby.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.laws.formula import derivative
 from gearcam.laws.span import angle_text
-from gearcam.numeric.jets import Jet, asin, atan, polynomial, sqrt
+from gearcam.numeric.jets import Jet, asin, atan, polynomial, slope, sqrt
 from gearcam.numeric.piecewise import Piece, extremes
 
 Array = NDArray[np.float64]
@@ -149,30 +150,29 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
     InfeasibleError
         Where the motion rests at a dead centre or bends too sharply there.
     """
-    near = {
-        "outer": (slide.outer, *_near(slide, slide.outer, 1.0)),
-        "inner": (slide.inner, *_near(slide, slide.inner, -1.0)),
-    }
-    period = slide.period
-    stretches: list[tuple[float, float, Motion]] = []
-    for kind, (middle, reach, motion) in near.items():
-        for turn in (-1, 0, 1):
-            place = middle + turn * period
-            stretches.append((place - reach, place + reach, _shifted(motion, turn * period)))
-        other = near["inner" if kind == "outer" else "outer"]
+    outer = (slide.outer, *_series(slide, slide.outer, 1.0), 1.0)
+    inner = (slide.inner, *_series(slide, slide.inner, -1.0), -1.0)
+    motion, period = _between(slide), slide.period
+    ratio = derivative(motion)
+    stretches: list[tuple[float, float, Piece]] = []
+    for (middle, reach, powers, sign), other in ((outer, inner), (inner, outer)):
         gap = (other[0] - middle) % period
         for turn in (-1, 0, 1):
-            low = middle + turn * period + reach
-            high = middle + turn * period + gap - other[1]
-            stretches.append((low, high, _between(slide, 1.0 if kind == "outer" else -1.0)))
+            place = middle + turn * period
+            low, high = place + reach, place + gap - other[1]
+            stretches.append((place - reach, low, Piece(slope, polynomial, (place, *powers))))
+            stretches.append((low, high, Piece(ratio, motion, (sign,))))
     inside = sorted(
-        (max(low, 0.0), min(high, period), motion)
-        for low, high, motion in stretches
-        if min(high, period) - max(low, 0.0) > 1e-12
+        (
+            (max(low, 0.0), min(high, period), piece)
+            for low, high, piece in stretches
+            if min(high, period) - max(low, 0.0) > 1e-12
+        ),
+        key=lambda stretch: stretch[0],
     )
     knots = np.array([low for low, _, _ in inside] + [period])
     knots[0] = 0.0
-    pieces = [Piece(derivative(motion), motion) for _, _, motion in inside]
+    pieces = [piece for _, _, piece in inside]
     first = slide.way(Jet.variable(np.zeros(1), 1)).derivatives()
     return knots, pieces, _start(slide, float(first[0][0]), float(first[1][0]))
 
@@ -184,8 +184,10 @@ def _start(slide: Slide, s: float, slope: float) -> float:
     return angle if slope >= 0.0 else 2.0 * math.pi - angle
 
 
-def _between(slide: Slide, sign: float) -> Motion:
-    def motion(x: Jet) -> Jet:
+def _between(slide: Slide) -> Callable[..., Jet]:
+    """Return the crank angle between dead centres; sign 1 from the outer to the inner one."""
+
+    def motion(x: Jet, sign: Array) -> Jet:
         s = slide.way(x)
         sine, cosine = s * (2.0 * slide.rod - s), (2.0 - s) * (2.0 + 2.0 * slide.rod - s)
         return (2.0 * sign) * atan(sqrt(sine / cosine))
@@ -193,8 +195,8 @@ def _between(slide: Slide, sign: float) -> Motion:
     return motion
 
 
-def _near(slide: Slide, place: float, sign: float) -> tuple[float, Motion]:
-    """Reach of the series about a dead centre, and psi there; sign -1 for the inner one."""
+def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]]:
+    """Return reach and coefficients of the series about a dead centre; sign -1 for the inner."""
     jet = slide.way(Jet.variable(np.array([place]), _ORDER))
     c = np.array([float(np.ravel(value)[0]) for value in jet.c]) * sign
     if not c[2] > 1e-6:
@@ -205,10 +207,15 @@ def _near(slide: Slide, place: float, sign: float) -> tuple[float, Motion]:
             limit=2e-6,
             nearest="this is the second derivative of the way, in crank radii",
         )
-    c = c[2:]
-    k, sizes = np.arange(len(c))[-_TAIL:], np.abs(c[-_TAIL:])
+    over, small = Jet(c[2:].tolist()), Jet([0.0, 0.0, *c[2:-2].tolist()])
+    s = small if sign > 0.0 else 2.0 - small
+    factor = (2.0 * slide.rod if sign > 0.0 else 2.0 + 2.0 * slide.rod) - s
+    root = sqrt(over * factor / (4.0 * (1.0 + slide.rod - s)))
+    powers = np.array([float(value) for value in (2.0 * asin(Jet([0.0, *root.c]))).c])
+    rates = np.arange(1, len(powers)) * powers[1:]
+    k, sizes = np.arange(len(rates))[-_TAIL:], np.abs(rates[-_TAIL:])
     with np.errstate(divide="ignore"):
-        reach = float(min(_WIDEST, ((1e-17 * c[0] / sizes) ** (1.0 / k)).min()))
+        reach = float(min(_WIDEST, ((1e-17 * rates[0] / sizes) ** (1.0 / k)).min()))
     reach = min(reach, 0.2 * abs(((slide.inner - slide.outer) % slide.period) or math.inf))
     if reach < _NARROWEST:
         raise InfeasibleError(
@@ -218,18 +225,4 @@ def _near(slide: Slide, place: float, sign: float) -> tuple[float, Motion]:
             limit=math.degrees(_NARROWEST),
             unit="deg",
         )
-    rod, series = slide.rod, polynomial(c)
-
-    def motion(x: Jet) -> Jet:
-        t = x - place
-        total = series(t)
-        small = t * t * total  # s, or 2 - s
-        s = small if sign > 0.0 else 2.0 - small
-        factor = (2.0 * rod - s) if sign > 0.0 else (2.0 + 2.0 * rod - s)
-        return 2.0 * asin(t * sqrt(total * factor / (4.0 * (1.0 + rod - s))))
-
-    return reach, motion
-
-
-def _shifted(motion: Motion, angle: float) -> Motion:
-    return lambda x: motion(x - angle)
+    return reach, powers.tolist()

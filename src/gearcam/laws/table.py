@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -15,7 +15,7 @@ from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
 from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, driven_way
-from gearcam.numeric.jets import Jet, polynomial
+from gearcam.numeric.jets import polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
 from gearcam.quantities import ANGLE, NUMBER, TEXT, param
@@ -177,23 +177,22 @@ def law_of_points(
         _demand_positive(kind, angles, values)
         rise = 0.0
     powers = quintics(knots, values, rise if span.closed else None)
-    shapes = [_polynomial(row, float(low)) for row, low in zip(powers, knots, strict=False)]
     if kind == "r1":
-        return law_of_centrode(shapes, knots, span, tolerances)
+        return law_of_centrode(_pieces(knots, powers), knots, span, tolerances)
     if kind == "phi2_deg":
-        slopes = powers[:, 1:] * np.arange(1, 6)
-        ratios = [_polynomial(row, float(low)) for row, low in zip(slopes, knots, strict=False)]
-        pieces = [Piece(*both) for both in zip(ratios, shapes, strict=True)]
+        pieces = [
+            replace(piece, function=slope, integral=polynomial) for piece in _pieces(knots, powers)
+        ]
         return make_law(span, knots, pieces, tolerances)
-    areas = np.pad(powers / np.arange(1, 7), ((0, 0), (1, 0)))
-    sums = [_polynomial(row, float(low)) for row, low in zip(areas, knots, strict=False)]
-    total = integrate(knots, [Piece(*both) for both in zip(shapes, sums, strict=True)], 0.0).last
-    factor = span.advance / total
-    scaled = [
-        Piece(_times(shape, factor), _times(area, factor))
-        for shape, area in zip(shapes, sums, strict=True)
-    ]
-    return make_law(span, knots, scaled, tolerances, {"ratio_factor": factor})
+    factor = span.advance / integrate(knots, _pieces(knots, powers), 0.0).last
+    pieces = _pieces(knots, factor * powers)
+    return make_law(span, knots, pieces, tolerances, {"ratio_factor": factor})
+
+
+def _pieces(knots: Array, powers: Array) -> list[Piece]:
+    """Return the polynomials with rows of `powers` of the distance from the knot before."""
+    rows = np.column_stack([knots[:-1], powers]).tolist()
+    return [Piece(polynomial, primitive, tuple(row)) for row in rows]
 
 
 def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
@@ -239,15 +238,6 @@ def _demand_positive(kind: str, angles: Array, values: Array) -> None:
             value=float(values[worst]),
             limit=0.0,
         )
-
-
-def _polynomial(powers: Array, low: float) -> Callable[[Jet], Jet]:
-    function = polynomial(powers)
-    return lambda x: function(x - low)
-
-
-def _times(shape: Callable[[Jet], Jet], factor: float) -> Callable[[Jet], Jet]:
-    return lambda x: factor * shape(x)
 
 
 def _claims() -> tuple[Claim, ...]:

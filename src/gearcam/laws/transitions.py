@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
-from gearcam.numeric.jets import Jet, cos, sin
+from gearcam.numeric.jets import Jet, Value, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece
 
 
@@ -35,57 +35,48 @@ class Arc:
 def _cosine(start: float, end: float, low: float, width: float) -> Piece:
     """003 eqs. (2.1), (2.17) with Tables 2.2, 2.4."""
     mean, half, speed = 0.5 * (start + end), 0.5 * (start - end), math.pi / width
+    return Piece(_cosine_ratio, _cosine_motion, (mean, half, speed, low))
 
-    def ratio(x: Jet) -> Jet:
-        return half * cos(speed * (x - low)) + mean
 
-    def motion(x: Jet) -> Jet:
-        return mean * x + (half / speed) * sin(speed * (x - low))
+def _cosine_ratio(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -> Jet:
+    return half * cos(speed * (x - low)) + mean
 
-    return Piece(ratio, motion)
+
+def _cosine_motion(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -> Jet:
+    return mean * x + (half / speed) * sin(speed * (x - low))
 
 
 def _cubic(start: float, end: float, low: float, width: float) -> Piece:
-    """003 eq. (2.13) with Table 2.3, written on the unit interval."""
+    """003 eq. (2.13) with Table 2.3: ``3*t^2 - 2*t^3`` on the unit interval."""
     rise = end - start
-
-    def ratio(x: Jet) -> Jet:
-        t = (x - low) / width
-        return rise * (t * t * (3.0 - 2.0 * t)) + start
-
-    def motion(x: Jet) -> Jet:
-        t = (x - low) / width
-        return (t * (start + rise * (t * t * (1.0 - 0.5 * t)))) * width
-
-    return Piece(ratio, motion)
+    return Piece(_powers_ratio, _powers_motion, (low, width, start, 0.0, 3.0 * rise, -2.0 * rise))
 
 
 def _quintic(start: float, end: float, low: float, width: float) -> Piece:
     """``10*t^3 - 15*t^4 + 6*t^5``: curvature of the ratio zero at both ends too."""
-    rise = end - start
+    powers = [c * (end - start) for c in (10.0, -15.0, 6.0)]
+    return Piece(_powers_ratio, _powers_motion, (low, width, start, 0.0, 0.0, *powers))
 
-    def ratio(x: Jet) -> Jet:
-        t = (x - low) / width
-        return rise * (t * t * t * (10.0 + t * (6.0 * t - 15.0))) + start
 
-    def motion(x: Jet) -> Jet:
-        t = (x - low) / width
-        return (t * (start + rise * (t * t * t * (2.5 + t * (t - 3.0))))) * width
+def _powers_ratio(x: Jet, low: Value, width: Value, *powers: Value) -> Jet:
+    return polynomial((x - low) / width, 0.0, *powers)
 
-    return Piece(ratio, motion)
+
+def _powers_motion(x: Jet, low: Value, width: Value, *powers: Value) -> Jet:
+    return width * primitive((x - low) / width, 0.0, *powers)
 
 
 def _sine(start: float, end: float, low: float, width: float) -> Piece:
     """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
-    rise, speed = end - start, 0.5 * math.pi / width
+    return Piece(_sine_ratio, _sine_motion, (start, end - start, 0.5 * math.pi / width, low))
 
-    def ratio(x: Jet) -> Jet:
-        return rise * sin(speed * (x - low)) + start
 
-    def motion(x: Jet) -> Jet:
-        return start * x - (rise / speed) * cos(speed * (x - low))
+def _sine_ratio(x: Jet, start: Value, rise: Value, speed: Value, low: Value) -> Jet:
+    return rise * sin(speed * (x - low)) + start
 
-    return Piece(ratio, motion)
+
+def _sine_motion(x: Jet, start: Value, rise: Value, speed: Value, low: Value) -> Jet:
+    return start * x - (rise / speed) * cos(speed * (x - low))
 
 
 ARCS: Final[dict[str, Arc]] = {

@@ -8,13 +8,16 @@ algebra. Outside a function's domain the values are nan or inf, for the caller t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Value = Array | float
+"""A number, or one at each sample point."""
 
 
 class Jet:
@@ -28,7 +31,10 @@ class Jet:
 
     __slots__ = ("c",)
 
-    def __init__(self, coefficients: Sequence[Array | float]) -> None:
+    __array_ufunc__ = None
+    """An array times a jet is a jet: numpy leaves the operation to it."""
+
+    def __init__(self, coefficients: Sequence[Value]) -> None:
         self.c = tuple(coefficients)
 
     @classmethod
@@ -47,7 +53,7 @@ class Jet:
         scaled = [v * math.factorial(k) if k > 1 else v for k, v in enumerate(self.c)]
         return [v if isinstance(v, np.ndarray) else np.full(shape, v) for v in scaled]
 
-    def _lift(self, other: Jet | float) -> Jet:
+    def _lift(self, other: Jet | Value) -> Jet:
         if isinstance(other, Jet):
             return other
         return Jet([np.full_like(self.c[0], other), *[0.0] * self.order])
@@ -58,42 +64,50 @@ class Jet:
     def __pos__(self) -> Jet:
         return self
 
-    def __add__(self, other: Jet | float) -> Jet:
+    def __add__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
             return Jet([self.c[0] + other, *self.c[1:]])
         return Jet([a + b for a, b in zip(self.c, other.c, strict=True)])
 
     __radd__ = __add__
 
-    def __sub__(self, other: Jet | float) -> Jet:
+    def __sub__(self, other: Jet | Value) -> Jet:
         return self + (-other)
 
-    def __rsub__(self, other: float) -> Jet:
+    def __rsub__(self, other: Value) -> Jet:
         return -self + other
 
-    def __mul__(self, other: Jet | float) -> Jet:
+    def __mul__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
             return Jet([value * other for value in self.c])
         a, b = self.c, other.c
-        return Jet([_convolve(a, b, k) for k in range(len(a))])
+        left = [j for j, value in enumerate(a) if not _is_zero(value)]
+        right = [not _is_zero(value) for value in b]
+        return Jet(
+            [
+                _total([a[j] * b[k - j] for j in left if j <= k and right[k - j]])
+                for k in range(len(a))
+            ]
+        )
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Jet | float) -> Jet:
+    def __truediv__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
             return Jet([value / other for value in self.c])
-        quotient: list[Array | float] = []
+        quotient: list[Value] = []
         for k, value in enumerate(self.c):
             rest = value
             for j in range(k):
-                rest = rest - quotient[j] * other.c[k - j]
+                if not _is_zero(other.c[k - j]):
+                    rest = rest - quotient[j] * other.c[k - j]
             quotient.append(rest / other.c[0])
         return Jet(quotient)
 
-    def __rtruediv__(self, other: float) -> Jet:
+    def __rtruediv__(self, other: Value) -> Jet:
         return self._lift(other) / self
 
-    def __pow__(self, exponent: Jet | float) -> Jet:
+    def __pow__(self, exponent: Jet | Value) -> Jet:
         if isinstance(exponent, Jet):
             if all(not np.any(value) for value in exponent.c[1:]):
                 values = np.unique(exponent.c[0])
@@ -102,7 +116,7 @@ class Jet:
             return exp(log(self) * exponent)
         if float(exponent).is_integer() and abs(exponent) <= 64:
             return self._integer_power(int(exponent))
-        power: list[Array | float] = [self.c[0] ** exponent]
+        power: list[Value] = [self.c[0] ** exponent]
         for k in range(1, len(self.c)):
             total = sum(
                 (exponent * j - (k - j)) * self.c[j] * power[k - j] for j in range(1, k + 1)
@@ -116,50 +130,48 @@ class Jet:
     def _integer_power(self, exponent: int) -> Jet:
         if exponent < 0:
             return 1.0 / self._integer_power(-exponent)
-        result, square = self._lift(1.0), self
-        while exponent:
-            if exponent & 1:
-                result = result * square
-            exponent >>= 1
-            if exponent:
-                square = square * square
-        return result
+        if not exponent:
+            return self._lift(1.0)
+        if exponent & 1:
+            return self if exponent == 1 else self * self._integer_power(exponent - 1)
+        half = self._integer_power(exponent // 2)
+        return half * half
 
 
-def _convolve(a: Sequence[Array | float], b: Sequence[Array | float], k: int) -> Array | float:
-    return _total(
-        a[j] * b[k - j] for j in range(k + 1) if not (_is_zero(a[j]) or _is_zero(b[k - j]))
-    )
-
-
-def _total(terms: Iterable[Array | float]) -> Array | float:
-    total: Array | float = 0.0
-    for term in terms:
-        total = term if _is_zero(total) else total + term
+def _total(terms: Sequence[Value]) -> Value:
+    if not terms:
+        return 0.0
+    total, *more = terms
+    for term in more:
+        total = total + term
     return total
 
 
-def _is_zero(value: Array | float) -> bool:
+def _is_zero(value: Value) -> bool:
     """Whether a coefficient is zero at all points, without looking at arrays."""
     return isinstance(value, float) and value == 0.0
 
 
-def _chain(jet: Jet, value: Array | float, slope: Callable[[Jet], Jet]) -> Jet:
+def _chain(jet: Jet, value: Value, slope: Callable[[Jet], Jet]) -> Jet:
     """Return f(jet) from f at the points and the jet of f' (one order less is enough)."""
     result = [value]
     if jet.order:
         inner = slope(Jet(jet.c[:-1]))
         for k in range(1, jet.order + 1):
-            terms = (
+            terms = [
                 j * jet.c[j] * inner.c[k - j] for j in range(1, k + 1) if not _is_zero(jet.c[j])
-            )
+            ]
             result.append(_total(terms) / k)
     return Jet(result)
 
 
 def exp(x: Jet) -> Jet:
     """Exponential of a jet."""
-    return _chain(x, np.exp(x.c[0]), exp)
+    result: list[Value] = [np.exp(x.c[0])]
+    for k in range(1, x.order + 1):
+        weights = [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
+        result.append(_total([w * result[j] for w, j in weights]))
+    return Jet(result)
 
 
 def log(x: Jet) -> Jet:
@@ -169,26 +181,30 @@ def log(x: Jet) -> Jet:
 
 def sqrt(x: Jet) -> Jet:
     """Square root of a jet."""
-    return _chain(x, np.sqrt(x.c[0]), lambda inner: 0.5 / sqrt(inner))
+    root: list[Value] = [np.sqrt(x.c[0])]
+    for k in range(1, x.order + 1):
+        rest = x.c[k] - _total([root[j] * root[k - j] for j in range(1, k)])
+        root.append(rest / (2.0 * root[0]))
+    return Jet(root)
 
 
 def _oscillate(x: Jet, sine: bool) -> Jet:
     """Return sin or cos of a jet, with its derivative g beside it: f' = g*x', g' = -f*x'."""
-    f: list[Array | float] = [np.sin(x.c[0]) if sine else np.cos(x.c[0])]
+    f: list[Value] = [np.sin(x.c[0]) if sine else np.cos(x.c[0])]
     if not x.order:
         return Jet(f)
-    g: list[Array | float] = [np.cos(x.c[0]) if sine else -np.sin(x.c[0])]
+    g: list[Value] = [np.cos(x.c[0]) if sine else -np.sin(x.c[0])]
     if all(_is_zero(value) for value in x.c[2:]):
         # A straight inner function: the derivatives are f, g, -f, -g, f, ...
-        factor: Array | float = 1.0
+        factor: Value = 1.0
         for k in range(1, x.order + 1):
             factor = factor * x.c[1] / k
             f.append((g[0] if k % 2 else f[0]) * (factor if k % 4 < 2 else -factor))
         return Jet(f)
     for k in range(1, x.order + 1):
         weights = [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
-        f.append(_total(w * g[j] for w, j in weights))
-        g.append(-_total(w * f[j] for w, j in weights))
+        f.append(_total([w * g[j] for w, j in weights]))
+        g.append(-_total([w * f[j] for w, j in weights]))
     return Jet(f)
 
 
@@ -237,17 +253,59 @@ def tanh(x: Jet) -> Jet:
     return _chain(x, np.tanh(x.c[0]), lambda inner: 1.0 - tanh(inner) * tanh(inner))
 
 
-def polynomial(coefficients: ArrayLike) -> Callable[[Jet], Jet]:
-    """Return the polynomial of jets with `coefficients` of rising powers, at least one."""
-    *rest, last = (float(value) for value in np.asarray(coefficients, dtype=float))
+def polynomial(x: Jet, place: Value, *coefficients: Value) -> Jet:
+    """Return a polynomial of a jet, in powers of its distance from a place.
 
-    def function(t: Jet) -> Jet:
-        total = 0.0 * t + last
-        for value in reversed(rest):
-            total = total * t + value
-        return total
+    Parameters
+    ----------
+    x : Jet
+        Of arrays of one shape.
+    place : float or array
+        Where the distance is zero.
+    *coefficients : floats, or arrays
+        Of rising powers, at least one.
 
-    return function
+    Returns
+    -------
+    Jet
+
+    Notes
+    -----
+    Horner's scheme on all derivatives over their factorials at once, then the chain rule.
+    """
+    t, count = x.c[0] - place, len(coefficients)
+    given = np.array(coefficients)
+    given = given.reshape(count, *(given.shape[1:] or (1,) * np.ndim(t)))
+    rows = np.zeros((count, x.order + 1, *given.shape[1:]))
+    for k, factors in enumerate(_binomials(count, min(x.order + 1, count))):
+        rows[: count - k, k] = (factors * given[k:].T).T
+    about = 0.0 * t + rows[-1]
+    for row in rows[-2::-1]:
+        about *= t
+        about += row
+    if all(_is_zero(value) for value in x.c[2:]):
+        return Jet([about[0], *(value * x.c[1] ** k for k, value in enumerate(about[1:], 1))])
+    step, result = Jet([0.0, *x.c[1:]]), Jet([about[-1], *[0.0] * x.order])
+    for value in about[-2::-1]:
+        result = result * step + value
+    return result
+
+
+@lru_cache
+def _binomials(count: int, rows: int) -> list[Array]:
+    """Return what coefficients are multiplied by in the k-th derivative over k!, k the row."""
+    return [np.array([math.comb(j, k) for j in range(k, count)], float) for k in range(rows)]
+
+
+def primitive(x: Jet, place: Value, *coefficients: Value) -> Jet:
+    """Return the integral of a polynomial from its place (see `polynomial`)."""
+    areas = [value / (k + 1) for k, value in enumerate(coefficients)]
+    return polynomial(x, place, 0.0 * areas[0], *areas)
+
+
+def slope(x: Jet, place: Value, _: Value, *coefficients: Value) -> Jet:
+    """Return the derivative of a polynomial of degree 1 at least (see `polynomial`)."""
+    return polynomial(x, place, *(k * value for k, value in enumerate(coefficients, 1)))
 
 
 FUNCTIONS: Final[dict[str, Callable[[Jet], Jet]]] = {

@@ -1,8 +1,9 @@
 """Piecewise analytic functions: closed-form pieces between knots, with exact derivatives.
 
 A *piece* is a function written for jets, so that its derivatives are exact; it may bring its
-integral in closed form. Between knots a piece is smooth; at a knot any derivative may jump, and
-`continuity` says which is the first to do so.
+integral in closed form. Pieces of one function that differ in parameters alone are evaluated all
+at once. Between knots a piece is smooth; at a knot any derivative may jump, and `continuity` says
+which is the first to do so.
 """
 
 from __future__ import annotations
@@ -30,13 +31,21 @@ class Piece:
     Parameters
     ----------
     function : callable
-        ``function(jet) -> jet``.
+        ``function(jet, *parameters) -> jet``; with parameters each is a float, or an array of one
+        value a place.
     integral : callable or None
-        ``integral(jet) -> jet`` with derivative `function`, any constant.
+        ``integral(jet, *parameters) -> jet`` with derivative `function`, any constant.
+    parameters : tuple of float
+        What sets it apart from other pieces of the same function.
     """
 
-    function: Callable[[Jet], Jet]
-    integral: Callable[[Jet], Jet] | None = None
+    function: Callable[..., Jet]
+    integral: Callable[..., Jet] | None = None
+    parameters: tuple[float, ...] = ()
+
+    def __call__(self, x: Jet) -> Jet:
+        """Return the piece of a jet."""
+        return self.function(x, *self.parameters)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -82,33 +91,52 @@ class Piecewise(Pieces):
 
     Parameters
     ----------
-    pieces : tuple of n callables
-        ``piece(jet) -> jet``.
+    pieces : tuple of n Piece
+        Between the knots; their integrals are not used.
     offsets : (n,) array
         Added to the pieces: integration constants.
     """
 
-    pieces: tuple[Callable[[Jet], Jet], ...]
+    pieces: tuple[Piece, ...]
     offsets: Array
+
+    @cached_property
+    def _families(self) -> tuple[Index, list[tuple[Callable[..., Jet], Array]]]:
+        """Number of each piece's function; and the functions, with a column a piece of parameters.
+
+        The columns of other functions' pieces are never read.
+        """
+        owners: dict[Callable[..., Jet], list[int]] = {}
+        for k, piece in enumerate(self.pieces):
+            owners.setdefault(piece.function, []).append(k)
+        numbers, functions = np.zeros(len(self.pieces), dtype=np.int64), []
+        for number, (function, own) in enumerate(owners.items()):
+            numbers[own] = number
+            columns = np.zeros((len(self.pieces[own[0]].parameters), len(self.pieces)))
+            columns[:, own] = np.transpose([self.pieces[k].parameters for k in own])
+            functions.append((function, columns))
+        return numbers, functions
 
     def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
-        if len(self.pieces) > 1:
+        if len(self.pieces) != 1:
             return super().derivatives(x, order)
         x = np.asarray(x, dtype=float)
-        return [values.reshape(x.shape) for values in self._piece(0, x.ravel(), order)]
+        (piece,) = self.pieces
+        jet = piece(Jet.variable(x.ravel(), order)) + self.offsets[0]
+        return [values.reshape(x.shape) for values in jet.derivatives()]
 
     def on_pieces(self, index: Index, x: Array, order: int) -> Array:
         """Return function and derivatives by given pieces (see `Pieces.on_pieces`)."""
+        numbers, functions = self._families
         result = np.empty((order + 1, x.size))
-        for number, here in members(index, len(self.pieces)):
-            for k, values in enumerate(self._piece(number, x[here], order)):
+        for number, here in members(numbers[index], len(functions)):
+            function, columns = functions[number]
+            which = index[here]
+            jet = function(Jet.variable(x[here], order), *columns[:, which]) + self.offsets[which]
+            for k, values in enumerate(jet.derivatives()):
                 result[k, here] = values
         return result
-
-    def _piece(self, number: int, x: Array, order: int) -> list[Array]:
-        jet = self.pieces[number](Jet.variable(x, order)) + self.offsets[number]
-        return jet.derivatives()
 
     def __call__(self, x: ArrayLike) -> Array:
         """Return the values at `x`."""
@@ -141,22 +169,18 @@ class Piecewise(Pieces):
 
     def side(self, knot: int, side: int, order: int) -> list[float]:
         """Return derivatives up to `order` at a knot by the piece on one `side` (-1 or +1)."""
-        number = knot - 1 if side < 0 else knot
-        found = self._piece(number, self.knots[knot : knot + 1], order)
-        return [float(values[0]) for values in found]
+        number = np.array([knot - 1 if side < 0 else knot])
+        return self.on_pieces(number, self.knots[[knot]], order)[:, 0].tolist()
 
     @cached_property
     def continuity(self) -> tuple[int, ...]:
         """Order of continuity (-1 to 3) at each inner knot and, last, across the ends."""
-        last = len(self.knots) - 1
-        pairs = [(k, k) for k in range(1, last)] + [(last, 0)]
-        result = []
-        for left, right in pairs:
-            before, after = self.side(left, -1, 3), self.side(right, 1, 3)
-            scale = max(1.0, *(abs(v) for v in before + after))
-            equal = [abs(b - a) <= 1e-9 * scale for b, a in zip(before, after, strict=True)]
-            result.append(equal.index(False) - 1 if False in equal else 3)
-        return tuple(result)
+        numbers = np.arange(len(self.pieces))
+        before = self.on_pieces(numbers, self.knots[1:], 3)
+        after = np.roll(self.on_pieces(numbers, self.knots[:-1], 3), -1, axis=1)
+        scale = np.fmax(1.0, np.fmax.reduce(np.abs([*before, *after])))
+        equal = np.abs(before - after) <= 1e-9 * scale
+        return tuple((np.logical_and.accumulate(equal).sum(axis=0) - 1).tolist())
 
 
 def members(index: Index, count: int) -> Iterator[tuple[int, Index | slice]]:
@@ -187,7 +211,7 @@ def piecewise(knots: ArrayLike, pieces: list[Piece]) -> Piecewise:
     """Return the function that the pieces make between the knots."""
     return Piecewise(
         knots=np.asarray(knots, dtype=float),
-        pieces=tuple(piece.function for piece in pieces),
+        pieces=tuple(pieces),
         offsets=np.zeros(len(pieces)),
     )
 
@@ -215,16 +239,17 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
         Where the integrand is not finite or not smooth between the knots.
     """
     grid = np.asarray(knots, dtype=float)
-    integrals = [piece.integral for piece in pieces]
-    closed = tuple(integral for integral in integrals if integral is not None)
+    closed = [
+        replace(piece, function=piece.integral, integral=None)
+        for piece in pieces
+        if piece.integral is not None
+    ]
     if len(closed) < len(pieces):
         return expand(piecewise(grid, pieces), grid, tolerance).antiderivative()
-    offsets, total = [], 0.0
-    for low, high, integral in zip(grid[:-1], grid[1:], closed, strict=True):
-        start, end = integral(Jet.variable([low, high], 0)).derivatives()[0]
-        offsets.append(total - start)
-        total += end - start
-    return Piecewise(knots=grid, pieces=closed, offsets=np.array(offsets))
+    parts, numbers = piecewise(grid, closed), np.arange(len(closed))
+    starts, ends = (parts.on_pieces(numbers, x, 0)[0] for x in (grid[:-1], grid[1:]))
+    totals = np.concatenate([[0.0], np.cumsum(ends - starts)])
+    return replace(parts, offsets=totals[:-1] - starts)
 
 
 def places_between(knots: ArrayLike, samples: int = 192) -> Array:
