@@ -328,7 +328,7 @@ def test_what_leaves_the_travel_is_refused(name: str, spec: MeshingSpec, words: 
 
 def test_teeth_choose_phases_of_every_turn_of_a_pinion() -> None:
     setup = mount(made("feeder").gears, MeshingSpec(teeth=(2,), steps=541))
-    chosen = phases(setup)
+    chosen = phases(setup.spec, setup.pairs[setup.side])
     turns = np.unique(np.floor((np.degrees(chosen) + 90.0) / 360.0))
     assert turns.tolist() == [0.0, 1.0]
     off = np.degrees(np.angle(np.exp(1j * (chosen - setup.turning.rolling.angle(2.0 * math.pi)))))

@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.gears.flank import Toothing
-from gearcam.gears.normals import touch
+from gearcam.gears.normals import Mounting, touch
 from gearcam.gears.rolling import WHEELS, Wheel
 
 if TYPE_CHECKING:  # what cuts wheels needs more than numpy
@@ -38,30 +37,16 @@ _EVEN = 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class FlankPairs:
+class FlankPairs(Mounting):
     """The pairs of flanks of one side, numbered by j.
 
     Parameters
     ----------
-    toothings : (Toothing, Toothing)
-        Driver and driven wheel.
     flanks : (Flanks, Flanks)
-        Their flanks as made.
-    side : {-1, +1}
-        sigma of the driver's flanks.
-    distance : float, mm
-        Distance of the shafts as mounted; of a rack how far it stands off its place.
+        The flanks of both wheels as made.
     """
 
-    toothings: tuple[Toothing, Toothing]
     flanks: tuple[Flanks, Flanks]
-    side: int
-    distance: float
-
-    @property
-    def pitch(self) -> float:
-        """Pitch, mm."""
-        return self.toothings[0].pitch
 
     @property
     def closed(self) -> bool:

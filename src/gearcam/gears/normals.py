@@ -15,15 +15,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import Frames, Plane
-
-if TYPE_CHECKING:
-    from gearcam.gears.contact import FlankPairs
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,6 +41,30 @@ _FAR = 3.0
 
 _FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
 """Unknowns among phase, roll of both wheels and lead, by which of the first three is known."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Mounting:
+    """Two wheels on their shafts, and which of their flanks are looked at.
+
+    Parameters
+    ----------
+    toothings : (Toothing, Toothing)
+        Driver and driven wheel.
+    side : {-1, +1}
+        sigma of the driver's flanks.
+    distance : float, mm
+        Distance of the shafts as mounted; of a rack how far it stands off its place.
+    """
+
+    toothings: tuple[Toothing, Toothing]
+    side: int
+    distance: float
+
+    @property
+    def pitch(self) -> float:
+        """Pitch, mm."""
+        return self.toothings[0].pitch
 
 
 class Pose(NamedTuple):
@@ -99,15 +121,15 @@ class Normals:
         return -_solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
 
 
-def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
+def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
     """Return normals of both wheels' flanks, and what they miss of being one.
 
     Parameters
     ----------
-    pairs : FlankPairs
-        The side.
+    mounting : Mounting
+        The wheels and the side.
     pose : Pose
-        Of n pairs.
+        Of n mounting.
     play : (n,) array, mm
         sf2 - sf1.
 
@@ -123,29 +145,30 @@ def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
     """
     phi1, one, two, lead = pose
     first, second = (
-        toothing.frames(angle) for toothing, angle in zip(pairs.toothings, (one, two), strict=True)
+        toothing.frames(angle)
+        for toothing, angle in zip(mounting.toothings, (one, two), strict=True)
     )
-    rolling, alpha = pairs.toothings[0].rolling, pairs.toothings[0].cutter.alpha
+    rolling, alpha = wheels[0].rolling, wheels[0].cutter.alpha
     law, size = rolling.law, rolling.center_distance
-    cosine, tilt = math.cos(alpha), complex(math.cos(alpha), -pairs.side * math.sin(alpha))
+    cosine, tilt = math.cos(alpha), complex(math.cos(alpha), -mounting.side * math.sin(alpha))
     turned = np.exp(-1j * phi1)
     foot1, n1 = first.p * turned, first.t * (tilt * turned)
     nominal, ratio = law.phi2(phi1), law.derivatives(phi1, 0)[0]
     if law.feeds:
-        foot2 = second.p - 1j * (size * nominal + lead) + pairs.distance
+        foot2 = second.p - 1j * (size * nominal + lead) + mounting.distance
         tangent2, carried, turns = second.t, np.full(phi1.shape, -1j), 0.0
         ratio = size * ratio
     else:
         back = np.exp(1j * (nominal + lead))
         foot2, tangent2, turns = second.p * back, second.t * back, 1.0
         carried = 1j * foot2
-        foot2 = foot2 + pairs.distance
+        foot2 = foot2 + mounting.distance
     n2 = tangent2 * tilt
     across = np.conj(n1) * (foot2 - foot1)
     aligned = np.conj(n2) * n1
     distance = across.real + (first.s - second.s + play) * cosine
     by_lead = np.conj(n1) * carried
-    by_one = -1j * (first.kappa * across + pairs.side * math.sin(alpha))
+    by_one = -1j * (first.kappa * across + mounting.side * math.sin(alpha))
     by_two = np.conj(n1) * tangent2 - cosine
     # the driver turns by -phi1, the driven wheel as with the lead
     by_phase = 1j * np.conj(n1) * foot2 + ratio * by_lead
@@ -165,13 +188,15 @@ def normals(pairs: FlankPairs, pose: Pose, play: Array) -> Normals:
     )
 
 
-def touch(pairs: FlankPairs, start: Array, play: Array, known: Ints | int = 0) -> tuple[Pose, Mask]:
+def touch(
+    mounting: Mounting, start: Array, play: Array, known: Ints | int = 0
+) -> tuple[Pose, Mask]:
     """Find where flanks touch.
 
     Parameters
     ----------
-    pairs : FlankPairs
-        The side.
+    mounting : Mounting
+        The wheels and the side.
     start : (n,) array, rad
         What is known: the phase, or the driver angle that names the roll of a wheel. As designed
         all three are equal, so that the search begins there.
@@ -190,21 +215,21 @@ def touch(pairs: FlankPairs, start: Array, play: Array, known: Ints | int = 0) -
     x = np.stack([start, start, start, np.zeros(start.shape)])
     free = _FREE[np.broadcast_to(known, start.shape)].T
     rows = np.arange(start.size)
-    speed = np.maximum(pairs.toothings[0].frames(start, curved=False).speed, 1e-300)
-    longest = 0.5 * pairs.pitch
-    at = normals(pairs, Pose(*x), play)
+    speed = np.maximum(mounting.toothings[0].frames(start, curved=False).speed, 1e-300)
+    longest = 0.5 * mounting.pitch
+    at = normals(mounting, Pose(*x), play)
     for _ in range(_STEPS):
         step = -_solve(at.slopes[:, free, rows], at.equations)
         size = np.abs(step[:2]).max(axis=0) * speed
         with np.errstate(invalid="ignore", divide="ignore"):
             step = step * np.minimum(1.0, longest / size)
         x[free, rows] += np.where(np.isfinite(step), step, 0.0)
-        at = normals(pairs, Pose(*x), play)
-        if not np.any(size > _SMALL * pairs.pitch):
+        at = normals(mounting, Pose(*x), play)
+        if not np.any(size > _SMALL * mounting.pitch):
             break
     found = np.abs(at.equations[0]) <= _MISS
-    found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * pairs.pitch
-    found &= np.abs(x[:3] - start).max(axis=0) * speed <= _FAR * pairs.pitch
+    found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * mounting.pitch
+    found &= np.abs(x[:3] - start).max(axis=0) * speed <= _FAR * mounting.pitch
     return Pose(*x), found
 
 

@@ -46,24 +46,24 @@ def _cosine_motion(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -
     return mean * x + (half / speed) * sin(speed * (x - low))
 
 
-def _cubic(start: float, end: float, low: float, width: float) -> Piece:
-    """003 eq. (2.13) with Table 2.3: ``3*t^2 - 2*t^3`` on the unit interval."""
-    rise = end - start
-    return Piece(_powers_ratio, _powers_motion, (low, width, start, 0.0, 3.0 * rise, -2.0 * rise))
+def _curve(*powers: float) -> Callable[[float, float, float, float], Piece]:
+    """Return the arcs of a polynomial that rises from 0 to 1 over the unit interval."""
+
+    def ratio(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
+        return rise * polynomial((x - low) / width, 0.0, *powers) + start
+
+    def motion(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
+        t = (x - low) / width
+        return width * (start * t + rise * primitive(t, 0.0, *powers))
+
+    return lambda start, end, low, width: Piece(ratio, motion, (start, end - start, low, width))
 
 
-def _quintic(start: float, end: float, low: float, width: float) -> Piece:
-    """``10*t^3 - 15*t^4 + 6*t^5``: curvature of the ratio zero at both ends too."""
-    powers = [c * (end - start) for c in (10.0, -15.0, 6.0)]
-    return Piece(_powers_ratio, _powers_motion, (low, width, start, 0.0, 0.0, *powers))
+_CUBIC: Final = (0.0, 0.0, 3.0, -2.0)
+"""003 eq. (2.13) with Table 2.3, written on the unit interval."""
 
-
-def _powers_ratio(x: Jet, low: Value, width: Value, *powers: Value) -> Jet:
-    return polynomial((x - low) / width, 0.0, *powers)
-
-
-def _powers_motion(x: Jet, low: Value, width: Value, *powers: Value) -> Jet:
-    return width * primitive((x - low) / width, 0.0, *powers)
+_QUINTIC: Final = (0.0, 0.0, 0.0, 10.0, -15.0, 6.0)
+"""Curvature of the ratio zero at both ends too."""
 
 
 def _sine(start: float, end: float, low: float, width: float) -> Piece:
@@ -81,8 +81,8 @@ def _sine_motion(x: Jet, start: Value, rise: Value, speed: Value, low: Value) ->
 
 ARCS: Final[dict[str, Arc]] = {
     "cosine": Arc(piece=_cosine),
-    "cubic": Arc(piece=_cubic),
-    "quintic": Arc(piece=_quintic),
+    "cubic": Arc(piece=_curve(*_CUBIC)),
+    "quintic": Arc(piece=_curve(*_QUINTIC)),
     "sine": Arc(piece=_sine, share=2.0 / math.pi),
 }
 """The shapes, by their names in files."""

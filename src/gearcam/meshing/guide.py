@@ -86,7 +86,7 @@ class Shaft:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slide:
+class Slideway:
     """A slide across the line of centres: seen from the rack's place at phi1 = 0 of `rolling`.
 
     The rack moves downwards, as the driver's pitch point does.
@@ -118,4 +118,4 @@ class Slide:
 
 def guide_of(rolling: Rolling) -> Guide:
     """Return what guides the driven element of a pair of centrodes."""
-    return Slide(rolling=rolling) if rolling.law.feeds else Shaft(rolling=rolling)
+    return Slideway(rolling=rolling) if rolling.law.feeds else Shaft(rolling=rolling)

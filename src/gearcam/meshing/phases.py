@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.gears.contact import DRIVE
-
-if TYPE_CHECKING:
-    from gearcam.meshing.study import Setup
+from gearcam.gears.contact import FlankPairs
+from gearcam.meshing.settings import MeshingSpec
 
 Array = NDArray[np.float64]
 
@@ -22,13 +18,34 @@ _STOP = 1e-7
 """Share of the travel by which written degrees may pass a stop."""
 
 
-def phases(setup: Setup) -> Array:
+def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:
+    """Return the driver angles, rad, between which a pair is studied.
+
+    Parameters
+    ----------
+    spec : MeshingSpec
+        Settings.
+    pairs : FlankPairs
+        Either side.
+
+    Returns
+    -------
+    start, end : float, rad
+    """
+    if spec.end is not None:
+        return spec.start, spec.end
+    return spec.start, pairs.way + (spec.start if pairs.closed else 0.0)
+
+
+def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     """Return the phases of a study, rad.
 
     Parameters
     ----------
-    setup : Setup
-        The pair as mounted.
+    spec : MeshingSpec
+        Settings.
+    pairs : FlankPairs
+        The side that is pressed together.
 
     Returns
     -------
@@ -40,20 +57,18 @@ def phases(setup: Setup) -> Array:
     InfeasibleError
         If there is none, or the stretch leaves the travel of open wheels or a rack.
     """
-    spec = setup.spec
-    first, last = setup.stretch
+    first, last = stretch(spec, pairs)
     if not last > first:
         raise InfeasibleError(
             f"the study ends at {np.degrees(last):.6g} deg before it begins",
             where="meshing.from_deg",
             nearest=f"below {np.degrees(last):.6g} deg",
         )
-    phi1 = np.linspace(first, last, spec.steps, endpoint=not setup.closed)
-    if not setup.closed:
-        _demand_travel(first, last, setup.pairs[DRIVE].way)
+    phi1 = np.linspace(first, last, spec.steps, endpoint=not pairs.closed)
+    if not pairs.closed:
+        _demand_travel(first, last, pairs.way)
     if spec.teeth is None:
         return phi1
-    pairs = setup.pairs[setup.side]
     rolling = pairs.toothings[0].rolling
     wanted = np.isin(pairs.tooth(1, pairs.numbers), spec.teeth)
     start, end = (rolling.arc_length(edge[wanted]) for edge in pairs.arcs)

@@ -24,7 +24,7 @@ from gearcam.meshing.gap import first_touch, to_pitch_line
 from gearcam.meshing.halves import halve
 from gearcam.meshing.lens import lenses
 from gearcam.meshing.overlap import Overlaps, Turning
-from gearcam.meshing.phases import phases
+from gearcam.meshing.phases import phases, stretch
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
 
@@ -73,15 +73,7 @@ class Setup:
     @property
     def stretch(self) -> tuple[float, float]:
         """Driver angles between which the pair is studied, rad."""
-        spec, way = self.spec, self.pairs[DRIVE].way
-        if spec.end is not None:
-            return spec.start, spec.end
-        return spec.start, way if not self.closed else spec.start + way
-
-    @property
-    def closed(self) -> bool:
-        """Whether both wheels go all around."""
-        return self.pairs[DRIVE].closed
+        return stretch(self.spec, self.pairs[DRIVE])
 
     @property
     def side(self) -> int:
@@ -171,7 +163,7 @@ def study(gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None
 
 def run(setup: Setup, progress: Progress | None = None) -> Meshing:
     """Return the study of a pair as mounted (see `study`)."""
-    phi1 = phases(setup)
+    phi1 = phases(setup.spec, setup.pairs[setup.side])
     blocks: list[Block] = []
     done = 0
     try:
