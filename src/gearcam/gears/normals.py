@@ -148,7 +148,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
         toothing.frames(angle)
         for toothing, angle in zip(mounting.toothings, (one, two), strict=True)
     )
-    rolling, alpha = wheels[0].rolling, wheels[0].cutter.alpha
+    rolling, alpha = mounting.toothings[0].rolling, mounting.toothings[0].cutter.alpha
     law, size = rolling.law, rolling.center_distance
     cosine, tilt = math.cos(alpha), complex(math.cos(alpha), -mounting.side * math.sin(alpha))
     turned = np.exp(-1j * phi1)
