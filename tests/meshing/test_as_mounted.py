@@ -131,8 +131,10 @@ def test_harmonics_make_up_the_lag() -> None:
     assert series == pytest.approx(lead, abs=1e-3 * error["peak_to_peak"])
 
 
-def test_harmonics_of_a_known_lag() -> None:
-    found = mounted(0.0, steps=32 * 8, start=math.radians(20.0), end=math.radians(380.0))
+@pytest.mark.parametrize("turns", [1, 2])
+def test_harmonics_of_a_known_lag(turns: int) -> None:
+    start = math.radians(20.0)
+    found = mounted(0.0, steps=32 * 8 * turns, start=start, end=start + turns * 2.0 * math.pi)
     lead = 1e-3 + 3e-4 * np.cos(2.0 * found.phi1 + 0.7) - 1e-5 * np.sin(90.0 * found.phi1)
     told = {one["order"]: one for one in harmonics(found, lead)}
     assert told[2]["amplitude"] == pytest.approx(3e-4, rel=1e-9)

@@ -70,6 +70,22 @@ def test_options_stand_before_the_file(design: str) -> None:
     assert (found["steps"], found["advance_deg"]) == (5, pytest.approx(-0.01))
 
 
+def test_contact_ratio_is_told_for_the_mounting_only(design: str) -> None:
+    """Below a limit as designed, above it a little nearer: what holds as designed is not told."""
+    path = Path(design)
+    path.write_text(TEXT + "[limits]\ncontact_ratio = 1.6\n", encoding="utf-8")
+    loaded = gearcam.load(design)
+    assert isinstance(loaded, GearPairDesign)
+    made = gearcam.build(loaded)
+    assert "contact-ratio" in {found.code for found in made.findings}
+    distance = made.pair.center_distance
+    for more, told in ((0.0, True), (-0.2, False)):
+        _, folder = run(design, "--center", str(distance + more))
+        findings = summary(folder)["findings"]
+        assert isinstance(findings, list)
+        assert ("contact-ratio" in {found["code"] for found in findings}) == told
+
+
 def test_a_close_mounting_ends_with_an_error(design: str) -> None:
     loaded = gearcam.load(design)
     assert isinstance(loaded, GearPairDesign)

@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from gearcam.findings import CHECKS, Finding, run_checks
-from gearcam.gears.contact import DRIVE
+from gearcam.gears.contact import DRIVE, flank_pairs
 from gearcam.gears.spec import Rack
 from gearcam.laws.constant import Constant
 from gearcam.meshing.checks import KIND, clearances, spans
+from gearcam.meshing.drive_checks import contact_ratio
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
 from helpers_pairs import job, profile
@@ -84,6 +86,22 @@ def test_contact_ratio_below_one_is_an_error_and_says_that_edges_drive() -> None
     assert ratio < 1.0
     longer = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.7, dedendum=0.9))
     assert "contact-ratio" not in found(study(longer.gears, FEW))
+
+
+def test_a_flank_of_less_than_a_pitch_is_an_error_though_its_neighbours_drive() -> None:
+    """One flank of the driver is shorter at both ends; those beside it cover what it leaves."""
+    pairs = flank_pairs(job(Constant(), (20, 20), module=2.0).gears, DRIVE)
+    flanks, mate = pairs.flanks
+    highest, lowest = flanks.highest.copy(), flanks.lowest.copy()
+    highest[20 + 7] -= 0.4 * pairs.pitch
+    lowest[20 + 7] = 0.3 * pairs.pitch - mate.highest[0]
+    short = replace(pairs, flanks=(replace(flanks, highest=highest, lowest=lowest), mate))
+    assert short.contact_ratios.min() < 1.0
+    assert short.stretches[2].min() == 1
+    (finding,) = contact_ratio(SimpleNamespace(sides=(short,)), 1.1)
+    assert finding.severity == "error"
+    assert "neighbours drive" in finding.message
+    assert finding.where == "driving forward, wheel 1, tooth 8"
 
 
 @pytest.mark.parametrize(("distance", "bad"), [(43.7, True), (42.0, False)])

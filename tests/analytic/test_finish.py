@@ -1,0 +1,97 @@
+"""Clearance and rounded tips in the teeth against true parallels of the plain outline.
+
+The parallels come from a disc that rolls along the outline (`gearcam.parts.rolled`), which knows
+nothing of racks.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+
+from gearcam.errors import InfeasibleError
+from gearcam.gears.flank import Kind
+from gearcam.gears.pair import Gear, make_gear, make_pair
+from gearcam.gears.spec import Finish
+from gearcam.parts.parallel import moved, rounded
+from gearcam.tolerances import DEFAULT
+from helpers_pairs import profile
+
+TOLERANCE = 2e-4
+
+
+def wheel(name: str, number: int, clearance: float, rounding: float) -> Gear:
+    """A wheel of a profile with a finish in modules."""
+    made = profile(name)
+    module = made.pair.module
+    finish = Finish(clearance=clearance * module, tip_rounding=rounding * module)
+    design = made.design
+    pair = make_pair(made.law, design.pair, design.rack, DEFAULT, (finish, finish))
+    return make_gear(pair, 1 if number == 1 else 2, TOLERANCE, DEFAULT)
+
+
+@pytest.mark.parametrize("name", ["circular", "ellipse", "press"])
+@pytest.mark.parametrize("number", [1, 2])
+@pytest.mark.parametrize(
+    ("clearance", "rounding"), [(0.05, 0.0), (0.0, 0.1), (0.03, 0.25), (0.02, 0.45)]
+)
+def test_teeth_are_the_parallels_of_plain_teeth(
+    name: str, number: int, clearance: float, rounding: float
+) -> None:
+    """At 0.45 modules arcs meet on some teeth. Convex wheels: no mate shortens their tips."""
+    gear = wheel(name, number, clearance, rounding)
+    module, contour = gear.pair.module, wheel(name, number, 0.0, 0.0).profile.contour
+    if clearance:
+        contour = moved(contour, -clearance * module)
+    if rounding:
+        contour = rounded(contour, rounding * module)
+    found, expected = (shapely.Polygon(p) for p in (gear.outline, contour.vertices))
+    assert found.symmetric_difference(expected).area < TOLERANCE * found.length
+    inner = shapely.LineString(gear.outline).interpolate(np.linspace(0, 1, 2000), normalized=True)
+    assert shapely.distance(expected.boundary, inner).max() < 2.5 * TOLERANCE
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_arcs_are_tangent_and_of_the_radius_asked_for(number: int) -> None:
+    gear = wheel("ellipse", number, 0.02, 0.2)
+    rows, sampler = gear.profile.rows, gear.profile.sampler
+    arcs = np.flatnonzero(rows.kind == Kind.ROUND)
+    assert len(arcs) == 2 * gear.toothing.teeth
+    share = np.linspace(0.0, 1.0, 7)
+    for row in arcs[::5]:
+        points, tangents = sampler.curves.at(
+            np.full(7, row), rows.start[row] + share * (rows.end - rows.start)[row]
+        )
+        turned = np.unwrap(np.angle(tangents))
+        steps = np.abs(np.diff(points)) / (2.0 * np.sin(0.5 * np.abs(np.diff(turned))))
+        assert steps == pytest.approx(0.2 * gear.pair.module, rel=1e-9)
+        before, after = (row - 1) % len(rows.kind), (row + 1) % len(rows.kind)
+        for own, other, end, begin in ((0, before, rows.end, None), (-1, after, None, rows.start)):
+            place = end[other] if end is not None else begin[other]  # type: ignore[index]
+            point, tangent = sampler.curves.at(np.array([other]), np.array([place]))
+            assert abs(point[0] - points[own]) < 1e-9
+            assert abs(np.angle(tangent[0] / tangents[own])) < 1e-9
+
+
+def test_too_much_rounding_is_refused_with_the_most() -> None:
+    with pytest.raises(InfeasibleError, match="rounded so much") as caught:
+        wheel("ellipse", 1, 0.0, 2.0)
+    assert caught.value.limit is not None
+    module = profile("ellipse").pair.module
+    assert wheel("ellipse", 1, 0.0, caught.value.limit / module).outline.shape[1] == 2
+    with pytest.raises(InfeasibleError):
+        wheel("ellipse", 1, 0.0, 1.01 * caught.value.limit / module)
+
+
+def test_too_much_clearance_is_refused_with_the_most() -> None:
+    made = profile("ellipse")
+    with pytest.raises(InfeasibleError, match="leaves no teeth") as caught:
+        wheel("ellipse", 1, 0.6, 0.0)
+    assert caught.value.limit is not None
+    assert caught.value.limit == pytest.approx(
+        0.5 * 0.25 * math.pi * made.pair.module * math.cos(math.radians(20.0)), rel=1e-9
+    )
+    wheel("ellipse", 1, caught.value.limit / made.pair.module, 0.0)
