@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from gearcam.findings import Finding, check
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
-from gearcam.meshing.idle import Idle, idle
 from gearcam.meshing.settings import KIND
+
+if TYPE_CHECKING:
+    from gearcam.meshing.idle import Idle
 
 _SHOWN = 3
 """Stretches that a finding names."""
@@ -42,6 +44,15 @@ def side_name(pairs: FlankPairs) -> str:
     return "driving forward" if pairs.side == DRIVE else "driving backward"
 
 
+def _idle(pairs: FlankPairs) -> list[Idle]:
+    """Return the stretches on which no flanks touch; the search is loaded where there are some."""
+    if pairs.stretches[2].all():
+        return []
+    from gearcam.meshing.idle import idle
+
+    return list(idle(pairs))
+
+
 def _repeats(pairs: FlankPairs) -> str:
     lobes = pairs.toothings[0].rolling.law.lobes
     return ", in each lobe" if pairs.closed and pairs.even and lobes.n1 > 1 else ""
@@ -56,7 +67,7 @@ def _repeats(pairs: FlankPairs) -> str:
 def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
     """Warn of a low contact ratio; below 1, or where no flanks touch, it is an error."""
     for pairs in subject.sides:
-        worst, found = float(pairs.contact_ratios.min()), list(idle(pairs))
+        worst, found = float(pairs.contact_ratios.min()), _idle(pairs)
         if worst >= limit and not found:
             continue
         tooth = int(pairs.tooth(1, pairs.numbers)[pairs.contact_ratios.argmin()])
@@ -89,7 +100,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
 def nothing_drives(subject: Sided, limit: float) -> Iterator[Finding]:  # noqa: ARG001
     """Report the arcs on which neither flanks nor their ends touch, as errors."""
     for pairs in subject.sides:
-        empty = [stretch for stretch in idle(pairs) if not stretch.edges]
+        empty = [stretch for stretch in _idle(pairs) if not stretch.edges]
         if empty:
             yield Finding(
                 code="nothing-drives",
