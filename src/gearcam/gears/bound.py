@@ -74,7 +74,7 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
             limit=least if drives else 1.0,
             unit="mm" if drives else "",
             nearest="these are the smallest concave radius, and the least for this module; the "
-            f"flanks alone would allow a contact ratio of {bound:.4g}"
+            f"flanks by themselves allow a contact ratio of at most {bound:.4g}"
             if drives
             else "this is the most that the contact ratio can be, whatever cuts the roots",
             more_teeth=least / radius,
