@@ -130,6 +130,12 @@ class FlankPairs(Mounting):
         middle = np.rint(along - 0.25 * self.side).astype(np.int64)
         return middle[:, None] + np.arange(-width, width + 1)
 
+    def beside(self, phi1: Array) -> tuple[Ints, Ints]:
+        """Return the pairs that may touch at phases `phi1`, rad: indices of the phases, and j."""
+        candidates = self.near(self.toothings[0].rolling.arc_length(phi1))
+        step, column = np.nonzero(self.real(candidates))
+        return step, candidates[step, column]
+
     @cached_property
     def _lobe(self) -> int:
         """How many pairs there are until the same ones come again."""

@@ -121,6 +121,13 @@ class Toothing:
         normal = frames.t * (cosine + sigma * sine * self.turn)
         return frames.p + (sf - frames.s) * cosine * normal
 
+    def flank_motion(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
+        """Return how points of flanks (`sf`, `sigma`) move with the driver angle at `frames`."""
+        g = sigma * self.regularity(frames, sf, sigma)
+        return (
+            -g * frames.speed * self.turn * frames.t * np.exp(self.turn * sigma * self.cutter.alpha)
+        )
+
     def regularity(self, frames: Frames, sf: Array, sigma: Array) -> Array:
         """Return sigma*g of flanks (`sf`, `sigma`) at `frames`: not positive where undercut."""
         cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)

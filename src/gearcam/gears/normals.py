@@ -129,7 +129,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
     mounting : Mounting
         The wheels and the side.
     pose : Pose
-        Of n mounting.
+        Of n pairs.
     play : (n,) array, mm
         sf2 - sf1.
 

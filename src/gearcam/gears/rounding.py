@@ -158,8 +158,7 @@ def _touch(
         along = way / np.abs(way)
         center = base.p + height * w * base.t - radius * w * along
         miss = toothing.flank_points(roll, sf, sigma) - center
-        move = -sigma * toothing.regularity(roll, sf, sigma) * roll.speed * w
-        move = move * roll.t * np.exp(w * sigma * toothing.cutter.alpha)
+        move = toothing.flank_motion(roll, sf, sigma)
         slide = -along * (np.abs(way) - radius * base.kappa * base.speed)
         with np.errstate(divide="ignore", invalid="ignore"):
             steps = (
@@ -180,9 +179,8 @@ def _meet(
     toothing: Toothing, rows: Rows, joints: _Joints, pairs: Ints, radius: float
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Find the driver angles, rad, (2, n), at which both moved flanks of teeth cross."""
-    w, alpha = toothing.turn, toothing.cutter.alpha
     row, sigma = joints.row[pairs], joints.sigma[pairs]
-    sf = joints.sf[pairs] - sigma * radius / math.cos(alpha)
+    sf = joints.sf[pairs] - sigma * radius / math.cos(toothing.cutter.alpha)
     turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
     phi = np.where(sigma < 0.0, rows.end[row], rows.start[row])
     # at the seam both flanks are told in one turn
@@ -194,15 +192,7 @@ def _meet(
         frames = [toothing.frames(phi[k]) for k in (0, 1)]
         one, two = (toothing.flank_points(frames[k], sf[k], sigma[k]) for k in (0, 1))
         miss = one - two
-        moves = [
-            -sigma[k]
-            * toothing.regularity(frames[k], sf[k], sigma[k])
-            * frames[k].speed
-            * w
-            * frames[k].t
-            * np.exp(w * sigma[k] * alpha)
-            for k in (0, 1)
-        ]
+        moves = [toothing.flank_motion(frames[k], sf[k], sigma[k]) for k in (0, 1)]
         with np.errstate(divide="ignore", invalid="ignore"):
             first = -np.imag(np.conj(moves[1]) * miss) / np.imag(np.conj(moves[1]) * moves[0])
             second = np.imag(np.conj(moves[0]) * miss) / np.imag(np.conj(moves[0]) * moves[1])

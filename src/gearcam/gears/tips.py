@@ -91,8 +91,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
         miss = toothing.flank_points(roll, sf, sigma) - base.p - addendum * w * base.t
         if float(np.abs(miss).max()) <= _MISS * addendum:
             break
-        g = sigma * toothing.regularity(roll, sf, sigma)
-        move = -g * roll.speed * w * roll.t * np.exp(w * sigma * alpha)
+        move = toothing.flank_motion(roll, sf, sigma)
         slide = -base.speed * (1.0 + base.kappa * addendum) * base.t
         with np.errstate(divide="ignore", invalid="ignore"):
             phi = phi - np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)

@@ -85,9 +85,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     rolling, side = pairs.toothings[0].rolling, pairs.side
     alpha = pairs.toothings[0].cutter.alpha
-    candidates = pairs.near(rolling.arc_length(phi1))
-    step, column = np.nonzero(pairs.real(candidates))
-    pair = candidates[step, column]
+    step, pair = pairs.beside(phi1)
     pose, touching = touch(pairs, phi1[step], pairs.play(pair))
     reach = [
         sign * (pairs.place(wheel, pair) - rolling.arc_length(angle))

@@ -219,9 +219,8 @@ def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     rolling = pairs.toothings[0].rolling
-    candidates = pairs.near(rolling.arc_length(phi1))
-    step, column = np.nonzero(pairs.real(candidates))
-    every = Facing(pairs=pairs, step=step, pair=candidates[step, column], phi1=phi1[step])
+    step, pair = pairs.beside(phi1)
+    every = Facing(pairs=pairs, step=step, pair=pair, phi1=phi1[step])
     height = every.guide.height
     ends = [every.end(1, tip=False), every.end(1, tip=True)]
     mates = [every.end(2, tip=True), every.end(2, tip=False)]
@@ -307,13 +306,35 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     Evenly spaced flanks of a side are parts of curves that touch all together, so that none of
     their ends can be ahead of a tangency. Elsewhere ends are searched.
     """
-    outward = np.full(len(phi1), -np.inf)
-    np.maximum.at(outward, found.step, -pairs.side * found.lead)
+    outward = foremost(pairs.side, len(phi1), found.step, found.lead)
     searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
     near = touches(pairs, phi1[searched])
-    ends = np.full(len(phi1), -np.inf)
-    np.maximum.at(ends, searched[near.step[near.edge]], -pairs.side * near.turn[near.edge])
+    ends = foremost(pairs.side, len(phi1), searched[near.step[near.edge]], near.turn[near.edge])
     return -pairs.side * np.maximum(outward, ends), ends > outward
+
+
+def foremost(side: int, count: int, step: Ints, turn: Array) -> Array:
+    """Return how far a side pushes the driven wheel at each phase, against the others.
+
+    Parameters
+    ----------
+    side : {-1, +1}
+        sigma of the driver's flanks.
+    count : int
+        Number of phases.
+    step : (n,) int array
+        Phase of each touch.
+    turn : (n,) array, rad
+        The driven wheel's turn from its nominal place at it; of a rack mm.
+
+    Returns
+    -------
+    (count,) array
+        ``-side`` times the turn that decides; -inf where nothing touches.
+    """
+    outward = np.full(count, -np.inf)
+    np.maximum.at(outward, step, -side * turn)
+    return outward
 
 
 def to_pitch_line(rolling: Rolling, phi1: Array) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import touch
-from gearcam.meshing.gap import to_pitch_line, touches
+from gearcam.meshing.gap import foremost, to_pitch_line, touches
 
 _BETWEEN = np.linspace(0.02, 0.98, 9)
 """Shares of a stretch at which it is asked what drives."""
@@ -52,23 +52,17 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
     rolling = pairs.toothings[0].rolling
     lobe = rolling.law.lobes.period if pairs.closed and pairs.even else pairs.way
     at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - 1e-12)))
-    found = []
-    for low, high in zip(start[at], end[at], strict=True):
-        phi1 = low + (high - low) * _BETWEEN
-        near = touches(pairs, phi1)
-        turn = np.full(len(phi1), np.inf)
-        np.minimum.at(turn, near.step, pairs.side * near.turn)
-        s = rolling.arc_length(phi1)
-        nearest = pairs.near(s)[:, 0]
-        free = touch(pairs, phi1, pairs.play(nearest))[0].lead
-        apart = np.abs((pairs.side * turn - free) * to_pitch_line(rolling, phi1))
-        edges = bool(np.isfinite(turn).all())
-        found.append(
-            Idle(
-                start=float(low),
-                end=float(high),
-                edges=edges,
-                apart=float(apart.max()) if edges else np.inf,
-            )
+    phi1 = (start[at, None] + (end - start)[at, None] * _BETWEEN).ravel()
+    if not phi1.size:
+        return ()
+    near = touches(pairs, phi1)
+    lead = -pairs.side * foremost(pairs.side, len(phi1), near.step, near.turn)
+    nearest = pairs.near(rolling.arc_length(phi1))[:, 0]
+    free = touch(pairs, phi1, pairs.play(nearest))[0].lead
+    apart = np.abs((lead - free) * to_pitch_line(rolling, phi1)).reshape(len(at), -1).max(axis=1)
+    return tuple(
+        Idle(start=low, end=high, edges=bool(np.isfinite(most)), apart=most)
+        for low, high, most in zip(
+            start[at].tolist(), end[at].tolist(), apart.tolist(), strict=True
         )
-    return tuple(found)
+    )

@@ -198,10 +198,7 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike =
         Only pairs that overlap.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-    rolling = pairs.toothings[0].rolling
-    candidates = pairs.near(rolling.arc_length(phi1))
-    step, column = np.nonzero(pairs.real(candidates))
-    pair = candidates[step, column]
+    step, pair = pairs.beside(phi1)
     lead = np.broadcast_to(lead, phi1.shape)[step]
     some, deep, bend, graphs = _overlapping(pairs, pair, phi1[step], advance, lead)
     ends = graphs.ends(1), graphs.ends(2)
