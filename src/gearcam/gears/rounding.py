@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Kind, Rows, Toothing
-from gearcam.gears.rolling import Plane
+from gearcam.gears.rolling import Frames, Plane
 from gearcam.gears.spaces import join, select
 
 Array = NDArray[np.float64]
@@ -146,15 +146,12 @@ def _touch(
     sf = joints.sf - sigma * radius / math.cos(toothing.cutter.alpha)
     has = tip >= 0
     start, end = rows.start[tip] - joints.turn, rows.end[tip] - joints.turn
-    low, high = rows.low[tip], rows.high[tip]
-    slope = (high - low) / np.where(end == start, 1.0, end - start)
     phi = np.where(sigma < 0.0, rows.end[joints.row], rows.start[joints.row])
     foot = np.where(sigma < 0.0, start, end)
     miss = np.full(phi.shape, np.inf, dtype=complex)
     for _ in range(_STEPS):
         roll, base = toothing.frames(phi), toothing.frames(foot)
-        height = low + (foot - start) * slope
-        way = base.t * (base.speed * (1.0 + base.kappa * height) + slope * w)
+        height, way = _tip_curve(toothing, rows, joints, foot, base)
         along = way / np.abs(way)
         center = base.p + height * w * base.t - radius * w * along
         miss = toothing.flank_points(roll, sf, sigma) - center
@@ -231,7 +228,8 @@ def _put_in(
 
     frames = toothing.frames(phi)
     sides = joints.sigma * frames.t * (np.cos(alpha) + joints.sigma * np.sin(alpha) * w)
-    others = _tip_normals(toothing, shortened, joints, foot)
+    way = _tip_curve(toothing, rows, joints, foot, toothing.frames(foot))[1]
+    others = w * way / np.abs(way)
     others[pairs[0]] = sides[pairs[1]]
     own = tips.copy()
     own[pairs[0]] = True  # one arc a merged tooth, told by its first flank
@@ -260,11 +258,12 @@ def _put_in(
     return made
 
 
-def _tip_normals(toothing: Toothing, rows: Rows, joints: _Joints, foot: Array) -> Plane:
-    """Outward unit normals of the tips at the feet of arcs."""
-    tip, base = joints.tip, toothing.frames(foot)
+def _tip_curve(
+    toothing: Toothing, rows: Rows, joints: _Joints, foot: Array, base: Frames
+) -> tuple[Array, Plane]:
+    """Heights of tips over their feet, mm, with frames `base`, and how they move on, mm/rad."""
+    tip, w = joints.tip, toothing.turn
     start, end = rows.start[tip], rows.end[tip]
     slope = (rows.high - rows.low)[tip] / np.where(end == start, 1.0, end - start)
     height = rows.low[tip] + (foot + joints.turn - start) * slope
-    way = base.t * (base.speed * (1.0 + base.kappa * height) + slope * toothing.turn)
-    return toothing.turn * way / np.abs(way)
+    return height, base.t * (base.speed * (1.0 + base.kappa * height) + slope * w)
