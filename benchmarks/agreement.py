@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 import gearcam
 import peers
-from gearcam.design import GearPairDesign, OutputSpec
+from gearcam.designs import GearPairDesign, OutputSpec
 from gearcam.errors import InfeasibleError
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gearcam.design import CamDesign, loads
+from gearcam.designs import CamDesign, loads
 from gearcam.errors import DesignError, Problem
 
 ROLLER = """\

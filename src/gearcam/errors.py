@@ -104,7 +104,7 @@ class InfeasibleError(GearcamError, ValueError):
         Unit of both.
     nearest : str
         What else is to be known: what the numbers are, or the rule. No promise: what was built is
-        found by `gearcam.jobs.remedies`.
+        found by `gearcam.advice`.
     ways : sequence of Way
         Changes of the design that may lift the refusal.
     more_teeth : float

@@ -109,6 +109,25 @@ def check(
     return register
 
 
+def limit_of(kind: str, code: str, limits: Mapping[str, float]) -> float:
+    """Return the limit of a check.
+
+    Parameters
+    ----------
+    kind, code : str
+        Which check.
+    limits : mapping of str to float
+        Limits that the design sets, by name, inner units.
+
+    Returns
+    -------
+    float
+        The design's or the default one, in inner units; nan where the check has none.
+    """
+    known = CHECKS[kind, code].limit
+    return float("nan") if known is None else limits.get(known[0], known[2])
+
+
 def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Finding, ...]:
     """Run every check of a kind of design on a built subject.
 
@@ -129,11 +148,7 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
     found: list[Finding] = []
     for entry in CHECKS.values():
         if entry.kind == kind:
-            limit = float("nan")
-            if entry.limit is not None:
-                name, _, default = entry.limit
-                limit = limits.get(name, default)
-            found += entry.run(subject, limit)
+            found += entry.run(subject, limit_of(kind, entry.code, limits))
     return in_order(found)
 
 

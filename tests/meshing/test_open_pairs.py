@@ -18,7 +18,7 @@ from gearcam.cli import main
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.rack import Rack
 from gearcam.laws.spiral import LogSpiral
 from gearcam.meshing.contact import contacts
@@ -48,7 +48,7 @@ PAIRS = {
 
 
 @cache
-def made(name: str) -> GearPairJob:
+def made(name: str) -> GearPairResult:
     return PAIRS[name]()
 
 

@@ -11,7 +11,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.helix import leads, stepped
 from gearcam.gears.pair import Gear, make_gear
 from gearcam.gears.spec import HelixSpec
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
 from gearcam.tolerances import DEFAULT
@@ -28,7 +28,7 @@ def test_the_steps_of_round_wheels_are_turned_copies() -> None:
     """Wheel 1 turns on by way/r, wheel 2 back: a closed form for circles."""
     from shapely import Polygon
 
-    job = GearPairJob(replace(profile("circular").design, helix=HelixSpec(steps=4)))
+    job = GearPairResult(replace(profile("circular").design, helix=HelixSpec(steps=4)))
     pitch = np.pi * job.pair.module
     assert leads(job.pair, job.design.helix) == pytest.approx(pitch * np.arange(4) / 4)
 
@@ -49,7 +49,7 @@ def test_the_steps_of_round_wheels_are_turned_copies() -> None:
 def test_every_step_meshes_without_error_and_without_overlap(name: str) -> None:
     design = replace(profile(name).design, helix=HelixSpec(steps=3, offset=-1.7))
     spec = MeshingSpec(steps=90)
-    for gears in GearPairJob(design).steps[1:]:  # the first one is the pair without steps
+    for gears in GearPairResult(design).steps[1:]:  # the first one is the pair without steps
         found = study(gears, spec)
         assert np.abs(found.columns["lag_rad"]).max() < 1e-9
         assert np.abs(found.columns["backlash_mm"]).max() < 1e-9
@@ -61,7 +61,7 @@ def test_every_step_meshes_without_error_and_without_overlap(name: str) -> None:
 def test_steps_that_do_not_belong_together_collide() -> None:
     """Wheel 1 of one step against wheel 2 of another: the control of the test above."""
     design = replace(profile("nail_machine_two_phase").design, helix=HelixSpec(steps=3))
-    job = GearPairJob(design)
+    job = GearPairResult(design)
     phases = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 
     def overlap(one: int, two: int) -> float:
@@ -100,7 +100,7 @@ def test_whole_pitches_change_nothing() -> None:
 def test_open_wheels_cannot_be_stepped() -> None:
     design = replace(profile("furnace_door").design, helix=HelixSpec(steps=2))
     with pytest.raises(InfeasibleError, match="open wheels"):
-        GearPairJob(design).steps  # noqa: B018
+        GearPairResult(design).steps  # noqa: B018
 
 
 def test_a_step_that_is_not_there_is_refused_by_reading() -> None:

@@ -19,9 +19,9 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import gearcam
-from gearcam.design.spec import changed
+from gearcam.designs.design import changed
 from gearcam.errors import InfeasibleError
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.centrodes import EccentricCircle, Limacon, Lobed
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
@@ -199,7 +199,7 @@ def region(points: Any) -> Any:
     return shapely.Polygon(np.stack([points.real, points.imag], axis=1))
 
 
-def whole_overlap(made: GearPairJob, phi: float) -> float:
+def whole_overlap(made: GearPairResult, phi: float) -> float:
     """Area that the whole outlines share at a phase."""
     driven = float(made.law.phi2(phi))
     one = made.gear1.outline @ [1, 1j] * np.exp(-1j * phi)
@@ -211,7 +211,7 @@ def whole_overlap(made: GearPairJob, phi: float) -> float:
     return float(shapely.intersection(region(one), region(two)).area)
 
 
-def demand_free(made: GearPairJob) -> None:
+def demand_free(made: GearPairResult) -> None:
     """No collision: every phase by the stepwise overlap, a few by whole outlines."""
     end = float(made.centrode_angles()[-1]) if made.law.feeds else made.law.lobes.period
     phases = end * (np.arange(12) + 0.37) / 12
@@ -235,7 +235,7 @@ def demand_free(made: GearPairJob) -> None:
     assert areas.max() <= explained(made)
 
 
-def demand_remedies(refused: GearPairJob) -> None:
+def demand_remedies(refused: GearPairResult) -> None:
     """What the search names builds, and the next smaller change is refused or has errors."""
     found = gearcam.remedies(refused)
     assert found.found or found.gave_up or "pair.teeth" in found.tried

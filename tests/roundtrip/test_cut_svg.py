@@ -19,8 +19,8 @@ from gearcam.drawings import Drawing, Feature, cut_drawing, wheel_drawing
 from gearcam.export.cut_svg import cut_svg
 from gearcam.export.lettering import strokes, text_width
 from gearcam.export.nest import GAP, labelled, nested
-from gearcam.jobs.cam import CamJob
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.make import make_part
@@ -296,7 +296,7 @@ def test_a_pair_has_a_file_for_each_wheel_and_one_for_both() -> None:
     design = profile("ellipse").design
 
     output = replace(design.output, chord_tolerance=0.01, kerf=KERF)
-    made = GearPairJob(
+    made = GearPairResult(
         replace(design, output=output, blank=Blank(bore_diameter=(8.0, 6.0)))
     )._export("cut-svg", {})
     assert set(made) == {"gear1_cut.svg", "gear2_cut.svg", "cut.svg"}
@@ -315,7 +315,7 @@ def test_a_pair_has_a_file_for_each_wheel_and_one_for_both() -> None:
 def test_a_cam_is_cut_without_its_pitch_curve(kerf: float) -> None:
 
     design = read(ROLLER)
-    job = CamJob(replace(design, output=replace(design.output, kerf=kerf)))
+    job = CamResult(replace(design, output=replace(design.output, kerf=kerf)))
     made = job._export("cut-svg", {})
     assert set(made) == {"cam_cut.svg", "cut.svg"}
     (line,) = sheet_of(made["cam_cut.svg"]).lines
@@ -328,7 +328,7 @@ def test_a_cam_is_cut_without_its_pitch_curve(kerf: float) -> None:
 def test_stepped_wheels_have_a_file_for_each_step() -> None:
     design = profile("stepped_ellipse").design
     output = replace(design.output, chord_tolerance=0.02)
-    made = GearPairJob(replace(design, output=output))._export("cut-svg", {})
+    made = GearPairResult(replace(design, output=output))._export("cut-svg", {})
     wheels = [f"gear{wheel}_step{step}_cut.svg" for wheel in (1, 2) for step in (1, 2, 3, 4)]
     assert set(made) == {*wheels, "cut.svg"}
     assert len(sheet_of(made["cut.svg"]).regions("outline")) == 8

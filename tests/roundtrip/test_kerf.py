@@ -15,12 +15,12 @@ import trimesh
 from ezdxf.entities.circle import Circle as DxfCircle
 from ezdxf.entities.lwpolyline import LWPolyline
 
-from gearcam.design import OutputSpec
+from gearcam.designs import OutputSpec
 from gearcam.drawings import cut_drawing, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
-from gearcam.jobs.cam import CamJob
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Place
@@ -41,12 +41,12 @@ ORDER = Blank(
 
 
 @cache
-def job(kerf: float = 0.0, **sizes: Any) -> GearPairJob:
+def job(kerf: float = 0.0, **sizes: Any) -> GearPairResult:
     output = OutputSpec(files=("dxf",), chord_tolerance=TOLERANCE, kerf=kerf)
     design = profile("ellipse").design
     pair = replace(design.pair, module=1.5, teeth=(19, 19))
     blank = replace(ORDER, **sizes)
-    return GearPairJob(replace(design, pair=pair, output=output, blank=blank))
+    return GearPairResult(replace(design, pair=pair, output=output, blank=blank))
 
 
 @cache
@@ -141,7 +141,7 @@ def test_holes_are_narrower_by_the_kerf_to_the_last_digit() -> None:
 def test_paths_are_measured_however_they_are_drawn(curves: str) -> None:
     made = job(KERF)
     output = replace(made.design.output, dxf_curves=curves)
-    other = GearPairJob(replace(made.design, output=output))
+    other = GearPairResult(replace(made.design, output=output))
     extras: dict[str, Any] = {}
     data = other._export("dxf", extras)["gear1.dxf"]
     assert 0.05 * TOLERANCE < extras["dxf"]["error_mm"]["gear1.dxf"] <= TOLERANCE
@@ -149,9 +149,9 @@ def test_paths_are_measured_however_they_are_drawn(curves: str) -> None:
     assert layers == {"OUTLINE_KERF", "BORE_KERF", "HOLE_KERF", "MARK"}
 
 
-def cam(kerf: float = 0.0, clearance: float = 0.0, **blank: Any) -> CamJob:
+def cam(kerf: float = 0.0, clearance: float = 0.0, **blank: Any) -> CamResult:
     design = read(ROLLER)
-    return CamJob(
+    return CamResult(
         replace(
             design,
             output=replace(design.output, kerf=kerf),

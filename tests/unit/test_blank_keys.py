@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from gearcam.design import GearPairDesign, loads
+from gearcam.designs import GearPairDesign, loads
 from gearcam.errors import DesignError, Problem
 
 GOOD = """\

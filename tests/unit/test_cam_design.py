@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.design import CamDesign, CamOutputSpec, document_of, load, loads, with_meshing
-from gearcam.design.kinds import KINDS
-from gearcam.design.models import faults_of
-from gearcam.design.motion import phase_table, rise_table
-from gearcam.design.template import template
+from gearcam.designs import CamDesign, CamOutputSpec, document_of, load, loads, with_meshing
+from gearcam.designs.kind import KINDS
+from gearcam.designs.template import template
+from gearcam.designs.validate import faults_of
 from gearcam.errors import DesignError
+from gearcam.kinds.cam.motion import phase_table, rise_table
 from gearcam.laws.phases_of_lift import (
     PHASES,
     DwellPhase,

@@ -10,7 +10,7 @@ import pytest
 import shapely
 
 from gearcam.errors import InfeasibleError
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.make import finished, make_part
@@ -109,6 +109,6 @@ def test_timing_marks_keep_their_gap_from_the_root_as_made() -> None:
     """Root and mark go inwards together; a bore that follows pushes nothing while there is room."""
     plain = profile("ellipse").design
     clear = replace(plain, blank=replace(plain.blank, clearance=(0.1, 0.1)))
-    marks = [GearPairJob(design).parts[0].marks[0] for design in (plain, clear)]
+    marks = [GearPairResult(design).parts[0].marks[0] for design in (plain, clear)]
     (before, _), (after, _) = (mark.center for mark in marks)
     assert before - after == pytest.approx(0.1, abs=1e-9)

@@ -13,11 +13,11 @@ from typing import Any, ClassVar
 
 import pytest
 
+from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
-from gearcam.design import KINDS, GearPairDesign, load
+from gearcam.designs import KINDS, GearPairDesign, load
 from gearcam.errors import InfeasibleError, WriteError
 from gearcam.findings import Finding
-from gearcam.jobs.remedies import Remedies, Remedy
 from gearcam.laws.base import LAWS
 from gearcam.laws.rises import RISES
 
@@ -47,7 +47,7 @@ class Written:
 CURED = Remedies(found=(Remedy(changes={"law.ratios[1]": 1.06}, design=None),))  # type: ignore[arg-type]
 
 
-class Job:
+class Result:
     """Stands for the real job: does what the design's name says."""
 
     calls: ClassVar[list[tuple[Any, ...]]] = []
@@ -103,12 +103,12 @@ class Job:
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     module = types.ModuleType("gearcam.jobs")
-    module.make_job = Job  # type: ignore[attr-defined]
+    module.make_job = Result  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "gearcam.jobs", module)
     monkeypatch.setattr("gearcam.cli.remedies", lambda *_: CURED)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("GEARCAM_DEBUG", raising=False)
-    Job.calls.clear()
+    Result.calls.clear()
     return tmp_path
 
 
@@ -230,13 +230,13 @@ def test_only_overrides_the_files_of_the_design(capsys: pytest.CaptureFixture[st
     file = design("good")
     assert main(["build", file, "--only", "dxf, csv", "--only", "csv"]) == 0
     assert main(["build", file]) == 0
-    assert [call[2] for call in Job.calls] == [("dxf", "csv"), None]
+    assert [call[2] for call in Result.calls] == [("dxf", "csv"), None]
     capsys.readouterr()
-    Job.calls.clear()
+    Result.calls.clear()
     assert main(["build", file, "--only", "dfx"]) == 2
     assert "did you mean dxf?" in capsys.readouterr().err
     assert main(["build", file, "--only", ","]) == 2
-    assert Job.calls == []
+    assert Result.calls == []
 
 
 def test_two_designs_of_one_name_do_not_overwrite_each_other(
@@ -252,7 +252,7 @@ def test_two_designs_of_one_name_do_not_overwrite_each_other(
 @pytest.mark.usefixtures("desk")
 def test_no_progress_is_drawn_where_nobody_looks() -> None:
     assert main(["build", design("good")]) == 0
-    assert Job.calls[0][3] is None
+    assert Result.calls[0][3] is None
     assert "rich" not in sys.modules or not hasattr(sys.stderr, "isatty") or not sys.stderr.isatty()
 
 
@@ -260,7 +260,7 @@ def test_no_progress_is_drawn_where_nobody_looks() -> None:
 def test_progress_is_drawn_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert main(["build", design("good")]) == 0
-    advance = Job.calls[0][3]
+    advance = Result.calls[0][3]
     assert callable(advance)
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from gearcam.design import GearPairDesign, OutputSpec, load, loads
-from gearcam.design.template import template
+from gearcam.designs import GearPairDesign, OutputSpec, load, loads
+from gearcam.designs.template import template
 from gearcam.errors import DesignError, Problem
 from gearcam.gears.spec import Rack
 from gearcam.parts.blank import Blank

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearcam.design import load, loads
-from gearcam.design.locate import line_at, lines_of
+from gearcam.designs import load, loads
+from gearcam.designs.lines import line_at, lines_of
 from gearcam.errors import DesignError, Problem
 
 GOOD = """\

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearcam.design import GearPairDesign, OutputSpec, document_of, loads
+from gearcam.designs import GearPairDesign, OutputSpec, document_of, loads
 from gearcam.errors import DesignError
 from gearcam.gears.spec import PairSpec
 from gearcam.laws.ellipse import Ellipse

@@ -14,7 +14,7 @@ import pytest
 from gearcam.errors import InfeasibleError
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.spec import Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -45,14 +45,14 @@ OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}
 ACCURACY = {"law", "closure_rad", "arc_length_mm", "flank_mm", "chord_mm"}
 
 
-def small(**given: Any) -> GearPairJob:
+def small(**given: Any) -> GearPairResult:
     """A small pair, quick to cut."""
     law = given.pop("law", Ellipse(eccentricity=0.2))
     sizes = {} if "distance" in given or "module" in given else {"module": 2.0}
     return job(law, given.pop("teeth", (22, 22)), **{"tolerance": 0.01, **sizes, **given})
 
 
-def computed(made: GearPairJob) -> set[str]:
+def computed(made: GearPairResult) -> set[str]:
     """What a job has computed so far."""
     return {name for name in vars(made) if name not in ("design", "tolerances", "timings")}
 

@@ -11,7 +11,7 @@ import pytest
 
 import gearcam
 from gearcam.cli import main
-from gearcam.design import GearPairDesign, loads, with_meshing
+from gearcam.designs import GearPairDesign, loads, with_meshing
 from gearcam.errors import DesignError
 from gearcam.jobs import gear_pair
 from gearcam.meshing import study as room
@@ -196,6 +196,6 @@ def test_settings_from_python_meet_the_same_rules() -> None:
 
 def test_progress_is_told(design: str) -> None:
     calls: list[tuple[str, int, int]] = []
-    job = gear_pair.GearPairJob(gearcam.load(design))
+    job = gear_pair.GearPairResult(gearcam.load(design))
     job.mesh(Path(design).parent / "out", progress=lambda *call: calls.append(call))
     assert calls[0] == ("meshing", 0, 12)

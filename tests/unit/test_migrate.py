@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from gearcam.cli import main
-from gearcam.design import CamDesign, GearPairDesign, load, loads
-from gearcam.design.migrate import migrate
+from gearcam.designs import CamDesign, GearPairDesign, load, loads
+from gearcam.designs.migrate import migrate
 from gearcam.errors import DesignError, Problem, WriteError
 from gearcam.export.rewrite import rewrite
 from helpers_cam_files import ROLLER

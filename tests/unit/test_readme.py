@@ -16,10 +16,10 @@ import pytest
 
 import gearcam
 from gearcam.cli import main
-from gearcam.design import KINDS, GearPairDesign, document_of, loads
-from gearcam.design.gear_pair import law_table
-from gearcam.design.motion import phase_table, rise_table
+from gearcam.designs import KINDS, GearPairDesign, document_of, loads
 from gearcam.findings import CHECKS
+from gearcam.kinds.cam.motion import phase_table, rise_table
+from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.rises import RISES

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from gearcam.design.models import faults_of
-from gearcam.design.tables import table_of
+from gearcam.designs.table import table_of
+from gearcam.designs.validate import faults_of
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.rise_formula import FormulaRise

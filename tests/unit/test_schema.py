@@ -13,13 +13,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearcam.design import load
-from gearcam.design.gear_pair import law_table
-from gearcam.design.kinds import KINDS
-from gearcam.design.motion import WITH_LAW, phase_table, rise_table
-from gearcam.design.reader import examine
-from gearcam.design.schema import schema
-from gearcam.design.template import template
+from gearcam.designs import load
+from gearcam.designs.kind import KINDS
+from gearcam.designs.reader import examine
+from gearcam.designs.schema import schema
+from gearcam.designs.template import template
+from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table
+from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.rises import RISES

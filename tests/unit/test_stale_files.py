@@ -10,7 +10,7 @@ import pytest
 
 import gearcam
 from gearcam.cli import main
-from gearcam.design import GearPairDesign, hash_of, loads
+from gearcam.designs import GearPairDesign, hash_of, loads
 from gearcam.errors import InfeasibleError
 from gearcam.jobs import make_job
 

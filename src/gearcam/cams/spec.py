@@ -18,8 +18,8 @@ from typing import Final
 
 from gearcam.quantities import LENGTH, TEXT, param
 
-KIND: Final = "cam"
-"""The kind of design, and that of its checks."""
+KIND: Final = "cams"
+"""The checks of cams."""
 
 Problem = tuple[str, int | None, str, str]
 """Field, number of an item, what is wrong, what is allowed."""

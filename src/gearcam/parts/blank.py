@@ -20,11 +20,8 @@ from typing import Any, Final
 
 from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, Quantity, param
 
-KIND: Final = "gear-pair-parts"
-"""The kind of the checks of a pair's parts."""
-
-CAM_KIND: Final = "cam-parts"
-"""The kind of the checks of a cam as a part."""
+KIND: Final = "parts"
+"""The checks of parts."""
 
 _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
 """Sizes of what a shaft, a bolt or a pin goes through."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from gearcam.findings import Finding, check
-from gearcam.parts.blank import CAM_KIND, KIND
+from gearcam.parts.blank import KIND
 from gearcam.parts.part import Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
@@ -46,7 +46,7 @@ class PartsSubject:
 
 @check(
     "thin-wall",
-    kind=(KIND, CAM_KIND),
+    kind=KIND,
     doc="walls between openings, and between openings and the outline or the hub's edge",
     limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0),
 )
@@ -94,7 +94,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
 
 @check(
     "wide-kerf",
-    kind=(KIND, CAM_KIND),
+    kind=KIND,
     doc="whether what the cutter burns away fits into every place of an outline",
 )
 def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
@@ -119,7 +119,7 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
 
 @check(
     "large-tool",
-    kind=(KIND, CAM_KIND),
+    kind=KIND,
     doc="the largest round tool or wire that reaches every place of an outline",
     limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
 )
