@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 import gearcam
 import peers
-from gearcam.designs import GearPairDesign, OutputSpec
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.errors import InfeasibleError
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec
@@ -107,7 +107,7 @@ def ours(text: str, teeth: int) -> tuple[Gear, Gear]:
         law_type="formula",
         law=Formula(phi2=text),
         pair=PairSpec(module=1.0, teeth=(teeth, teeth)),
-        output=OutputSpec(chord_tolerance=CHORD),
+        output=PairOutputSpec(chord_tolerance=CHORD),
     )
     return gearcam.build(design).gears
 

@@ -11,9 +11,9 @@ import numpy as np
 import shapely
 
 import gearcam
-from gearcam.designs import GearPairDesign, OutputSpec
 from gearcam.gears.spec import PairSpec, Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.laws.base import LAWS
 from gearcam.parts.blank import Blank
 
@@ -49,7 +49,7 @@ def job(
             rack=rack or Rack(),
             blank=Blank(bore_diameter=bores),
             limits=limits or {},
-            output=OutputSpec(files=files, chord_tolerance=tolerance),
+            output=PairOutputSpec(files=files, chord_tolerance=tolerance),
         )
     )
 

@@ -96,7 +96,9 @@ def _dispatch(words: list[str]) -> None:
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
     if word in own:
-        own[word](**vars(_parser(word, own[word]).parse_intermixed_args(words[1:])))
+        formats = _formats() if {"-h", "--help"} & set(words) else FORMATS
+        parser = _parser(word, own[word], formats)
+        own[word](**vars(parser.parse_intermixed_args(words[1:])))
         return
     others = {command.name: command for command in _commands_of_kinds()}
     if word in others:
@@ -134,7 +136,9 @@ def _commands_of_kinds() -> Iterator[Command]:
             yield from kind.room("commands").COMMANDS
 
 
-def _parser(name: str, command: Callable[..., None]) -> argparse.ArgumentParser:
+def _parser(
+    name: str, command: Callable[..., None], formats: Sequence[str]
+) -> argparse.ArgumentParser:
     """Return the parser of a command; its help is the function's docstring."""
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
     if command in (_build, _check, _migrate):
@@ -142,7 +146,7 @@ def _parser(name: str, command: Callable[..., None]) -> argparse.ArgumentParser:
     if command in (_build, _check):
         _add_common(parser)
     if command is _build:
-        words = f"write only these: {','.join(FORMATS)}, and what else the kind of design has"
+        words = f"write only these: {','.join(formats)}"
         parser.add_argument("--only", action="append", metavar="KINDS", help=words)
     if command is _new:
         words = f"the kind of design: {' or '.join(KINDS)}"

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam.designs import OutputSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import export
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
@@ -22,7 +22,7 @@ def job(name: str, count: int = 7, **blank: Any) -> GearPairResult:
     design = replace(
         profile(name).design,
         blank=Blank(**blank),
-        output=OutputSpec(files=("inspection",), inspection_points=count),
+        output=PairOutputSpec(files=("inspection",), inspection_points=count),
     )
     return GearPairResult(design)
 

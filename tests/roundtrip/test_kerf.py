@@ -15,12 +15,12 @@ import trimesh
 from ezdxf.entities.circle import Circle as DxfCircle
 from ezdxf.entities.lwpolyline import LWPolyline
 
-from gearcam.designs import OutputSpec
 from gearcam.drawings import cut_drawing, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Place
@@ -42,7 +42,7 @@ ORDER = Blank(
 
 @cache
 def job(kerf: float = 0.0, **sizes: Any) -> GearPairResult:
-    output = OutputSpec(files=("dxf",), chord_tolerance=TOLERANCE, kerf=kerf)
+    output = PairOutputSpec(files=("dxf",), chord_tolerance=TOLERANCE, kerf=kerf)
     design = profile("ellipse").design
     pair = replace(design.pair, module=1.5, teeth=(19, 19))
     blank = replace(ORDER, **sizes)

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam.designs import OutputSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import export, poses
 from gearcam.parts.blank import Blank
 from gearcam.parts.mass import mass_properties
@@ -28,7 +28,7 @@ PHI1 = math.radians(40.0)
 
 @cache
 def job(name: str = "ellipse") -> GearPairResult:
-    output = OutputSpec(files=("stl",), chord_tolerance=0.005, pose=PHI1)
+    output = PairOutputSpec(files=("stl",), chord_tolerance=0.005, pose=PHI1)
     blank = Blank(bore_diameter=(5.0, 6.0), hub_diameter=(9.0, 0.0), hub_back=(2.0, 0.0))
     return GearPairResult(replace(profile(name).design, output=output, blank=blank))
 
@@ -138,7 +138,7 @@ def test_the_drawn_pair_does_not_overlap_at_any_angle() -> None:
     from gearcam.kinds.gear_pair.files import _pair_drawing
 
     for degrees in (0.0, 77.7, 180.0, 301.0):
-        output = OutputSpec(files=("dxf",), pose=math.radians(degrees))
+        output = PairOutputSpec(files=("dxf",), pose=math.radians(degrees))
         made = GearPairResult(replace(profile("ellipse").design, output=output))
         one, two = (Polygon(shape.vertices) for shape in _pair_drawing(made).contours)
         assert one.intersection(two).area < 0.01

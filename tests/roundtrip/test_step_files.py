@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearcam.designs import OutputSpec
 from gearcam.export.step import read_step
 from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import export
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
@@ -20,7 +20,7 @@ def job() -> GearPairResult:
     design = replace(
         profile("circular").design,
         blank=Blank(bore_diameter=(8.0, 8.0), timing_marks=False),
-        output=OutputSpec(files=("step",), pose=0.7),
+        output=PairOutputSpec(files=("step",), pose=0.7),
     )
     return GearPairResult(design)
 
@@ -64,7 +64,7 @@ def test_the_pair_stands_assembled(job: GearPairResult, files: dict[str, bytes])
 def test_a_non_circular_wheel_keeps_its_volume(name: str, bore: float) -> None:
     design = replace(
         profile(name).design,
-        output=OutputSpec(files=("step",)),
+        output=PairOutputSpec(files=("step",)),
         blank=Blank(bore_diameter=(bore, 0.0), tip_rounding=(0.3, 0.0)),
     )
     job = GearPairResult(design)

@@ -12,12 +12,14 @@ from typing import Any
 import pytest
 
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.designs import CamDesign, CamOutputSpec, document_of, load, loads, with_meshing
+from gearcam.designs import document_of, load, loads
 from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
 from gearcam.errors import DesignError
+from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table
+from gearcam.kinds.gear_pair.commands import with_meshing
 from gearcam.laws.phases_of_lift import (
     PHASES,
     DwellPhase,
@@ -185,7 +187,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     design = CamDesign(**{**good, "phases": list(good["phases"]), "blank": WheelBlank(bolts=0)})
     assert design.phases == good["phases"]
     assert not design.blank.timing_marks
-    with pytest.raises(DesignError, match="nothing meshes"):
+    with pytest.raises(DesignError, match="for designs of kind gear-pair"):
         with_meshing(design, {"steps": 3})
 
 

@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import types
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
@@ -15,9 +14,11 @@ import pytest
 
 from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
-from gearcam.designs import KINDS, GearPairDesign, load
+from gearcam.designs import KINDS, load
 from gearcam.errors import InfeasibleError, WriteError
+from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
+from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.base import LAWS
 from gearcam.laws.rises import RISES
 
@@ -34,11 +35,18 @@ files = ["csv"]
 """
 
 
+PAIR = Facts(
+    {"size_mm": Fact(40.0, "centre distance"), "module_mm": 2.0, "teeth": [20, 20]},
+    headline=("size_mm", "module_mm", "teeth"),
+)
+
+
 @dataclass
 class Written:
     directory: Path
     files: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
+    facts: Facts = field(default_factory=lambda: PAIR)
     summary: dict[str, Any] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     complete: bool = True
@@ -87,9 +95,7 @@ class Result:
         folder.mkdir(parents=True, exist_ok=True)
         for name in names:
             (folder / name).write_text("x" * 1234)
-        pair = {"center_distance_mm": 40.0, "module_mm": 2.0, "teeth": [20, 20]}
-        summary = {"name": self.design.name, "pair": pair}
-        return Written(folder, names, ("old.stl",), summary, self.findings)
+        return Written(folder, names, ("old.stl",), findings=self.findings)
 
     def write(self, directory: str, files: Any = None, progress: Any = None) -> Written:
         self.calls.append(("write", directory, files, progress))
@@ -102,9 +108,7 @@ class Result:
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    module = types.ModuleType("gearcam.jobs")
-    module.make_job = Result  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "gearcam.jobs", module)
+    monkeypatch.setattr("gearcam.cli.build", Result)
     monkeypatch.setattr("gearcam.cli.remedies", lambda *_: CURED)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("GEARCAM_DEBUG", raising=False)
@@ -184,7 +188,7 @@ def test_what_was_built_is_told_with_sizes_time_and_findings(
     table = lines[3:7:2]
     assert table == [
         "    error    tips              0.1 mm",
-        "    warning  undercut  gear 2  4.92 mm  limit 3.4259 mm",
+        "    warning  undercut  gear 2  4.92 mm  at most 3.4259 mm",
     ]
     assert lines[6] == "        Teeth are undercut."
     assert f"  written to {Path('there/error')}" in lines

@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 
 from gearcam.cli import main
-from gearcam.designs import CamDesign, GearPairDesign, load, loads
+from gearcam.designs import load, loads
 from gearcam.designs.migrate import migrate
 from gearcam.errors import DesignError, Problem, WriteError
 from gearcam.export.rewrite import rewrite
+from gearcam.kinds.cam.design import CamDesign
+from gearcam.kinds.gear_pair.design import GearPairDesign
 from helpers_cam_files import ROLLER
 
 HEAD = """\

@@ -40,7 +40,10 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
         With the fields of the kind's design where there is no fault.
     """
     found = Examined()
-    kind = meant_kind(document)
+    kind = _meant_kind(document)
+    if kind is None:
+        found.faults += _kind_faults(document)
+        return found
     later = kind.later(document)
     if later is not None:
         found.faults.append(later)
@@ -58,12 +61,14 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     return found
 
 
-def meant_kind(document: Mapping[str, Any]) -> DesignKind:
-    """Return the kind of a document; where it gives none that is known, the likeliest one."""
+def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
+    """Return the kind of a document; where it gives none that is known, the likeliest, if any."""
     name = document.get("kind")
     if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
         return KINDS[near]
-    return max(KINDS.values(), key=lambda kind: sum(title in document for title in kind.titles))
+    likely = {name: sum(title in document for title in kind.tables) for name, kind in KINDS.items()}
+    best = max(likely, key=lambda name: likely[name])
+    return KINDS[best] if likely[best] else None
 
 
 def home_of(kind: DesignKind, key: str) -> str:

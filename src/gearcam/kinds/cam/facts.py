@@ -78,7 +78,7 @@ def _motion(result: CamResult) -> Tree:
 
 def _cam(result: CamResult) -> Tree:
     design, cam, mechanism = result.design, result.cam, result.mechanism
-    given, swings, flat = design.follower, mechanism.oscillating, mechanism.flat
+    given, swings = design.follower, mechanism.oscillating
     corners, place = bool(cam.corners), cam.contact_place
     return {
         "form": design.cam.form,
@@ -90,7 +90,7 @@ def _cam(result: CamResult) -> Tree:
         "face_offset_mm": given.face_offset or None,
         "offset_mm": None if swings else given.offset,
         "rotation": Fact(design.cam.rotation, "cam turns"),
-        "prime_radius_mm": None if flat else mechanism.least,
+        "prime_radius_mm": mechanism.least,
         "base_radius_mm": mechanism.least - mechanism.radius,
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": _pressure(result),

@@ -158,7 +158,9 @@ def _step(result: CamResult, _: Measured) -> Files:
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
     from gearcam.sheets import wheel_sheet
 
-    sheet = wheel_sheet(result.part, sheet_rows(result.facts, _ROWS), result.design.name)
+    other = "prime" if result.mechanism.flat else "base"
+    names = [name for name in _ROWS if name != f"cam.{other}_radius_mm"]
+    sheet = wheel_sheet(result.part, sheet_rows(result.facts, names), result.design.name)
     return sheet_bytes(sheet, _style(result), ending)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,7 +48,7 @@ def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
         "accuracy": _accuracy(result, measured),
         "steps": {"count": len(leads), "moved_mm": list(leads)} if len(leads) > 1 else None,
         "solids": measured.get("solids"),
-        "meshing": measured.get("meshing"),
+        "meshing": _meshing(measured["meshing"]) if "meshing" in measured else None,
     }
     size = "travel_per_turn_mm" if result.law.feeds else "center_distance_mm"
     headline = [f"pair.{name}" for name in (size, "module_mm", "teeth")]
@@ -177,6 +178,44 @@ def _rim(result: GearPairResult, limit: float) -> Fact | None:
         return None
     rim, wheel = min(rims)
     return Fact(rim, "thinnest rim", at_least=limit, place=f"wheel {wheel}", shown=True)
+
+
+_STUDIED: Mapping[str, str] = {
+    "center_distance_mm": "centre distance as mounted",
+    "advance_deg": "driver turned ahead by",
+    "contact_ratio": "contact ratio",
+    "pairs_in_contact": "pairs in contact",
+    "interference_steps": "phases with interference",
+    "backlash_mm": "backlash along the pitch curve",
+    "lag_mm": "lag of the driven wheel, taken up",
+    "penetration_mm": "penetration of flanks",
+    "chord_error_mm": "chord error of outlines",
+}
+"""Numbers of a study that are always shown, in words."""
+
+
+def _meshing(numbers: Mapping[str, Any]) -> Tree:
+    """Return what a study found."""
+    tree = dict(numbers)
+    done, asked = numbers["steps_done"], numbers["steps"]
+    place = "" if numbers["complete"] else f"of {asked}"
+    tree["steps_done"] = Fact(done, "phases studied", place=place, shown=True)
+    for name, meaning in _STUDIED.items():
+        if name in numbers:
+            tree[name] = Fact(numbers[name], meaning, shown=True)
+    error = numbers.get("transmission_error")
+    if error is not None:
+        peak = Fact(error["peak_to_peak"], "transmission error, peak to peak", shown=True)
+        tree["transmission_error"] = error | {"peak_to_peak": replace(peak, unit=error["unit"])}
+        if "no_harmonics" in error:
+            missing = Fact(error["no_harmonics"], "harmonics, not told", shown=True)
+            tree["transmission_error"]["no_harmonics"] = missing
+        else:
+            largest = max(error["harmonics"], key=lambda one: one["amplitude"])
+            words = f"largest harmonic, {largest['order']} a turn"
+            found = Fact(largest["amplitude"], words, unit=error["unit"], shown=True)
+            tree["transmission_error"]["largest_harmonic"] = found
+    return tree
 
 
 def _gear(result: GearPairResult, gear: Gear) -> Tree:
