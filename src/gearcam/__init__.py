@@ -13,6 +13,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from gearcam.version import __version__
+
 if TYPE_CHECKING:
     import os
 
@@ -22,8 +24,6 @@ if TYPE_CHECKING:
     from gearcam.result import Result
 
 __all__ = ["__version__", "build", "load", "remedies"]
-
-__version__ = "0.1.0"
 
 
 def load(path: str | os.PathLike[str]) -> Design:

@@ -170,7 +170,7 @@ class Search:
         )
 
     def keep(self, changes: Changes, less: Changes | None = None) -> None:
-        """Write a remedy down."""
+        """Write a remedy down: its `changes`, and the next smaller ones, `less`."""
         design = changed(self.result.design, changes)
         self.found.append(Remedy(changes=changes, less=less or {}, design=design))
 

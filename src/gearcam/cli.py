@@ -116,7 +116,7 @@ def _dispatch(words: list[str]) -> None:
     top.add_argument("command", nargs="?", metavar="COMMAND", help="see below")
     given = top.parse_args(words[:1])
     if given.version:
-        from gearcam import __version__
+        from gearcam.version import __version__
 
         say(f"gearcam {__version__}")
     elif given.command is None:

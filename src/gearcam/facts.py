@@ -9,7 +9,6 @@ that it is held against and its place. The name says the unit, as the keys of de
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -208,8 +207,3 @@ def _bare(value: Any) -> Any:
 def extent(low: float, high: float, factor: float = 1.0) -> dict[str, float]:
     """Return the range from `low` to `high`, both times `factor`."""
     return {"min": factor * low, "max": factor * high}
-
-
-def degrees(low: float, high: float) -> dict[str, float]:
-    """Return the range between two angles in rad, in degrees."""
-    return extent(low, high, math.degrees(1.0))

@@ -18,13 +18,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
-from gearcam import __version__
 from gearcam.designs.design import Design, document_of, hash_of
 from gearcam.designs.kind import KINDS
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Facts
 from gearcam.findings import Finding
 from gearcam.tolerances import DEFAULT, Tolerances
+from gearcam.version import __version__
 
 FORMAT: Final = 3
 """Version of the summary's layout."""
@@ -233,11 +233,11 @@ class Result(ABC):
             "format": FORMAT,
             "name": self.design.name,
             "kind": self.design.kind,
+            **facts.document,
             "hash": made,
             "files": {name: made for name in hashes if name not in stale},
             **({"stale": stale} if stale else {}),
             "findings": [finding.as_dict() for finding in findings],
-            **facts.document,
             "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
             "versions": _versions(),
             "design": document_of(self.design),

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.designs import document_of
 from gearcam.errors import InfeasibleError
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.spec import Rack
@@ -27,13 +28,15 @@ TOP = [
     "name",
     "kind",
     "pair",
+    "mesh",
     "gears",
-    "design",
+    "accuracy",
+    "hash",
     "files",
     "findings",
-    "accuracy",
     "timings_s",
     "versions",
+    "design",
 ]
 """Keys of every summary; ``solids`` comes with meshes, ``stale`` with old files."""
 
@@ -123,15 +126,16 @@ def test_a_job_with_a_bad_law_says_so_when_asked_and_not_before() -> None:
 # Summary
 
 
-def test_a_summary_holds_what_is_promised() -> None:
+def test_a_summary_holds_what_is_promised(tmp_path: Path) -> None:
     made = small()
-    summary = made.summary({"a.csv": made.design_hash})
+    summary = made.write(tmp_path, files=["csv"]).summary
     assert list(summary) == TOP
-    assert summary["format"] == 2
+    assert summary["format"] == 3
     assert (summary["name"], summary["kind"]) == ("sample", "gear-pair")
     assert set(summary["pair"]) == PAIR
     assert summary["pair"]["teeth"] == [22, 22]
-    assert summary["files"] == {"a.csv": summary["hash"]}
+    assert summary["design"] == document_of(made.design)
+    assert set(summary["files"].values()) == {made.design_hash} == {summary["hash"]}
     assert [gear["name"] for gear in summary["gears"]] == ["gear1", "gear2"]
     for gear in summary["gears"]:
         assert set(gear["centrode"]) == CENTRODE

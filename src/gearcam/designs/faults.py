@@ -236,7 +236,7 @@ def _a_kind(entry: Key) -> str:
 
 
 def is_of(value: Any, base: type) -> bool:
-    """Whether a `value` is of a `base` type as files mean it: 2 is a number, true is none."""
+    """Return whether a `value` is of a `base` type as files mean it: 2 is a number, not true."""
     if isinstance(value, bool) or base is bool:
         return base is bool and isinstance(value, bool)
     return isinstance(value, (int, float) if base is float else base)

@@ -99,7 +99,7 @@ def _example(entry: Key) -> Any:
 
 
 def law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
-    """Show a law of a registry in comments, by its first example: its `key`, `name`, keys."""
+    """Yield comments on a law, by its first example: its `key`, `name`, `entry`, `known` table."""
     given = known.document(entry.claims()[0].parameters)
     yield "#"
     yield key_line(key, name, entry.doc, "# ")
@@ -125,7 +125,7 @@ def _short(value: Any) -> Any:
 
 
 def beside(text: str, words: str, column: int = _COLUMN) -> str:
-    """Write a comment beside a line, continued below itself where it is long."""
+    """Return a line of `text` with `words` beside it from a `column` on, continued below it."""
     first, *more = textwrap.wrap(words, _WIDTH - _COLUMN) or [""]
     # behind a leading "# " the continuation needs its own
     start = "" if column == _COLUMN else "# "

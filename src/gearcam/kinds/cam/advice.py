@@ -18,7 +18,7 @@ _SMALLER: Final = 0.05
 
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
-    """Search for remedies: what a `refusal` names, then other sizes."""
+    """Lead a `search` for remedies: what a `refusal` names, then other sizes."""
     search.follow([*(refusal.ways if refusal else ()), *_sizes(search.document)])
 
 

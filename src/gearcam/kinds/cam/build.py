@@ -172,5 +172,5 @@ class CamResult(Result):
 
 
 def build(design: CamDesign, tolerances: Tolerances = DEFAULT) -> CamResult:
-    """Return the result of a `design`; nothing is computed until it is asked for."""
+    """Return the result of a `design` to `tolerances`; it computes what it is asked for."""
     return CamResult(design, tolerances)

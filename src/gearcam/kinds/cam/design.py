@@ -48,7 +48,13 @@ _BLANK_WORDS: Final = {
 
 @dataclass(frozen=True, kw_only=True)
 class CamOutputSpec(OutputSpec):
-    """Which files of a cam are wanted, and how exact (see `OutputSpec`)."""
+    """Which files of a cam are wanted, and how exact (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        Cam angle of the assembled cam.
+    """
 
     files: tuple[str, ...] = files_param(CAM_FORMATS)
     chord_tolerance: float | None = param(

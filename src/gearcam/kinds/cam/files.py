@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.exports import (
+from gearcam.export.shared import (
     STEP_PART,
     Files,
     cut_files,

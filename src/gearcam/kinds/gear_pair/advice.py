@@ -33,7 +33,7 @@ _EDGES: Final = (
 
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
-    """Search for remedies: tooth counts, what a `refusal` names, a milder law."""
+    """Lead a `search` for remedies: tooth counts, what a `refusal` names, a milder law."""
     factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
     ways = [*(refusal.ways if refusal else ()), *_others(search, refusal, factor)]
     if factor:

@@ -261,5 +261,5 @@ class GearPairResult(Result):
 
 
 def build(design: GearPairDesign, tolerances: Tolerances = DEFAULT) -> GearPairResult:
-    """Return the result of a `design`; nothing is computed until it is asked for."""
+    """Return the result of a `design` to `tolerances`; it computes what it is asked for."""
     return GearPairResult(design, tolerances)

@@ -32,7 +32,13 @@ _COARSEST: Final = 50
 
 @dataclass(frozen=True, kw_only=True)
 class PairOutputSpec(OutputSpec):
-    """Which files of a gear pair are wanted, and how exact (see `OutputSpec`)."""
+    """Which files of a gear pair are wanted, and how exact (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        Driver angle of the assembled pair.
+    """
 
     pose: float = pose_param("phi1", "driver angle at which the assembled pair is drawn")
     inspection_points: int = param(

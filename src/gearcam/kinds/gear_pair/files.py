@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.exports import (
+from gearcam.export.shared import (
     STEP_PART,
     Files,
     cut_files,
