@@ -37,6 +37,7 @@ files = ["csv"]
 
 TREE = {"size_mm": Fact(40.0, "centre distance"), "module_mm": 2.0, "teeth": [20, 20]}
 
+
 @dataclass
 class Written:
     directory: Path

@@ -140,7 +140,8 @@ def document_of(design: Design) -> dict[str, Any]:
     """
     kind = KINDS[design.kind]
     document: dict[str, Any] = {"kind": kind.name, "name": design.name}
-    document[kind.main] = kind.main_of(design)
+    if kind.main:
+        document[kind.main] = kind.main_of(design)
     for title in kind.tables:
         document[title] = kind.table(title).document(getattr(design, title))
     if design.limits:

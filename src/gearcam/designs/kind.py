@@ -61,7 +61,8 @@ class DesignKind:
         What comes of a file: a frozen dataclass with a field for each table, ``name``, ``source``,
         ``limits``, and what `examine_main` finds.
     main : str
-        Title of the part that has no keys of its own but those of a registry.
+        Title of the part that has no keys of its own but those of a registry; empty where a kind
+        has none, and then neither the next three nor the module `describe`.
     examine_main : callable
         ``examine_main(document, found)`` examines that part.
     main_of : callable
@@ -93,25 +94,26 @@ class DesignKind:
     name: str
     doc: str
     design: type
-    main: str
-    examine_main: Callable[[Mapping[str, Any], Examined], None]
-    main_of: Callable[[Any], Any]
-    homes: Callable[[], Mapping[str, str]]
+    main: str = ""
+    examine_main: Callable[[Mapping[str, Any], Examined], None] = lambda *_: None
+    main_of: Callable[[Any], Any] = lambda _: None
+    homes: Callable[[], Mapping[str, str]] = dict
     tables: Mapping[str, Callable[[], Table]]
     required: tuple[str, ...]
-    one_of: Mapping[str, tuple[str, ...]]
-    rules: Callable[[Mapping[str, Any], Examined], Iterator[Fault]]
+    one_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    rules: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]
-    rooms: tuple[str, ...]
-    checks: tuple[str, ...]
+    rooms: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
     example: Mapping[str, Any]
-    notes: Mapping[str, str]
+    notes: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def titles(self) -> tuple[str, ...]:
         """Everything that a file of this kind may have at its top."""
-        return ("kind", "name", self.main, *self.tables, "limits")
+        main = (self.main,) if self.main else ()
+        return ("kind", "name", *main, *self.tables, "limits")
 
     def table(self, title: str) -> Table:
         """Return a table by its title: one of `tables`, or ``limits``."""

@@ -36,7 +36,7 @@ def schema() -> Schema:
     """
     definitions: Schema = {}
     for kind in KINDS.values():
-        main, own = kind.room("describe").schema()
+        main, own = kind.room("describe").schema() if kind.main else ({}, {})
         definitions[kind.name] = _branch(kind, main)
         for title in (*kind.tables, "limits"):
             definitions[f"{kind.name}-{title}"] = _titled(kind, title)
@@ -121,7 +121,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
         "type": "object",
         "description": kind.doc,
         "additionalProperties": False,
-        "required": ["kind", kind.main, *kind.required],
+        "required": ["kind", *([kind.main] if kind.main else []), *kind.required],
         "properties": {
             "kind": {"const": kind.name, "description": kind.doc},
             "name": {
@@ -130,7 +130,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
                 "maxLength": 100,
                 "description": "names the folder of the files; the file's own name if left out",
             },
-            kind.main: main,
+            **({kind.main: main} if kind.main else {}),
         }
         | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
     }

@@ -65,7 +65,8 @@ def _lines(kind: DesignKind, name: str) -> Iterator[str]:
     yield f'kind = "{kind.name}"'
     yield key_line("name", name, "names the folder of the files")
     yield ""
-    yield from kind.room("describe").lines()
+    if kind.main:
+        yield from kind.room("describe").lines()
     for title in (*kind.tables, "limits"):
         given = kind.example.get(title, {})
         yield from _table(title, kind.table(title), given, kind.notes.get(title, ""))
