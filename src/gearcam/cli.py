@@ -152,6 +152,8 @@ def _parser(
         words = f"the kind of design: {' or '.join(KINDS)}"
         parser.add_argument("kind", metavar="KIND", help=words)
         parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
+        words = "printing, laser or wire: with backlash, clearance and kerf to start from"
+        parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
     return parser
 
 
@@ -221,7 +223,7 @@ def _laws() -> None:
             say("\n".join(law_lines(law)))
 
 
-def _new(kind: str, file: str | None) -> None:
+def _new(kind: str, file: str | None, process: str | None) -> None:
     """Write a commented design file to start from; an existing file is never overwritten."""
     from gearcam.designs.faults import did_you_mean, show
     from gearcam.designs.template import template
@@ -229,12 +231,17 @@ def _new(kind: str, file: str | None) -> None:
     if kind not in KINDS:
         message, hint = f"{show(kind)} is not a kind of design", did_you_mean(kind, KINDS)
         _refuse([Problem(message, key="KIND", allowed=", ".join(KINDS), hint=hint)])
+    known = KINDS[kind].processes
+    if process is not None and process not in known:
+        message, hint = f"{show(process)} is not known here", did_you_mean(process, known)
+        _refuse([Problem(message, key="--for", allowed=", ".join(known), hint=hint)])
+    text = template(kind, Path(file or "").stem, process or "")
     if file is None:
-        say(template(kind).rstrip("\n"))
+        say(text.rstrip("\n"))
         return
     try:
         with Path(file).open("x", encoding="utf-8", newline="\n") as stream:
-            stream.write(template(kind, Path(file).stem))
+            stream.write(text)
     except FileExistsError:
         _refuse([Problem("exists, and is not overwritten", file=file)])
     except (OSError, ValueError) as error:

@@ -62,7 +62,7 @@ class Fact:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class NamedFact:
     """A fact with its name and its unit, as it is told.
 
     Parameters
@@ -151,17 +151,17 @@ class Facts(Mapping[str, Any]):
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
-    def quantities(self) -> Iterator[Quantity]:
+    def quantities(self) -> Iterator[NamedFact]:
         """Yield every quantity in the order of the tree."""
         return (_quantity(name, fact) for name, fact in _leaves(self._tree))
 
-    def shown(self) -> Iterator[Quantity]:
+    def shown(self) -> Iterator[NamedFact]:
         """Yield the quantities that are always shown."""
         for name, fact in _leaves(self._tree):
             if isinstance(fact, Fact) and fact.shown:
                 yield _quantity(name, fact)
 
-    def quantity(self, name: str) -> Quantity:
+    def quantity(self, name: str) -> NamedFact:
         """Return one quantity by its dotted `name`."""
         return next(one for one in self.quantities() if one.name == name)
 
@@ -183,7 +183,7 @@ def _is_group(value: Any) -> bool:
     return isinstance(value, Mapping) and tuple(value) not in _LEAVES
 
 
-def _quantity(name: str, leaf: Any) -> Quantity:
+def _quantity(name: str, leaf: Any) -> NamedFact:
     fact = leaf if isinstance(leaf, Fact) else Fact(leaf)
     last = name.rpartition(".")[2]
     end = next((end for end in _UNITS if last.endswith(end)), "")
@@ -191,7 +191,7 @@ def _quantity(name: str, leaf: Any) -> Quantity:
     meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
-    return Quantity(name, _bare(fact), unit, meaning, limit, fact.place)
+    return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place)
 
 
 def _bare(value: Any) -> Any:

@@ -89,6 +89,8 @@ class DesignKind:
         A design that builds without a warning, by title, in the units of a file.
     notes : mapping of str to str
         Comments on tables of the example.
+    processes : mapping of str to mapping
+        What the example has besides for each way to make it, ``printing``, ``laser`` or ``wire``.
     """
 
     name: str
@@ -108,6 +110,7 @@ class DesignKind:
     checks: tuple[str, ...] = ()
     example: Mapping[str, Any]
     notes: Mapping[str, str] = field(default_factory=dict)
+    processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
 
     @property
     def titles(self) -> tuple[str, ...]:

@@ -39,7 +39,7 @@ _EXAMPLES: Final = {
 """Values for comments where a key has no default."""
 
 
-def template(kind: str, name: str = "") -> str:
+def template(kind: str, name: str = "", process: str = "") -> str:
     """Return the text of a commented design file that builds as it is.
 
     Parameters
@@ -48,6 +48,8 @@ def template(kind: str, name: str = "") -> str:
         The kind of design.
     name : str
         The design's name; ``my_`` and its kind where this cannot name one.
+    process : str
+        How the parts will be made, one of the kind's; the example as it is where left out.
 
     Returns
     -------
@@ -55,10 +57,11 @@ def template(kind: str, name: str = "") -> str:
         TOML.
     """
     name = "my_" + kind.replace("-", "_") if name_fault(name) else name
-    return "\n".join(_lines(KINDS[kind], name)) + "\n"
+    return "\n".join(_lines(KINDS[kind], name, process)) + "\n"
 
 
-def _lines(kind: DesignKind, name: str) -> Iterator[str]:
+def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
+    more = kind.processes[process] if process else {}
     yield f"# {kind.doc[0].upper()}{kind.doc[1:]}. Build it with: gearcam build FILE"
     yield "# Lengths are in mm and angles in degrees, as the keys say. What stands behind # is a"
     yield "# comment: keys shown so may be left out; their defaults are given."
@@ -68,7 +71,7 @@ def _lines(kind: DesignKind, name: str) -> Iterator[str]:
     if kind.main:
         yield from kind.room("describe").lines()
     for title in (*kind.tables, "limits"):
-        given = kind.example.get(title, {})
+        given = {**kind.example.get(title, {}), **more.get(title, {})}
         yield from _table(title, kind.table(title), given, kind.notes.get(title, ""))
 
 

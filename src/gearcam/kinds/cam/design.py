@@ -10,7 +10,7 @@ from functools import lru_cache, partial
 from typing import Any, Final
 
 from gearcam.cams.spec import KIND as CAM_KIND
-from gearcam.cams.spec import CamSpec, FollowerSpec, size_problems
+from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import home_of
 from gearcam.designs.faults import Fault, show
@@ -178,7 +178,7 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
         return
     files, kind = output.get("files"), follower.get("type")
     asked = isinstance(files, list) and "tool-path" in files
-    if asked and kind in ("flat", "point") and "tool_radius_mm" not in output:
+    if asked and kind in ("flat", *POINTED) and "tool_radius_mm" not in output:
         message = f"is missing: a {kind} follower gives a tool path no radius"
         yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
 
@@ -215,6 +215,11 @@ KIND: Final = DesignKind(
         "cam": {"prime_radius_mm": 40, "thickness_mm": 12},
         "blank": {"bore_diameter_mm": 16},
         "output": {"files": ["dxf", "csv"]},
+    },
+    processes={
+        "printing": {"output": {"files": ["3mf", "svg"]}},
+        "laser": {"output": {"files": ["cut-svg", "dxf"], "kerf_mm": 0.15}},
+        "wire": {"output": {"files": ["dxf"], "kerf_mm": 0.3}},
     },
     notes={
         "motion": "The lift over a turn of the cam: 360 deg in all, from 0 back to 0.",

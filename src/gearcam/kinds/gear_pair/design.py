@@ -236,6 +236,21 @@ KIND: Final = DesignKind(
         "blank": {"bore_diameter_mm": [16, 16]},
         "output": {"files": ["dxf", "csv"]},
     },
+    processes={
+        "printing": {
+            "pair": {"backlash_mm": 0.1},
+            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
+            "output": {"files": ["3mf", "svg"]},
+        },
+        "laser": {
+            "pair": {"backlash_mm": 0.1},
+            "output": {"files": ["cut-svg", "dxf"], "kerf_mm": 0.15},
+        },
+        "wire": {
+            "pair": {"backlash_mm": 0.03},
+            "output": {"files": ["dxf"], "kerf_mm": 0.3},
+        },
+    },
     notes={
         "law": "the ratio i21 = dphi2/dphi1 over the driver's angle",
         "pair": "exactly one of center_distance_mm and module_mm; the other is solved",
