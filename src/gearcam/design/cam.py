@@ -161,7 +161,7 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
         yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
 
 
-KINDS.hang(
+KINDS.register(
     Kind(
         name=NAME,
         doc="a disc cam with its follower",

@@ -237,7 +237,7 @@ def _is_number(value: Any) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-KINDS.hang(
+KINDS.register(
     Kind(
         name=NAME,
         doc="a pair of non-circular gears",

@@ -1,7 +1,7 @@
 """The kinds of design, and what an examination of one collects.
 
 A kind is one entry of the registry: its tables, its formats, its checks, its own rules and the
-design that comes of them. `gear_pair` and `cam` hang theirs in; nothing else names a kind, and
+design that comes of them. `gear_pair` and `cam` register theirs; nothing else names a kind, and
 only that of a file is loaded.
 """
 

@@ -9,8 +9,9 @@ from gearcam.design.gear_pair import law_table
 from gearcam.design.models import description
 from gearcam.design.motion import rise_table
 from gearcam.design.tables import Table
-from gearcam.laws.base import LAWS, LawEntry
-from gearcam.laws.rises import RISES, RiseEntry
+from gearcam.laws.base import LAWS
+from gearcam.laws.entry import LawEntry
+from gearcam.laws.rises import RISES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +44,7 @@ def law_groups() -> Iterator[tuple[str, list[Listed]]]:
     yield "Laws of cams: rises and returns, in the tables [[motion]]", lifts
 
 
-def _listed(entry: LawEntry | RiseEntry, line: str, known: Table) -> Listed:
+def _listed(entry: LawEntry, line: str, known: Table) -> Listed:
     keys = ((key, description(item)) for key, item in known.entries.items())
     rows = (*keys, ("continuity", entry.continuity), ("source", entry.source))
     return Listed(name=entry.name, doc=entry.doc, line=line, rows=rows)

@@ -152,8 +152,8 @@ def _example(entry: Entry) -> Any:
 
 
 def _law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
-    """Show a law of a registry by its first example."""
-    given = known.document(entry.claims()[0].parameters)
+    """Show a law of a registry by its example."""
+    given = known.document(entry.example)
     yield "#"
     yield "# " + _line(key, name, entry.doc, _COLUMN - 2)
     for key, item in known.entries.items():

@@ -3,8 +3,7 @@
 A law gives ``i21 = dphi2/dphi1 > 0`` and its integral ``phi2`` over one *period* of the driver:
 the driver has `n1` equal lobes, the driven wheel `n2`, so that one period turns the driver by
 ``2*pi/n1`` and the driven wheel by ``2*pi/n2``. A law is made from its *parameters*, a frozen
-dataclass with the method ``build(lobes, tolerances)``; ``LAWS.hang`` puts it into the
-registry together with its claims, which one parametrised test proves for all laws.
+dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` puts it into the registry.
 """
 
 from __future__ import annotations
@@ -19,8 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.entry import Entry
-from gearcam.laws.span import ONE_LOBE, Feed, Lobes, Span, angle_text, continued, rough
+from gearcam.laws.entry import LawEntry
+from gearcam.laws.span import Feed, Lobes, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
@@ -137,35 +136,6 @@ class LawParameters(Protocol):
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`, or raise `InfeasibleError`."""
         ...
-
-
-@dataclass(frozen=True, kw_only=True)
-class Claim:
-    """What a law must give for an example, known in closed form and independently of the code.
-
-    Parameters
-    ----------
-    parameters : LawParameters
-        The example.
-    lobes : Lobes
-        Its lobes.
-    ratio : mapping of float to float
-        i21 by driver angle, rad.
-    motion : mapping of float to float
-        phi2, rad, by driver angle, rad.
-    continuity : int
-        Least order of continuity over all knots (3 means at least 3).
-    """
-
-    parameters: LawParameters
-    lobes: Lobes = ONE_LOBE
-    ratio: Mapping[float, float]
-    motion: Mapping[float, float]
-    continuity: int
-
-
-class LawEntry(Entry[Claim]):
-    """A law in the registry; its name is that of ``law.type``."""
 
 
 LAWS: Final[Registry[LawEntry]] = Registry(

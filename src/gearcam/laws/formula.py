@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.driver import demand_positive, law_of_centrode
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.laws.span import (
     Lobes,
@@ -208,38 +209,12 @@ def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances
     return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn = 2 * math.pi
-    root = math.sqrt(1 - 0.3**2)
-    return (
-        Claim(
-            parameters=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
-            ratio={0.0: 0.84, math.pi / 2: 1.16, math.pi / 4: 1.0},
-            motion={math.pi / 4: math.pi / 4 - 0.08, math.pi: math.pi, turn: turn},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Formula(ratio="1/(1 + 0.3*cos(phi1))"),
-            ratio={0.0: root / 1.3, math.pi: root / 0.7, math.pi / 2: root},
-            motion={math.pi: math.pi, turn: turn, math.pi / 2: 2 * math.atan(math.sqrt(7 / 13))},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Formula(r1="1/(1 + 0.5*cos(phi1))"),
-            ratio={0.0: 1 / 3, math.pi: 3.0, math.pi / 2: 0.6},
-            motion={math.pi: math.pi, math.pi / 2: 2 * math.atan(1 / 3), turn: turn},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="formula",
-        parameters=Formula,
+        example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
         doc="one formula in phi1: phi2 (closes by itself), ratio (scaled), or r1 (any scale)",
         continuity="analytic where the formula is",
         source="003 Table 1.1, the three hypotheses",
-        claims=_claims,
-    )
+    ),
 )

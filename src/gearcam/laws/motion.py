@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import compiled, formula_problems, from_motion
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.slider import crank_angle, make_slide
@@ -108,44 +109,14 @@ class Motion:
         return make_law(lobes, knots, pieces, tolerances, solved)
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn = 2 * math.pi
-    # a slide that moves as its crank moves it when turning evenly: i = 1
-    even = "1 - cos(phi1) + 3*(1 - sqrt(1 - (sin(phi1)/3)**2))"
-    # the same crank led by phi1 - 0.2*sin(phi1)
-    led = even.replace("phi1", "(phi1 - 0.2*sin(phi1))")
-    return (
-        Claim(
-            # y = x + x^2/10 from 0 to 2 over half a turn each: i = (1 + x/5)/1.2
-            parameters=Motion(
-                y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
-            ),
-            ratio={0.0: 1 / 1.2, math.pi / 2: 1.0, math.pi: 1.4 / 1.2},
-            motion={math.pi: math.pi, math.pi / 2: math.pi * 1.1 / 2.4},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Motion(slide=even, rod=3.0),
-            ratio={0.0: 1.0, 1.0: 1.0, math.pi: 1.0, 5.0: 1.0},
-            motion={1.0: 1.0, math.pi: math.pi, 6.0: 6.0, turn: turn},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Motion(slide=led, rod=3.0),
-            ratio={0.0: 0.8, math.pi: 1.2, math.pi / 2: 1.0},
-            motion={math.pi: math.pi, 1.0: 1 - 0.2 * math.sin(1.0), turn: turn},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="motion",
-        parameters=Motion,
+        example=Motion(
+            y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
+        ),
         doc="the driven element's way y(x), or that of a slide moved by the driven wheel's crank",
         continuity="analytic where the way is",
         source="003 Table 1.1, second hypothesis; section 1.4.1",
-        claims=_claims,
-    )
+    ),
 )

@@ -10,7 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes, Span, Travel, demand_equal, driven_way
 from gearcam.laws.transitions import ARCS, Arc
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
@@ -303,69 +304,13 @@ def _solve_way(
     return filled, list(ratios), {f"knots_deg[{index}]": math.degrees(place)}
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn, mid = 2 * math.pi, math.radians(160)
-    two = (0.0, mid, turn)
-    three = (0.0, mid, 1.5 * math.pi, turn)
-    return (
-        Claim(
-            parameters=Phases(shape="cosine", knots=two, ratios=(1.6, 0.4, 1.6)),
-            ratio={0.0: 1.6, mid: 0.4, mid / 2: 1.0, mid / 3: 1.3},
-            motion={mid: mid, turn: turn, mid / 2: mid / 2 + 0.6 * mid / math.pi},
-            continuity=1,
-        ),
-        Claim(
-            parameters=Phases(shape="cubic", knots=two, ratios=(1.6, 0.4, 1.6)),
-            ratio={0.0: 1.6, mid: 0.4, mid / 2: 1.0, mid / 4: 1.6 - 1.2 * 5 / 32},
-            motion={mid: mid, turn: turn, mid / 2: mid * (0.8 - 1.2 * 3 / 32)},
-            continuity=1,
-        ),
-        Claim(
-            parameters=Phases(shape="cosine", knots=three, ratios=(1.6, 0.4, "solve", 1.6)),
-            ratio={1.5 * math.pi: 1.06, turn: 1.6, mid: 0.4},
-            motion={mid: mid, 1.5 * math.pi: mid + math.radians(110) * 0.73, turn: turn},
-            continuity=1,
-        ),
-        *_open_claims(),
-    )
-
-
-def _open_claims() -> tuple[Claim, ...]:
-    """003 (3.26) and (3.12), which give the driver's way in closed form."""
-    u, v, way = math.radians(10), math.radians(60), math.radians(308.3)
-    three = 0.5 * way + 0.25 * (u + v)
-    two = ((math.pi - 2) * v + math.pi * way) / (2 * math.pi)
-    return (
-        Claim(
-            parameters=Phases(
-                shape="cosine",
-                knots=(0.0, u, v, "solve"),
-                ratios=(1.0, 1.0, 2.0, 2.0),
-                driven_travel=way,
-            ),
-            ratio={0.0: 1.0, u: 1.0, 0.5 * (u + v): 1.5, v: 2.0, 2.0: 2.0},
-            motion={u: u, v: u + 1.5 * (v - u), three: way},
-            continuity=1,
-        ),
-        Claim(
-            parameters=Phases(
-                shape="sine", knots=(0.0, v, "solve"), ratios=(1.0, 2.0, 2.0), driven_travel=way
-            ),
-            ratio={0.0: 1.0, v / 3: 1.5, v: 2.0, 2.5: 2.0},
-            motion={v: v + 2 * v / math.pi, two: way},
-            continuity=1,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="phases",
-        parameters=Phases,
+        example=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
         doc="ratios at knots, joined by arcs with zero slope at each knot; closed or open",
         continuity="C1 at the knots; C2 for quintic arcs",
         source="003 sections 2.2.2.1 to 2.2.2.3, eqs. (2.1), (2.13), (2.17), (2.22); 3.2.2, eqs. "
         "(3.1), (3.12), (3.14), (3.26)",
-        claims=_claims,
-    )
+    ),
 )

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import compiled, derivative, formula_problems
 from gearcam.laws.span import Feed, Lobes, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError
@@ -63,30 +64,12 @@ class Rack:
         return make_law(Feed(turn, advance), [0.0, turn], [piece], tolerances)
 
 
-def _claims() -> tuple[Claim, ...]:
-    return (
-        Claim(
-            parameters=Rack(r1="1 + 0.2*cos(phi1)"),
-            ratio={0.0: 1.2, math.pi: 0.8, math.pi / 2: 1.0},
-            motion={math.pi: math.pi, math.pi / 2: math.pi / 2 + 0.2, 7.0: 7 + 0.2 * math.sin(7)},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Rack(way="3*phi1 - 0.5*sin(2*phi1)"),
-            ratio={0.0: 2.0, math.pi / 2: 4.0},
-            motion={math.pi / 2: 1.5 * math.pi, 2 * math.pi: 6 * math.pi},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="rack",
-        parameters=Rack,
+        example=Rack(r1="1 + 0.2*cos(phi1)"),
         doc="a wheel that drives a rack, by its centrode or by the rack's way",
         continuity="analytic where the formula is",
         source="003 fig. 1.8; rolling on a translated body",
-        claims=_claims,
-    )
+    ),
 )

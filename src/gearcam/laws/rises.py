@@ -4,8 +4,7 @@ A rise gives the lift over the whole lift, S, over the cam angle over the whole 
 from 0 to 1; S', S'' and S''' are its velocity, acceleration and jerk. A lift program scales it to
 a phase of the cam and turns it over for a return. Every rise is a piecewise analytic function with
 exact derivatives, made from its *parameters*, a frozen dataclass with the method
-``build(tolerances)``; ``RISES.hang`` puts it into the registry together with its claims, which one
-parametrised test proves for all.
+``build(tolerances)``; ``RISES.register`` puts it into the registry.
 
 Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 """
@@ -14,15 +13,14 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.laws.entry import Entry
+from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise, extremes
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
@@ -149,36 +147,7 @@ class ClosedForm(ABC):
         return Rise(function=self.function(), mirrored=self.mirrored)
 
 
-@dataclass(frozen=True, kw_only=True)
-class RiseClaim:
-    """What a rise must give for an example, known in closed form and independently of the code.
-
-    Parameters
-    ----------
-    parameters : RiseParameters
-        The example.
-    values, velocities : mapping of float to float
-        S and S' by phi.
-    peak_velocity, peak_acceleration, peak_jerk : float
-        Largest absolute values; infinite where a derivative below jumps.
-    continuity : int
-        Order of continuity between dwells (3 means at least 3).
-    """
-
-    parameters: RiseParameters
-    values: Mapping[float, float]
-    velocities: Mapping[float, float] = field(default_factory=dict)
-    peak_velocity: float
-    peak_acceleration: float
-    peak_jerk: float
-    continuity: int
-
-
-class RiseEntry(Entry[RiseClaim]):
-    """A rise in the registry; its name is that of ``motion.law``."""
-
-
-RISES: Final[Registry[RiseEntry]] = Registry(
+RISES: Final[Registry[LawEntry]] = Registry(
     "rise",
     {
         "gearcam.laws.rise_simple": (

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes, Travel, demand_equal
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece
@@ -58,32 +59,12 @@ class LogSpiral:
         return make_law(span, [0.0, way], [piece], tolerances, solved)
 
 
-def _claims() -> tuple[Claim, ...]:
-    # from u = 1/3 to 2/3 both wheels turn alike: r1 doubles while r2 halves
-    k = math.log(2.0) / 2.0
-    return (
-        Claim(
-            parameters=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
-            ratio={0.0: 0.5, 1.0: 1 / (3 / math.sqrt(2) - 1), 2.0: 2.0},
-            motion={2.0: 2.0, 1.0: math.log((2 / 3) / (1 - math.sqrt(2) / 3)) / k},
-            continuity=3,
-        ),
-        Claim(
-            parameters=LogSpiral(ratios=(3.0, 1.0), driven_travel=1.0),
-            ratio={0.0: 3.0, math.log(1.5) / math.log(2): 1.0},
-            motion={math.log(1.5) / math.log(2): 1.0},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="log-spiral",
-        parameters=LogSpiral,
+        example=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
         doc="logarithmic spirals on an open pair, from one ratio to another",
         continuity="analytic",
         source="003 fig. 1.9; classical",
-        claims=_claims,
-    )
+    ),
 )

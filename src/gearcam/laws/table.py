@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.driver import law_of_centrode
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, driven_way
 from gearcam.numeric.jets import polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
@@ -240,41 +241,12 @@ def _demand_positive(kind: str, angles: Array, values: Array) -> None:
         )
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn = 2 * math.pi
-    angles = tuple(turn * k / 8 for k in range(9))
-    # points on a straight line give a line; values at the points are kept
-    waves = tuple(a - 0.1 * math.sin(a) for a in angles)
-    return (
-        Claim(
-            parameters=Table(phi1=angles, ratio=(3.0,) * 9),
-            lobes=Lobes(1, 2),
-            ratio={0.0: 0.5, 1.0: 0.5, 5.0: 0.5},
-            motion={1.0: 0.5, turn: math.pi},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Table(phi1=angles, phi2=waves),
-            ratio={},
-            motion=dict(zip(angles, waves, strict=True)),
-            continuity=1,
-        ),
-        Claim(
-            parameters=Table(phi1=angles, r1=tuple(2.0 + 0.2 * math.cos(a) for a in angles)),
-            ratio={},
-            motion={turn: turn, math.pi: math.pi},
-            continuity=2,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="table",
-        parameters=Table,
+        example=Table(phi1=tuple(math.pi * k / 4 for k in range(9)), ratio=(3.0,) * 9),
         doc="points of the ratio, the driven angle or the driver's radius, from a CSV file",
         continuity="C2 in what is given; so C1 where it is phi2",
         source="quintics that keep the shape of the points (`gearcam.numeric.shape_keeping`)",
-        claims=_claims,
-    )
+    ),
 )
