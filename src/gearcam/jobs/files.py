@@ -54,7 +54,7 @@ def _tables(job: GearPairJob) -> dict[str, bytes]:
 
     phi1 = job.centrode_angles()
     rolling = job.pair.rolling
-    (ratio,), phi2 = job.law.derivatives(phi1, 0), job.law.phi2(phi1)
+    phi2, ratio = job.law.derivatives(phi1, 1)
     one, two = rolling.frames(1, phi1), rolling.frames(2, phi1)
     with np.errstate(divide="ignore"):
         rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa

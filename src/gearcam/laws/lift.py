@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.laws.displacement import JUMP, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
     DwellPhase,
     Phase,
@@ -41,11 +42,8 @@ from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
 
-_JUMP = 1e-9
-"""Jump of a derivative that counts, in its largest value: far above rounding."""
-
 _INNER = slice(5, -5, 6)
-"""Surveyed places at which the size of derivatives is known well enough for that."""
+"""Surveyed places at which the size of derivatives is known well enough to judge jumps."""
 
 _TURN = 2.0 * math.pi
 
@@ -60,26 +58,6 @@ class Stretch:
     kind: str
     start: float
     end: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Jump:
-    """A place where a derivative jumps.
-
-    Parameters
-    ----------
-    theta : float, rad
-        Where.
-    order : int
-        Of the derivative: 1 velocity, 2 acceleration, 3 jerk.
-    before, after : float
-        Its values on both sides, per rad^order.
-    """
-
-    theta: float
-    order: int
-    before: float
-    after: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,7 +81,7 @@ class Survey:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Program:
+class Program(Displacement):
     """The lift over a turn, repeated.
 
     Parameters
@@ -125,6 +103,21 @@ class Program:
         """Knots of the lift over a turn, rad, both ends included."""
         return self.lift.knots
 
+    @property
+    def period(self) -> float:
+        """A turn of the cam, rad."""
+        return _TURN
+
+    @property
+    def advance(self) -> float:
+        """Nothing: the follower comes back."""
+        return 0.0
+
+    @property
+    def closed(self) -> bool:
+        """Always: the cam turns for ever."""
+        return True
+
     def cuts_between(self, low: float, high: float) -> Array:
         """Return the cuts between two cam angles, with both of these.
 
@@ -144,10 +137,9 @@ class Program:
         """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
         return [(s.start, s.end) for s in self.stretches if s.kind == kind]
 
-    def derivatives(self, theta: ArrayLike, order: int) -> list[Array]:
-        """Return ``[s, s', ..., s^(order)]`` at any cam angles `theta`, rad."""
-        theta = np.asarray(theta, dtype=float)
-        return self.lift.derivatives(theta - _TURN * np.floor(theta / _TURN), order)
+    def in_period(self, x: Array, order: int) -> list[Array]:
+        """Return ``[s, s', ...]`` over the turn (see `Displacement.in_period`)."""
+        return self.lift.derivatives(x, order)
 
     @cached_property
     def peaks(self) -> tuple[float, float, float]:
@@ -197,7 +189,7 @@ class Program:
         at_knots = np.abs([survey.before, survey.after]).max(axis=(0, 1))
         scales = np.maximum(inside, at_knots)[:4]
         # a knot is rounded, and a derivative seen on the wrong side of it by its own slope
-        limits = _JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
+        limits = JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
         return tuple(
             Jump(

@@ -20,6 +20,7 @@ from typing import ClassVar, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.laws.displacement import JUMP
 from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise, extremes
 from gearcam.registry import Registry
@@ -32,9 +33,6 @@ NARROWEST: Final = 1e-6
 
 It is a second of arc of the cam; the place of a knot in it is still known to 1e-10 of its width.
 """
-
-_JUMP: Final = 1e-9
-"""Jump of a derivative that counts, in its largest value: far above rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -98,7 +96,7 @@ class Rise:
         """
         before, after = np.array(self._sides)
         scales = np.array([1.0, *self._largest])
-        jumps = (np.abs(after - before) > _JUMP * scales).any(axis=0)
+        jumps = (np.abs(after - before) > JUMP * scales).any(axis=0)
         return int(np.argmax(np.append(jumps, True))) - 1
 
     @property
