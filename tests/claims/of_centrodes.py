@@ -7,8 +7,8 @@ import math
 from claims.claim import LawClaim
 from gearcam.laws.centrodes import EccentricCircle, Limacon, Lobed
 from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.rack import Rack
-from gearcam.laws.shapes import BSpline, RoundedPolygon
+from gearcam.laws.rack import RackLaw
+from gearcam.laws.shapes import BSplineLaw, RoundedPolygon
 from gearcam.laws.span import Lobes
 from gearcam.laws.spiral import LogSpiral
 
@@ -100,7 +100,7 @@ def ellipse() -> tuple[LawClaim, ...]:
 def bspline() -> tuple[LawClaim, ...]:
     # equal control values give a circle
     circle = LawClaim(
-        parameters=BSpline(radii=(2.0, 2.0, 2.0, 2.0)),
+        parameters=BSplineLaw(radii=(2.0, 2.0, 2.0, 2.0)),
         lobes=Lobes(2, 3),
         ratio={0.0: 2 / 3, 1.0: 2 / 3},
         driven={1.5: 1.0, 3 * math.pi: 2 * math.pi},
@@ -109,7 +109,7 @@ def bspline() -> tuple[LawClaim, ...]:
     # r = 1 at 0 and pi, (1 + 4*1.2 + 1)/6 at pi/2; c by quadrature with 30 digits
     c, top, low = 2.01705534812207634097601527257, 17 / 15, 13 / 15
     wave = LawClaim(
-        parameters=BSpline(radii=(1.0, 1.2, 1.0, 0.8)),
+        parameters=BSplineLaw(radii=(1.0, 1.2, 1.0, 0.8)),
         ratio={
             0.0: 1 / (c - 1),
             math.pi: 1 / (c - 1),
@@ -162,13 +162,13 @@ def log_spiral() -> tuple[LawClaim, ...]:
 def rack() -> tuple[LawClaim, ...]:
     return (
         LawClaim(
-            parameters=Rack(r1="1 + 0.2*cos(phi1)"),
+            parameters=RackLaw(r1="1 + 0.2*cos(phi1)"),
             ratio={0.0: 1.2, math.pi: 0.8, math.pi / 2: 1.0},
             driven={math.pi: math.pi, math.pi / 2: math.pi / 2 + 0.2, 7.0: 7 + 0.2 * math.sin(7)},
             continuity=3,
         ),
         LawClaim(
-            parameters=Rack(way="3*phi1 - 0.5*sin(2*phi1)"),
+            parameters=RackLaw(travel="3*phi1 - 0.5*sin(2*phi1)"),
             ratio={0.0: 2.0, math.pi / 2: 4.0},
             driven={math.pi / 2: 1.5 * math.pi, 2 * math.pi: 6 * math.pi},
             continuity=3,

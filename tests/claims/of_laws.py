@@ -8,11 +8,11 @@ from claims.claim import LawClaim
 from claims.of_centrodes import CENTRODES
 from gearcam.laws.constant import Constant
 from gearcam.laws.formula import Formula
-from gearcam.laws.motion import Motion
+from gearcam.laws.motion import MotionLaw
 from gearcam.laws.phases import Phases
 from gearcam.laws.programs import Fourier, Multispeed, ThreePhasePolynomial
 from gearcam.laws.span import Lobes
-from gearcam.laws.table import Table
+from gearcam.laws.table import TableLaw
 
 
 def constant() -> tuple[LawClaim, ...]:
@@ -61,7 +61,7 @@ def motion() -> tuple[LawClaim, ...]:
     return (
         LawClaim(
             # y = x + x^2/10 from 0 to 2 over half a turn each: i = (1 + x/5)/1.2
-            parameters=Motion(
+            parameters=MotionLaw(
                 y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
             ),
             ratio={0.0: 1 / 1.2, math.pi / 2: 1.0, math.pi: 1.4 / 1.2},
@@ -69,13 +69,13 @@ def motion() -> tuple[LawClaim, ...]:
             continuity=3,
         ),
         LawClaim(
-            parameters=Motion(slide=even, rod=3.0),
+            parameters=MotionLaw(slide=even, rod=3.0),
             ratio={0.0: 1.0, 1.0: 1.0, math.pi: 1.0, 5.0: 1.0},
             driven={1.0: 1.0, math.pi: math.pi, 6.0: 6.0, turn: turn},
             continuity=3,
         ),
         LawClaim(
-            parameters=Motion(slide=led, rod=3.0),
+            parameters=MotionLaw(slide=led, rod=3.0),
             ratio={0.0: 0.8, math.pi: 1.2, math.pi / 2: 1.0},
             driven={math.pi: math.pi, 1.0: 1 - 0.2 * math.sin(1.0), turn: turn},
             continuity=3,
@@ -222,20 +222,20 @@ def table() -> tuple[LawClaim, ...]:
     waves = tuple(a - 0.1 * math.sin(a) for a in angles)
     return (
         LawClaim(
-            parameters=Table(phi1=angles, ratio=(3.0,) * 9),
+            parameters=TableLaw(phi1=angles, ratio=(3.0,) * 9),
             lobes=Lobes(1, 2),
             ratio={0.0: 0.5, 1.0: 0.5, 5.0: 0.5},
             driven={1.0: 0.5, turn: math.pi},
             continuity=3,
         ),
         LawClaim(
-            parameters=Table(phi1=angles, phi2=waves),
+            parameters=TableLaw(phi1=angles, phi2=waves),
             ratio={},
             driven=dict(zip(angles, waves, strict=True)),
             continuity=1,
         ),
         LawClaim(
-            parameters=Table(phi1=angles, r1=tuple(2.0 + 0.2 * math.cos(a) for a in angles)),
+            parameters=TableLaw(phi1=angles, r1=tuple(2.0 + 0.2 * math.cos(a) for a in angles)),
             ratio={},
             driven={turn: turn, math.pi: math.pi},
             continuity=2,

@@ -7,7 +7,7 @@ import math
 from claims.claim import RiseClaim
 from claims.of_polynomials import POLYNOMIALS
 from gearcam.laws.rise_formula import FormulaRise
-from gearcam.laws.rise_points import BSpline, Table
+from gearcam.laws.rise_points import BSplineRise, TableRise
 from gearcam.laws.rise_scca import ModifiedSine, ModifiedTrapezoid, Scca
 from gearcam.laws.rise_simple import ConstantAcceleration, ConstantVelocity, Cycloidal, Harmonic
 from gearcam.laws.rise_trapezoids import (
@@ -54,7 +54,7 @@ def formula() -> tuple[RiseClaim, ...]:
 def b_spline() -> tuple[RiseClaim, ...]:
     """One span is the 3-4-5; two spans of degree 4 have ``S = 8*phi^3*(1 - phi)`` up to 1/2."""
     one = RiseClaim(
-        parameters=BSpline(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
+        parameters=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
         values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
         velocities={0.25: 270 / 256, 0.5: 1.875},
         peak_velocity=1.875,
@@ -64,7 +64,7 @@ def b_spline() -> tuple[RiseClaim, ...]:
     )
     # velocity 24*phi^2 - 32*phi^3, acceleration 48*phi*(1 - 2*phi), jerk 48 - 192*phi
     two = RiseClaim(
-        parameters=BSpline(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0)),
+        parameters=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0)),
         values={0.25: 3 / 32, 0.5: 0.5, 0.75: 29 / 32},
         velocities={0.25: 1.0, 0.5: 2.0, 0.75: 1.0},
         peak_velocity=2.0,
@@ -79,7 +79,7 @@ def table() -> tuple[RiseClaim, ...]:
     """Return splines that reproduce their curve: a quintic, and a line with its slopes."""
     places = (0.0, 0.1, 0.3, 0.35, 0.7, 1.0)
     quintic = RiseClaim(
-        parameters=Table(x=places, y=tuple(x**3 * (10 - 15 * x + 6 * x * x) for x in places)),
+        parameters=TableRise(x=places, y=tuple(x**3 * (10 - 15 * x + 6 * x * x) for x in places)),
         values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
         velocities={0.25: 270 / 256, 0.5: 1.875},
         peak_velocity=1.875,
@@ -88,7 +88,9 @@ def table() -> tuple[RiseClaim, ...]:
         continuity=2,
     )
     line = RiseClaim(
-        parameters=Table(x=(0.0, 0.4, 1.0), y=(0.0, 0.4, 1.0), start=(1.0, 0.0), end=(1.0, 0.0)),
+        parameters=TableRise(
+            x=(0.0, 0.4, 1.0), y=(0.0, 0.4, 1.0), start=(1.0, 0.0), end=(1.0, 0.0)
+        ),
         values={0.2: 0.2, 0.7: 0.7},
         velocities={0.2: 1.0, 0.7: 1.0},
         peak_velocity=1.0,

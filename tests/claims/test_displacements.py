@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -108,7 +109,7 @@ def test_derivatives_jump_at_the_knots_that_are_told_and_there_only(moving: Disp
 
 
 def test_there_are_both_kinds_open_and_closed_with_and_without_jumps() -> None:
-    made = [param.values[0] for param in MOVING]
+    made: list[Any] = [param.values[0] for param in MOVING]
     kinds = {(type(one).__name__, one.closed, bool(one.jumps)) for one in made}
     assert kinds == {
         ("RatioLaw", True, True),

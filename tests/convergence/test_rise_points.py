@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from gearcam.laws.rise_points import Table
+from gearcam.laws.rise_points import TableRise
 from gearcam.laws.rise_simple import Cycloidal
 from gearcam.laws.rises import Rise
 from gearcam.tolerances import DEFAULT
@@ -22,7 +22,7 @@ def through(count: int, *, uneven: float = 0.0) -> Rise:
     x = even + uneven * np.sin(math.pi * even) / math.pi
     x[-1] = 1.0
     y = Cycloidal().build(DEFAULT).function(x)
-    return Table(x=tuple(x.tolist()), y=tuple(y.tolist())).build(DEFAULT)
+    return TableRise(x=tuple(x.tolist()), y=tuple(y.tolist())).build(DEFAULT)
 
 
 @pytest.mark.parametrize("uneven", [0.0, 0.3])

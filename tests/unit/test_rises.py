@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gearcam.laws.rise_formula import FormulaRise
 from gearcam.laws.rise_pieces import from_both_ends, lag
-from gearcam.laws.rise_points import BSpline, Table
+from gearcam.laws.rise_points import BSplineRise, TableRise
 from gearcam.laws.rise_polynomials import (
     Polynomial,
     Polynomial23,
@@ -117,11 +117,13 @@ def test_pieces_can_be_put_into_other_functions() -> None:
 @pytest.mark.parametrize(
     ("parameters", "degree"),
     [
-        (Table(x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.05, 0.3, 0.25, 0.9, 1.0)), 5),
-        (BSpline(control=(0.0, 0.0, 0.2, 0.9, 0.4, 1.0, 1.0), degree=3), 3),
+        (TableRise(x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.05, 0.3, 0.25, 0.9, 1.0)), 5),
+        (BSplineRise(control=(0.0, 0.0, 0.2, 0.9, 0.4, 1.0, 1.0), degree=3), 3),
     ],
 )
-def test_all_pieces_at_once_are_those_one_by_one(parameters: Table | BSpline, degree: int) -> None:
+def test_all_pieces_at_once_are_those_one_by_one(
+    parameters: TableRise | BSplineRise, degree: int
+) -> None:
     made = rise(parameters).function
     order = 6
     for number, piece in enumerate(made.pieces):
@@ -329,7 +331,7 @@ def basis(knots: list[float], degree: int, index: int, x: float) -> float:
 @pytest.mark.parametrize("degree", [3, 4, 5])
 def test_b_splines_are_sums_of_their_basis(degree: int) -> None:
     control = (0.0, 0.0, 0.1, 0.7, -0.2, 0.4, 1.3, 1.0, 1.0)
-    made = rise(BSpline(control=control, degree=degree))
+    made = rise(BSplineRise(control=control, degree=degree))
     spans = len(control) - degree
     knots = [0.0] * degree + [k / spans for k in range(spans + 1)] + [1.0] * degree
     for phi in (0.0, 0.11, 0.3, 0.52, 0.77, 0.999):
@@ -340,7 +342,7 @@ def test_b_splines_are_sums_of_their_basis(degree: int) -> None:
 
 def test_a_table_is_the_spline_of_least_jerk() -> None:
     """Three points: 3-4-5 and a tenth of the even quintic bump that is 1 at the middle."""
-    made = rise(Table(x=(0.0, 0.5, 1.0), y=(0.0, 0.6, 1.0)))
+    made = rise(TableRise(x=(0.0, 0.5, 1.0), y=(0.0, 0.6, 1.0)))
     for phi in (0.1, 0.25, 0.4, 0.6, 0.9):
         u = 2.0 * min(phi, 1.0 - phi)
         bump = u**3 * (20.0 - 25.0 * u + 8.0 * u * u) / 3.0
@@ -351,7 +353,7 @@ def test_a_table_is_the_spline_of_least_jerk() -> None:
 def test_a_table_passes_its_points_with_four_derivatives_and_the_ends_given() -> None:
     x = (0.0, 0.03, 0.2, 0.25, 0.6, 0.61, 1.0)
     y = (0.0, 0.1, -0.2, 0.5, 1.4, 1.3, 1.0)
-    made = rise(Table(x=x, y=y, start=(0.5, -3.0), end=(2.0, 7.0)))
+    made = rise(TableRise(x=x, y=y, start=(0.5, -3.0), end=(2.0, 7.0)))
     np.testing.assert_allclose(made.function(x), y, atol=1e-14)
     assert made.start[:2] == pytest.approx((0.5, -3.0), rel=1e-13)
     assert made.end[:2] == pytest.approx((2.0, 7.0), rel=1e-13)
@@ -364,8 +366,8 @@ def test_a_table_passes_its_points_with_four_derivatives_and_the_ends_given() ->
 def test_a_table_in_a_file_is_the_same(tmp_path: Any) -> None:
     file = tmp_path / "rise.csv"
     file.write_text("# measured\nplace, y, x\n1, 0, 0\n\n2, 0.2, 0.4\n3, 0.9, 0.7\n4, 1, 1\n")
-    inline = rise(Table(x=(0.0, 0.4, 0.7, 1.0), y=(0.0, 0.2, 0.9, 1.0)))
-    read = rise(Table(file=str(file)))
+    inline = rise(TableRise(x=(0.0, 0.4, 0.7, 1.0), y=(0.0, 0.2, 0.9, 1.0)))
+    read = rise(TableRise(file=str(file)))
     np.testing.assert_array_equal(read.function(PHI), inline.function(PHI))
 
 

@@ -54,12 +54,15 @@ class Retired:
         What it is now.
     turn : callable
         ``turn(value)`` returns what stands for it.
+    where : mapping of str to value
+        What other keys of the table must be for it to have been one.
     """
 
     title: str
     key: str
     doc: str
     turn: Callable[[Any], Instead]
+    where: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +107,11 @@ def without_retired(document: Mapping[str, Any]) -> tuple[list[Found], Mapping[s
     found, rest = [], dict(document)
     for entry in RETIRED:
         table = rest.get(entry.title)
-        if isinstance(table, Mapping) and entry.key in table:
+        if (
+            isinstance(table, Mapping)
+            and entry.key in table
+            and all(table.get(key) == value for key, value in entry.where.items())
+        ):
             found.append(_found(entry, table[entry.key], document))
             rest[entry.title] = {key: value for key, value in table.items() if key != entry.key}
     return found, rest
@@ -171,6 +178,13 @@ RETIRED: Final = (
         doc="clearance_mm (what is taken off the part) or output.kerf_mm (what the cutter burns "
         "away, twice what the offset was)",
         turn=_offset,
+    ),
+    Retired(
+        title="law",
+        key="way",
+        doc="travel: that of the rack",
+        turn=lambda value: Instead(here={"travel": value}),
+        where={"type": "rack"},
     ),
 )
 """All of them; a new one is one more entry."""

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Feed, Lobes, Span, angle_text, continued, rough
+from gearcam.laws.span import Lobes, RackTravel, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
@@ -53,11 +53,11 @@ class RatioLaw(Displacement):
     @property
     def feeds(self) -> bool:
         """Whether the driven element is a rack: the ratio is then r1, phi2 its travel."""
-        return isinstance(self.lobes, Feed)
+        return isinstance(self.lobes, RackTravel)
 
     @property
     def knots(self) -> Array:
-        """Knots over one lobe or the way of an open pair, rad, ends included."""
+        """Knots over one lobe or the travel of an open pair, rad, ends included."""
         knots = self.ratio.knots
         return knots if self.lobes.closed else knots[1:-1]
 
@@ -111,7 +111,7 @@ class RatioLaw(Displacement):
 
     @property
     def travelled(self) -> float:
-        """Driven angle over a lobe, or over the way of an open pair, rad."""
+        """Driven angle over a lobe, or over the travel of an open pair, rad."""
         return self.driven.last if self.closed else float(self.driven(self.period))
 
     @property
@@ -217,7 +217,9 @@ def make_law(
     if abs(law.closure_error) > tolerances.refusal:
         asks = "the tooth counts ask" if lobes.closed else "driven_travel_deg asks"
         raise InfeasibleError(
-            "the law does not close" if lobes.closed else "the law misses the driven wheel's way",
+            "the law does not close"
+            if lobes.closed
+            else "the law misses the driven wheel's travel",
             value=math.degrees(law.travelled),
             limit=math.degrees(lobes.advance),
             unit="deg",

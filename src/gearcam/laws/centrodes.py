@@ -99,12 +99,12 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
     def ratio(x: Jet) -> Jet:
         return c / (b - e * cos(count * x)) - 1.0
 
-    def motion(x: Jet) -> Jet:
+    def phi2(x: Jet) -> Jet:
         # 2*atan(tan(x/2)*sqrt((b + e)/(b - e))) without its poles
         turn = 2.0 * atan(e * sin(count * x) / (b + root - e * cos(count * x)))
         return (c / root) * (x + turn / count) - x
 
-    piece = Piece(ratio, motion)
+    piece = Piece(ratio, phi2)
     solved = {"center_distance_over_scale": c}
     return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 

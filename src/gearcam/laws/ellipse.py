@@ -44,13 +44,13 @@ class Ellipse:
         def ratio(x: Jet) -> Jet:
             return 1.0 / (swing * cos(count * x) + b)
 
-        def motion(x: Jet) -> Jet:
+        def phi2(x: Jet) -> Jet:
             # tan(n2*phi2/2) = sqrt((b - A*e)/(b + A*e))*tan(n1*phi1/2) without its poles
             turn = 2.0 * atan(swing * sin(count * x) / (swing * cos(count * x) + (b + k)))
             return (x - turn / count) / k
 
         solved = {"center_distance_over_semi_latus_rectum": distance}
-        piece = Piece(ratio, motion)
+        piece = Piece(ratio, phi2)
         return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 
 

@@ -17,8 +17,7 @@ from gearcam.laws.span import (
     Lobes,
     Span,
     angle_text,
-    driven_way,
-    driver_way,
+    open_travel,
     rough,
     span_of,
     travel_problems,
@@ -42,8 +41,8 @@ class Formula:
     phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
     ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
     r1: str | None = param(TEXT, default=None, doc="driver centrode's radius at any scale")
-    driver_travel: float | None = driver_way()
-    driven_travel: float | None = driven_way()
+    driver_travel: float | None = open_travel("driver")
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -65,7 +64,7 @@ class Formula:
         """
         span = span_of(lobes, self.driver_travel, self.driven_travel)
         if self.phi2 is not None:
-            return from_motion(compiled(self.phi2), span, tolerances)
+            return from_phi2(compiled(self.phi2), span, tolerances)
         name = "ratio" if self.ratio is not None else "r1"
         function = compiled(getattr(self, name) or "1")
         x = np.linspace(0.0, span.period, 2049)
@@ -122,13 +121,13 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
             )
 
 
-def derivative(motion: Callable[..., Jet]) -> Callable[..., Jet]:
+def derivative(function: Callable[..., Jet]) -> Callable[..., Jet]:
     """Return the derivative of a function of jets, itself one.
 
     Parameters
     ----------
-    motion : callable
-        ``motion(jet, *parameters) -> jet``.
+    function : callable
+        ``function(jet, *parameters) -> jet``.
 
     Returns
     -------
@@ -136,15 +135,15 @@ def derivative(motion: Callable[..., Jet]) -> Callable[..., Jet]:
     """
 
     def slope(x: Jet, *parameters: Value) -> Jet:
-        one_more = motion(Jet.variable(x.c[0], x.order + 1), *parameters)
+        one_more = function(Jet.variable(x.c[0], x.order + 1), *parameters)
         slopes = [(k + 1) * value for k, value in enumerate(one_more.c[1:])]
         return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
 
     return slope
 
 
-def from_motion(
-    motion: Callable[[Jet], Jet],
+def from_phi2(
+    phi2: Callable[[Jet], Jet],
     lobes: Span,
     tolerances: Tolerances,
     solved: dict[str, float] | None = None,
@@ -153,7 +152,7 @@ def from_motion(
 
     Parameters
     ----------
-    motion : callable
+    phi2 : callable
         ``phi2(jet) -> jet``, rad, any constant.
     lobes : Lobes or Travel
         Over whose period.
@@ -171,9 +170,9 @@ def from_motion(
     InfeasibleError
         Where phi2 is not finite, smooth or rising, or does not close.
     """
-    ratio = derivative(motion)
+    ratio = derivative(phi2)
     x = np.linspace(0.0, lobes.period, 2049)
-    values, slopes = motion(Jet.variable(x, 1)).derivatives()
+    values, slopes = phi2(Jet.variable(x, 1)).derivatives()
     bad = ~np.isfinite(values) | ~np.isfinite(slopes)
     if bad.any():
         raise InfeasibleError("phi2 is not finite", where=angle_text(x[bad][0]))
@@ -194,7 +193,7 @@ def from_motion(
         )
     except NotSmoothError as error:
         raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
-    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances, solved)
+    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, phi2)], tolerances, solved)
 
 
 def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances) -> RatioLaw:

@@ -1,4 +1,4 @@
-"""Lift programs: the motion of a follower over a turn of the cam, as a piecewise analytic function.
+"""Lift programs: the displacement of a follower over a turn of the cam.
 
 A program is made from phases. Every phase is scaled from the unit square; a segment is the quintic
 that leaves with the state in which the phase before it ends. The program repeats every turn, and
@@ -28,7 +28,7 @@ from gearcam.laws.phases_of_lift import (
     levels,
     program_problems,
 )
-from gearcam.laws.placed import Place, PlacedLaws, placed
+from gearcam.laws.placed import PlacedLaws, PlacedPiece, placed
 from gearcam.laws.rises import Rise, RiseParameters
 from gearcam.numeric.jets import polynomial
 from gearcam.numeric.piecewise import (
@@ -52,7 +52,7 @@ _KNOT = 4.0 * np.finfo(float).eps * _TURN
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stretch:
+class PlacedPhase:
     """A phase in its place: its `kind` (rise, return or dwell), `start` and `end` in rad."""
 
     kind: str
@@ -88,14 +88,14 @@ class Program(Displacement):
     ----------
     lift : PlacedLaws
         s over ``[0, 2*pi]``, mm or rad.
-    stretches : tuple of Stretch
+    stretches : tuple of PlacedPhase
         Its phases; a segment counts as a rise or return by its direction.
     cuts : (m,) array, rad
         The knots, and more places where a law bends sharply: between them extremes are sought.
     """
 
     lift: PlacedLaws
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[PlacedPhase, ...]
     cuts: Array
 
     @property
@@ -247,8 +247,8 @@ def make_program(
     shapes = [phase.shape for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     frame = _Frame(phases=phases, angles=angles, heights=heights, rises=rises)
-    places: list[Place] = []
-    stretches: list[Stretch] = []
+    places: list[PlacedPiece] = []
+    stretches: list[PlacedPhase] = []
     cuts: list[float] = []
     for number, phase in enumerate(phases):
         match phase:
@@ -263,13 +263,13 @@ def make_program(
                 places += frame.law(number, rises[phase.shape])
                 cuts += _cuts(places[-1], rises[phase.shape])
         start, end = float(angles[number]), float(angles[number + 1])
-        stretches.append(Stretch(kind=kind, start=start, end=end))
+        stretches.append(PlacedPhase(kind=kind, start=start, end=end))
     lift = placed(places)
     sharp = np.array(sorted({*lift.knots.tolist(), *cuts}))
     return Program(lift=lift, stretches=tuple(stretches), cuts=sharp)
 
 
-def _cuts(place: Place, rise: Rise) -> list[float]:
+def _cuts(place: PlacedPiece, rise: Rise) -> list[float]:
     """Return where a law bends sharply in its place."""
     cuts = np.array([]) if rise.cuts is None else rise.cuts
     return (place.origin + place.width * cuts[(cuts > 0.0) & (cuts < 1.0)]).tolist()
@@ -294,13 +294,15 @@ class _Frame:
         """Whether a law comes down by running backwards."""
         return rise.mirrored and self.rise(number) < 0.0
 
-    def whole(self, number: int, law: Piecewise | None, scale: float) -> Place:
+    def whole(self, number: int, law: Piecewise | None, scale: float) -> PlacedPiece:
         """Return a law without knots that begins where a phase does."""
         start, end = self.angles[number : number + 2].tolist()
         base, width = self.heights[number], self.width(number)
-        return Place(law=law, part=0, end=end, origin=start, width=width, base=base, scale=scale)
+        return PlacedPiece(
+            law=law, part=0, end=end, origin=start, width=width, base=base, scale=scale
+        )
 
-    def law(self, number: int, rise: Rise) -> list[Place]:
+    def law(self, number: int, rise: Rise) -> list[PlacedPiece]:
         """Return the pieces of a law in the place of a phase."""
         place = self.whole(number, rise.function, self.rise(number))
         parts = range(len(rise.function.pieces))

@@ -1,4 +1,4 @@
-"""Laws of motion: the driven element's way is given, and the ratio follows."""
+"""Position laws: that of the driven element or of its slide is given, and the ratio follows."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import compiled, formula_problems, from_motion
+from gearcam.laws.formula import compiled, formula_problems, from_phi2
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.slider import crank_angle, make_slide
-from gearcam.laws.span import Lobes, Span, driven_way, driver_way, span_of, travel_problems
+from gearcam.laws.span import Lobes, Span, open_travel, span_of, travel_problems
 from gearcam.numeric.jets import Jet
 from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion:
-    """Either y(x) of the driven element, or the way of a slide that the driven wheel's crank moves.
+class MotionLaw:
+    """Either y(x) of the driven element, or the position of a slide that its crank moves.
 
     With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =
     k1*(x - x_from)``, ``phi2 = k2*(y - y(x_from))``, so that ``i21 = k2*y'/k1``. Both scales follow
@@ -34,13 +34,15 @@ class Motion:
     x_from: float | None = param(NUMBER, default=None, doc="x at the start")
     x_to: float | None = param(NUMBER, default=None, doc="x at the end")
     slide: str | None = param(
-        TEXT, default=None, doc="way of a slide over phi1, towards the crank's shaft, at any scale"
+        TEXT,
+        default=None,
+        doc="position of a slide over phi1, towards the crank, at any scale",
     )
     rod: float | None = param(
         NUMBER, default=None, gt=1, le=1e6, doc="length of the slide's rod, in crank radii"
     )
-    driver_travel: float | None = driver_way()
-    driven_travel: float | None = driven_way()
+    driver_travel: float | None = open_travel("driver")
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -66,7 +68,7 @@ class Motion:
         Raises
         ------
         InfeasibleError
-            Where the motion is not finite, smooth, monotonic or periodic.
+            Where y or the slide is not finite, smooth, monotonic or periodic.
         """
         if self.slide is not None:
             return self._from_slide(lobes, tolerances)
@@ -89,7 +91,7 @@ class Motion:
             "k1_deg_per_x": math.degrees(1.0 / per_angle),
             "k2_deg_per_y": math.degrees(scale),
         }
-        return from_motion(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
+        return from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         if lobes.n2 != 1:
@@ -112,11 +114,11 @@ class Motion:
 LAWS.register(
     LawEntry(
         name="motion",
-        example=Motion(
+        example=MotionLaw(
             y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
         ),
-        doc="the driven element's way y(x), or that of a slide moved by the driven wheel's crank",
-        continuity="analytic where the way is",
+        doc="the driven element's position y(x), or that of a slide moved by its crank",
+        continuity="analytic where y or the slide is",
         source="003 Table 1.1, second hypothesis; section 1.4.1",
     ),
 )

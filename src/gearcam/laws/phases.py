@@ -1,4 +1,4 @@
-"""Ratio in phases: values at knots, joined by arcs, closed or over the way of an open pair."""
+"""Ratio in phases: values at knots, joined by arcs, closed or over the travel of an open pair."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes, Span, Travel, demand_equal, driven_way
+from gearcam.laws.span import Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.laws.transitions import ARCS, Arc
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
@@ -37,7 +37,7 @@ class Phases:
     ratios: tuple[float | Solve, ...] = param(
         NUMBER, gt=0, min_length=2, doc='i21 at the knots; one may be "solve"'
     )
-    driven_travel: float | None = driven_way()
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -88,11 +88,11 @@ class Phases:
             knots, ratios = one_lobe(_angles(self.knots), self.ratios, lobes)
             return arcs_law(ARCS[self.shape], knots, ratios, lobes, tolerances)
         demand_equal(lobes)
-        knots, ratios, solved = _solve_way(
+        knots, ratios, solved = _solve_knot(
             ARCS[self.shape], self.knots, self.ratios, self.driven_travel
         )
-        way = Travel(knots[-1], self.driven_travel)
-        return arcs_law(ARCS[self.shape], np.array(knots), ratios, way, tolerances, solved)
+        span = Travel(knots[-1], self.driven_travel)
+        return arcs_law(ARCS[self.shape], np.array(knots), ratios, span, tolerances, solved)
 
 
 def _angles(knots: tuple[float | Solve, ...]) -> np.ndarray:
@@ -253,7 +253,7 @@ def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> str:
 
 
 def _closing_ways(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[Way, ...]:
-    """Return a way for each ratio whose closing value is positive."""
+    """Return a span for each ratio whose closing value is positive."""
     values = [float(value) for value in given + change]
     places = [[index] for index in range(len(values))]
     if closed:
@@ -265,7 +265,7 @@ def _closing_ways(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[
     )
 
 
-def _solve_way(
+def _solve_knot(
     arc: Arc, knots: Sequence[float | Solve], ratios: Sequence[float | Solve], travel: float
 ) -> tuple[list[float], list[float | Solve], dict[str, float]]:
     """Solve the knot left open by an open pair: the driven angle is linear in it."""
@@ -288,7 +288,7 @@ def _solve_way(
         ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
         key = "law.driven_travel_deg"
         raise InfeasibleError(
-            "no knot between its neighbours gives the driven wheel its way",
+            "no knot between its neighbours gives the driven wheel its travel",
             where=f"law.knots_deg[{index}]",
             value=math.degrees(travel),
             limit=ways[0] if math.degrees(travel) < ways[0] else ways[1],

@@ -13,7 +13,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.phases import arcs_law, one_lobe
-from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, driven_way
+from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.laws.transitions import ARCS, SMOOTH
 from gearcam.numeric.jets import Jet, cos, sin
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -37,7 +37,7 @@ class Multispeed:
     )
     transition: float = param(ANGLE, gt=0, le=360, doc="driver angle of each transition")
     shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
-    driven_travel: float | None = driven_way()
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -69,8 +69,8 @@ class Multispeed:
         name = f"ratios[{self.ratios.index('solve')}]" if "solve" in self.ratios else ""
         if self.driven_travel is not None:
             demand_equal(lobes)
-            way = Travel(knots[-1], self.driven_travel)
-            return arcs_law(arc, np.array(knots), values, way, tolerances, name=name)
+            span = Travel(knots[-1], self.driven_travel)
+            return arcs_law(arc, np.array(knots), values, span, tolerances, name=name)
         knots.append(knots[-1] + self.transition)
         values.append(self.ratios[0])
         grid, lobe = one_lobe(np.array(knots), values, lobes, "law.angles_deg with transitions")
@@ -178,7 +178,7 @@ class Fourier:
         else:
             waves = [(k, math.radians(a), math.radians(b)) for k, a, b in self._harmonics()]
 
-        def motion(x: Jet) -> Jet:
+        def phi2(x: Jet) -> Jet:
             total = x
             for k, a, b in waves:
                 total = total + (a * cos((k * n) * x) + b * sin((k * n) * x))
@@ -191,7 +191,7 @@ class Fourier:
                 total = total + ((b * kn) * cos(kn * x) - (a * kn) * sin(kn * x))
             return mean * total
 
-        knots, pieces = [0.0, lobes.period], [Piece(ratio, motion)]
+        knots, pieces = [0.0, lobes.period], [Piece(ratio, phi2)]
         (place, smallest), _ = piecewise(knots, pieces).extremes
         if not smallest > 0.0:
             share = mean / (mean - smallest)

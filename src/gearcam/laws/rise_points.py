@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rise_pieces import product, shifted, spline, total
+from gearcam.laws.rise_pieces import about, product, spline, total
 from gearcam.laws.rises import (
     NARROWEST,
     RISES,
@@ -39,7 +39,7 @@ _MOST_VALUES: Final = 500
 
 
 @dataclass(frozen=True, kw_only=True)
-class BSpline(ClosedForm):
+class BSplineRise(ClosedForm):
     """A B-spline of S with clamped, evenly spaced knots.
 
     Every control value pulls S towards it over a few knots; as many zeros and ones at the ends as
@@ -74,7 +74,7 @@ class BSpline(ClosedForm):
         left = [_span(values[n : n + p + 1], n, spans) for n in range(spans)]
         both = (
             [[float(value * spans**k) for k, value in enumerate(powers)] for powers in rows]
-            for rows in (left, [shifted(powers, 1) for powers in left])
+            for rows in (left, [about(powers, 1) for powers in left])
         )
         return spline(grid, *both)
 
@@ -98,7 +98,7 @@ def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Table:
+class TableRise:
     """A spline through points, of quintics: it goes on up to the fourth derivative.
 
     Of all curves through the points with the given ends it is the one with the least integral of
@@ -242,14 +242,14 @@ def _blocks(*entries: Array) -> Array:
 RISES.register(
     LawEntry(
         name="b-spline",
-        example=BSpline(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
+        example=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
         doc="a curve pulled by control values: shape a motion by hand, each value near its place",
         continuity="C2 to C4 inside (degree - 1); at the ends by the number of zeros and ones",
         source="C. de Boor, A Practical Guide to Splines",
     ),
     LawEntry(
         name="table",
-        example=Table(
+        example=TableRise(
             x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.00856, 0.16308, 0.235169, 0.83692, 1.0)
         ),
         doc="measured or computed points, joined with the least jerk; repeats a motion that exists",

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import ClassVar, Final
 
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rise_pieces import from_both_ends, product, shifted, total
+from gearcam.laws.rise_pieces import about, from_both_ends, product, total
 from gearcam.laws.rises import RISES, ClosedForm
 from gearcam.numeric.piecewise import Piecewise, piecewise
 from gearcam.quantities import NUMBER, param
@@ -42,12 +42,12 @@ def of_least_degree(
     """
     m, n = len(start), len(end)
     given = [[Fraction(v) / math.factorial(k) for k, v in enumerate(e)] for e in (start, end)]
-    known = shifted(given[0], 1)
+    known = about(given[0], 1)
     missing = total(given[1], [-value for value in known])[:n]
     inverse = [Fraction((-1) ** j * math.comb(m + j - 1, j)) for j in range(n)]
     power = [Fraction(math.comb(m, j)) for j in range(m + 1)]
     about_end = total(known, product(power, product(missing, inverse)[:n]))
-    return shifted(about_end, -1), about_end
+    return about(about_end, -1), about_end
 
 
 def two_ended(start: Sequence[float], end: Sequence[float]) -> Piecewise:

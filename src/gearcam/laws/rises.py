@@ -1,4 +1,4 @@
-"""Rises of cam followers: laws of motion on the unit square, and their registry.
+"""Rises of cam followers on the unit square, and their registry.
 
 A rise gives the lift over the whole lift, S, over the cam angle over the whole angle, phi, both
 from 0 to 1; S', S'' and S''' are its velocity, acceleration and jerk. A lift program scales it to

@@ -23,7 +23,7 @@ _BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) 
 
 
 @dataclass(frozen=True, kw_only=True)
-class BSpline:
+class BSplineLaw:
     """The radius is a closed uniform cubic B-spline over phi1 with these control values.
 
     Control value k belongs to the angle ``k/n`` of a lobe; the curve stays between its neighbours'
@@ -164,7 +164,7 @@ def _graded(knots: np.ndarray) -> np.ndarray:
 LAWS.register(
     LawEntry(
         name="bspline",
-        example=BSpline(radii=(2.0, 2.0, 2.0, 2.0)),
+        example=BSplineLaw(radii=(2.0, 2.0, 2.0, 2.0)),
         doc="a closed cubic B-spline of the driver's radius, by control values",
         continuity="C2",
         source="003 section 1.2; uniform cubic B-splines",

@@ -46,7 +46,7 @@ class LogSpiral:
             )
         first = start / (1.0 + start)
         growth = math.log((1.0 + end) / (1.0 + start)) / self.driven_travel
-        way = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
+        travel = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
 
         def share(x: Jet) -> Jet:
             return first * exp(growth * x)
@@ -54,9 +54,9 @@ class LogSpiral:
         piece = Piece(
             lambda x: share(x) / (1.0 - share(x)), lambda x: (-1.0 / growth) * log(1.0 - share(x))
         )
-        solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(way)}
-        span = Travel(way, self.driven_travel)
-        return make_law(span, [0.0, way], [piece], tolerances, solved)
+        solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
+        span = Travel(travel, self.driven_travel)
+        return make_law(span, [0.0, travel], [piece], tolerances, solved)
 
 
 LAWS.register(

@@ -1,4 +1,4 @@
-"""Measured or computed motions: a table of driver angles with ratios, driven angles or radii."""
+"""Measured or computed laws: a table of driver angles with ratios, driven angles or radii."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.columns import ColumnsError, read_columns
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, driven_way
+from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
 from gearcam.numeric.jets import polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
@@ -32,8 +32,8 @@ _MOST: Final = 20000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Table:
-    """Points of a motion: in a CSV file, or in the design itself.
+class TableLaw:
+    """Points of a law: in a CSV file, or in the design itself.
 
     The curve through the points is C2 and rises only where they rise. A ratio is scaled so that it
     closes, a driven angle must close, and a radius (at any scale) gives the centre distance.
@@ -55,7 +55,7 @@ class Table:
     r1: tuple[float, ...] | None = param(
         NUMBER, default=None, gt=0, min_length=_FEWEST, doc="driver's radii at phi1, at any scale"
     )
-    driven_travel: float | None = driven_way()
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -87,7 +87,7 @@ class Table:
         Raises
         ------
         InfeasibleError
-            If the file is not such a table any more, spans no lobe, or its motion cannot be made.
+            If the file is not such a table any more, spans no lobe, or no law can be made of it.
         """
         if self.file is None:
             kind = next(name for name in _INLINE if getattr(self, name) is not None)
@@ -167,7 +167,7 @@ def law_of_points(
     Raises
     ------
     InfeasibleError
-        If they span no lobe, do not repeat, or their motion cannot be made.
+        If they span no lobe, do not repeat, or no law can be made of them.
     """
     span = _span(angles, lobes, driven_travel)
     knots = angles.copy()
@@ -244,7 +244,7 @@ def _demand_positive(kind: str, angles: Array, values: Array) -> None:
 LAWS.register(
     LawEntry(
         name="table",
-        example=Table(phi1=tuple(math.pi * k / 4 for k in range(9)), ratio=(3.0,) * 9),
+        example=TableLaw(phi1=tuple(math.pi * k / 4 for k in range(9)), ratio=(3.0,) * 9),
         doc="points of the ratio, the driven angle or the driver's radius, from a CSV file",
         continuity="C2 in what is given; so C1 where it is phi2",
         source="quintics that keep the shape of the points (`gearcam.numeric.shape_keeping`)",
