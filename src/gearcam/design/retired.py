@@ -102,7 +102,7 @@ def without_retired(document: Mapping[str, Any]) -> tuple[list[Found], Mapping[s
     found : list of Found
         Those that it has.
     rest : mapping
-        The document without them.
+        The document without them, with the keys of the same tables that stand for them.
     """
     found, rest = [], dict(document)
     for entry in RETIRED:
@@ -113,7 +113,8 @@ def without_retired(document: Mapping[str, Any]) -> tuple[list[Found], Mapping[s
             and all(table.get(key) == value for key, value in entry.where.items())
         ):
             found.append(_found(entry, table[entry.key], document))
-            rest[entry.title] = {key: value for key, value in table.items() if key != entry.key}
+            kept = {key: value for key, value in table.items() if key != entry.key}
+            rest[entry.title] = kept | found[-1].instead.here
     return found, rest
 
 
