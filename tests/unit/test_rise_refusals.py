@@ -11,7 +11,7 @@ from claims.of_rises import RISE_CLAIMS
 from gearcam.design.models import faults_of
 from gearcam.design.tables import table_of
 from gearcam.errors import InfeasibleError
-from gearcam.laws.columns import ColumnsError, read_columns
+from gearcam.laws.columns import ColumnsError, read_rows
 from gearcam.laws.rise_formula import FormulaRise
 from gearcam.laws.rise_points import BSplineRise, TableRise
 from gearcam.laws.rise_polynomials import Polynomial
@@ -150,10 +150,10 @@ def test_files_that_hold_no_rise_are_told(tmp_path: Path, text: str, message: st
 
 def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
     with pytest.raises(ColumnsError, match="cannot be read: No such file"):
-        read_columns(str(tmp_path / "none.csv"), ("x", "y"))
+        read_rows(str(tmp_path / "none.csv"))
     (tmp_path / "picture.csv").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(ColumnsError, match="not a text file in UTF-8"):
-        read_columns(str(tmp_path / "picture.csv"), ("x", "y"))
+        read_rows(str(tmp_path / "picture.csv"))
 
 
 def test_a_formula_that_cannot_be_read_is_told() -> None:

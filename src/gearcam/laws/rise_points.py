@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.columns import ColumnsError, read_columns
+from gearcam.laws.columns import ColumnsError, FromFile
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.rise_pieces import about, product, spline, total
 from gearcam.laws.rises import (
@@ -98,7 +99,7 @@ def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TableRise:
+class TableRise(FromFile):
     """A spline through points, of quintics: it goes on up to the fourth derivative.
 
     Of all curves through the points with the given ends it is the one with the least integral of
@@ -136,7 +137,7 @@ class TableRise:
                 yield "file", None, "the points are given twice", rule
                 return
             try:
-                points, lines = read_columns(self.file, ("x", "y"))
+                points, lines = self.points
             except ColumnsError as error:
                 yield "file", None, str(error), "a CSV file with the columns x and y"
                 return
@@ -149,7 +150,14 @@ class TableRise:
             message = f"{len(self.y)} values for {len(self.x)} places"
             yield "y", None, message, "one value for each x"
         else:
-            yield from _point_problems(np.array([self.x, self.y]).T)
+            yield from _point_problems(self.points[0])
+
+    @cached_property
+    def points(self) -> tuple[Array, list[int]]:
+        """Rows of x and y, and their lines in the file; it raises `ColumnsError`."""
+        if self.rows is not None:
+            return self.rows.columns(("x", "y"))
+        return np.array([self.x, self.y], dtype=float).T, []
 
     def build(self, tolerances: Tolerances) -> Rise:  # noqa: ARG002  (a spline is in closed form)
         """Return the rise.
@@ -162,10 +170,7 @@ class TableRise:
         for name, index, message, rule in self.problems():
             where = f"motion.{name}" + ("" if index is None else f"[{index}]")
             raise InfeasibleError(message, where=where, nearest=rule)
-        if self.file is not None:
-            points, _ = read_columns(self.file, ("x", "y"))
-        else:
-            points = np.array([self.x, self.y]).T
+        points = self.points[0].copy()
         points[0], points[-1] = (0.0, 0.0), (1.0, 1.0)
         return Rise(function=_through(points, self.start, self.end))
 

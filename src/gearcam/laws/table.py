@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import LAWS, RatioLaw, make_law
-from gearcam.laws.columns import ColumnsError, read_columns
+from gearcam.laws.columns import ColumnsError, FromFile, Rows
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
@@ -32,7 +33,7 @@ _MOST: Final = 20000
 
 
 @dataclass(frozen=True, kw_only=True)
-class TableLaw:
+class TableLaw(FromFile):
     """Points of a law: in a CSV file, or in the design itself.
 
     The curve through the points is C2 and rises only where they rise. A ratio is scaled so that it
@@ -66,7 +67,7 @@ class TableLaw:
                 yield "file", None, "the points are given twice", rule
                 return
             try:
-                read_table(self.file)
+                _ = self.points
             except ColumnsError as error:
                 columns = f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES)}"
                 yield "file", None, str(error), columns
@@ -89,45 +90,32 @@ class TableLaw:
         InfeasibleError
             If the file is not such a table any more, spans no lobe, or no law can be made of it.
         """
-        if self.file is None:
-            kind = next(name for name in _INLINE if getattr(self, name) is not None)
-            angles, values = np.array(self.phi1), np.array(getattr(self, kind))
-            kind = _INLINE[kind]
-        else:
-            try:
-                kind, angles, values = read_table(self.file)
-            except ColumnsError as error:
-                raise InfeasibleError(str(error), where="law.file") from error
+        try:
+            kind, angles, values = self.points
+        except ColumnsError as error:
+            raise InfeasibleError(str(error), where="law.file") from error
         return law_of_points(kind, angles, values, lobes, self.driven_travel, tolerances)
 
+    @cached_property
+    def points(self) -> tuple[str, Array, Array]:
+        """What the values are (``ratio``, ``phi2_deg`` or ``r1``), angles and values, rad or 1.
 
-def read_table(file: str) -> tuple[str, Array, Array]:
-    """Read a table.
+        It raises `ColumnsError` with the line of the file that is wrong.
+        """
+        if self.rows is not None:
+            return _points(self.rows)
+        kind = next(name for name in _INLINE if getattr(self, name) is not None)
+        return _INLINE[kind], np.array(self.phi1), np.array(getattr(self, kind))
 
-    Parameters
-    ----------
-    file : str
-        Path of a CSV file; lines that begin with # are comments.
 
-    Returns
-    -------
-    kind : str
-        ``ratio``, ``phi2_deg`` or ``r1``.
-    angles, values : (n,) arrays, rad and rad or 1
-        As in the file, angles rising.
-
-    Raises
-    ------
-    ColumnsError
-        With the line that is wrong.
-    """
+def _points(rows: Rows) -> tuple[str, Array, Array]:
     kinds: list[str] = []
 
     def choose(head: list[str]) -> list[str]:
         kinds[:] = [name for name in _VALUES if name in head]
         return [_ANGLE, *kinds] if len(kinds) == 1 else []
 
-    points, lines = read_columns(file, choose)
+    points, lines = rows.columns(choose)
     if not _FEWEST <= len(points) <= _MOST:
         raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
     falling = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
