@@ -27,7 +27,7 @@ Names = Sequence[str] | Callable[[list[str]], Sequence[str]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rows:
+class CsvRows:
     """What a CSV file holds, without comments and empty lines.
 
     Parameters
@@ -85,12 +85,12 @@ class FromFile:
     file: str | None
 
     @cached_property
-    def rows(self) -> Rows | None:
+    def rows(self) -> CsvRows | None:
         """What the file holds; None without one. It raises `ColumnsError` (see `read_rows`)."""
         return None if self.file is None else read_rows(self.file)
 
 
-def rows_of(file: str, part: Any) -> Rows | None:
+def rows_of(file: str, part: Any) -> CsvRows | None:
     """Return what parameters hold that name a file.
 
     Parameters
@@ -102,7 +102,7 @@ def rows_of(file: str, part: Any) -> Rows | None:
 
     Returns
     -------
-    Rows or None
+    CsvRows or None
         None where there are none.
 
     Raises
@@ -118,7 +118,7 @@ def rows_of(file: str, part: Any) -> Rows | None:
     return next((rows for rows in inside if rows is not None), None)
 
 
-def read_rows(file: str) -> Rows:
+def read_rows(file: str) -> CsvRows:
     """Read a CSV file.
 
     Cells stand between commas, or between semicolons where the line of names has these and no
@@ -132,7 +132,7 @@ def read_rows(file: str) -> Rows:
 
     Returns
     -------
-    Rows
+    CsvRows
         One row or more.
 
     Raises
@@ -151,11 +151,11 @@ def read_rows(file: str) -> Rows:
     semicolons = ";" in rows[0][1] and "," not in rows[0][1]
     found = (next(csv.reader([row], delimiter=";" if semicolons else ",")) for _, row in rows)
     cells = tuple([cell.strip() for cell in row] for row in found)
-    made = Rows(lines=tuple(line for line, _ in rows), cells=cells)
+    made = CsvRows(lines=tuple(line for line, _ in rows), cells=cells)
     return _with_points(made) if semicolons else made
 
 
-def _with_points(rows: Rows) -> Rows:
+def _with_points(rows: CsvRows) -> CsvRows:
     """Return the rows of a file with semicolons, decimal commas turned where they are that."""
     cells = [cell for row in rows.cells[1:] for cell in row]
     commas = any(_COMMA_NUMBER.fullmatch(cell) for cell in cells)

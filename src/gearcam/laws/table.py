@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import LAWS, RatioLaw, make_law
-from gearcam.laws.columns import ColumnsError, FromFile, Rows
+from gearcam.laws.columns import ColumnsError, FromFile, CsvRows
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
@@ -108,7 +108,7 @@ class TableLaw(FromFile):
         return _INLINE[kind], np.array(self.phi1), np.array(getattr(self, kind))
 
 
-def _points(rows: Rows) -> tuple[str, Array, Array]:
+def _points(rows: CsvRows) -> tuple[str, Array, Array]:
     kinds: list[str] = []
 
     def choose(head: list[str]) -> list[str]:
