@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
-from gearcam.laws.base import LawParameters
+from gearcam.laws.base import RatioLaw
 from gearcam.laws.rises import RiseParameters
 from gearcam.laws.span import ONE_LOBE, Lobes
+from gearcam.tolerances import Tolerances
+
+
+class LawParameters(Protocol):
+    """What the parameters of a law can do."""
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`, or raise `InfeasibleError`."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)

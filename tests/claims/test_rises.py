@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from claims.claim import RiseClaim
 from claims.of_rises import RISE_CLAIMS
+from claims.shown_rise import ShownRise, shown
 from gearcam.laws.rises import RISES, Rise
 from gearcam.quantities import params_of
-from gearcam.tolerances import DEFAULT
 
 Array = NDArray[np.float64]
 
@@ -48,8 +48,8 @@ REFERENCE: dict[str, tuple[float | None, float, float | None]] = {
 }
 
 
-def built(claim: RiseClaim) -> Rise:
-    return claim.parameters.build(DEFAULT)
+def built(claim: RiseClaim) -> ShownRise:
+    return shown(claim.parameters)
 
 
 def peaks(made: Any) -> tuple[float, float, float]:
@@ -165,7 +165,7 @@ def test_peaks_are_those_of_the_closed_form_and_of_dense_sampling(claim: RiseCla
 
 @pytest.mark.parametrize("name", REFERENCE)
 def test_peaks_are_those_of_the_reference_table(name: str) -> None:
-    rise = RISES[name].parameters().build(DEFAULT)
+    rise = shown(RISES[name].parameters())
     for found, printed in zip(peaks(rise), REFERENCE[name], strict=True):
         if printed is not None:
             assert found == pytest.approx(printed, rel=1e-7 if len(f"{printed}") < 10 else 1e-10)
@@ -173,13 +173,13 @@ def test_peaks_are_those_of_the_reference_table(name: str) -> None:
 
 def test_laws_whose_acceleration_jumps_are_told_by_their_jerk() -> None:
     """The table prints 12 for the jerk of the 2-3 law, which is that between its ends."""
-    rise = RISES["2-3"].parameters().build(DEFAULT)
+    rise = shown(RISES["2-3"].parameters())
     assert rise.peak_jerk == math.inf
     assert rise.start[2] == rise.end[2] == -12.0
 
 
 def test_the_rise_return_of_the_textbook_is_told_against_a_dwell_and_against_its_return() -> None:
-    rise = RISES["3-4-5-6"].parameters().build(DEFAULT)
+    rise = shown(RISES["3-4-5-6"].parameters())
     assert rise.mirrored
     assert rise.end == (0.0, -6.0, 0.0)
     phi = np.linspace(0.0, 1.0, 100001)

@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes, RackTravel, Span, angle_text, continued, rough
+from gearcam.laws.span import RackTravel, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
@@ -143,29 +143,22 @@ class RatioLaw(Displacement):
         return float(np.abs(first - second).max()) + np.finfo(float).eps * self.lobes.advance
 
 
-class LawParameters(Protocol):
-    """What the parameters of a law can do."""
-
-    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return the law for `lobes`, to `tolerances`, or raise `InfeasibleError`."""
-        ...
-
+_HOMES: Final = {
+    "phases": ("phases",),
+    "programs": ("three-phase-polynomial", "multispeed", "fourier"),
+    "constant": ("constant",),
+    "ellipse": ("ellipse",),
+    "centrodes": ("eccentric-circle", "limacon", "lobed"),
+    "shapes": ("bspline", "rounded-polygon"),
+    "spiral": ("log-spiral",),
+    "formula": ("formula",),
+    "table": ("table",),
+    "motion": ("motion",),
+    "rack": ("rack",),
+}
 
 LAWS: Final[Registry[LawEntry]] = Registry(
-    "law",
-    {
-        "gearcam.laws.phases": ("phases",),
-        "gearcam.laws.programs": ("three-phase-polynomial", "multispeed", "fourier"),
-        "gearcam.laws.constant": ("constant",),
-        "gearcam.laws.ellipse": ("ellipse",),
-        "gearcam.laws.centrodes": ("eccentric-circle", "limacon", "lobed"),
-        "gearcam.laws.shapes": ("bspline", "rounded-polygon"),
-        "gearcam.laws.spiral": ("log-spiral",),
-        "gearcam.laws.formula": ("formula",),
-        "gearcam.laws.table": ("table",),
-        "gearcam.laws.motion": ("motion",),
-        "gearcam.laws.rack": ("rack",),
-    },
+    "law", {f"gearcam.laws.{home}": names for home, names in _HOMES.items()}
 )
 """The laws by name."""
 

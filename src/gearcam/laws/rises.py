@@ -11,18 +11,15 @@ Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.laws.displacement import JUMP
 from gearcam.laws.entry import LawEntry
-from gearcam.numeric.piecewise import Piecewise, extremes
+from gearcam.numeric.piecewise import Piecewise
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
@@ -53,74 +50,15 @@ class Rise:
     mirrored: bool = False
     cuts: Array | None = None
 
-    @cached_property
-    def _sides(self) -> tuple[list[list[float]], list[list[float]]]:
-        """S to S''' before and after every knot, with dwells beyond the ends."""
-        last = len(self.function.knots) - 1
-        before = [self.function.side(knot, -1, 3) for knot in range(1, last + 1)]
-        after = [self.function.side(knot, 1, 3) for knot in range(last)]
-        return [[0.0, 0.0, 0.0, 0.0], *before], [*after, [1.0, 0.0, 0.0, 0.0]]
-
     @property
-    def start(self) -> tuple[float, float, float]:
+    def start(self) -> tuple[float, ...]:
         """Velocity, acceleration and jerk at the start of the rise."""
-        return _derivatives(self._sides[1][0])
+        return tuple(self.function.side(0, 1, 3)[1:])
 
     @property
-    def end(self) -> tuple[float, float, float]:
+    def end(self) -> tuple[float, ...]:
         """Velocity, acceleration and jerk at the end of the rise."""
-        return _derivatives(self._sides[0][-1])
-
-    @cached_property
-    def _largest(self) -> tuple[float, ...]:
-        """Largest absolute S', S'' and S''' between knots."""
-
-        def values(phi: Array) -> tuple[Array, Array]:
-            found = np.array(self.function.derivatives(phi, 4))
-            return found[1:4], found[2:5]
-
-        inside = extremes(values, self.function.knots if self.cuts is None else self.cuts)
-        before, after = self._sides
-        at_knots = np.abs(before[1:] + after[:-1]).max(axis=0)[1:]
-        return tuple(
-            max(float(np.abs(found).max()), float(end))
-            for (_, found), end in zip(inside, at_knots, strict=True)
-        )
-
-    @cached_property
-    def continuity(self) -> int:
-        """Order of continuity between dwells, -1 to 3, where 3 means at least 3.
-
-        It counts over the knots and both ends: 0 where the velocity jumps (hard shock), 1 where the
-        acceleration does (soft shock), 2 where the jerk does.
-        """
-        before, after = np.array(self._sides)
-        scales = np.array([1.0, *self._largest])
-        jumps = (np.abs(after - before) > JUMP * scales).any(axis=0)
-        return int(np.argmax(np.append(jumps, True))) - 1
-
-    @property
-    def peak_velocity(self) -> float:
-        """Largest absolute velocity; infinite where S jumps."""
-        return self._peak(1)
-
-    @property
-    def peak_acceleration(self) -> float:
-        """Largest absolute acceleration; infinite where the velocity jumps."""
-        return self._peak(2)
-
-    @property
-    def peak_jerk(self) -> float:
-        """Largest absolute jerk; infinite where velocity or acceleration jump."""
-        return self._peak(3)
-
-    def _peak(self, order: int) -> float:
-        return self._largest[order - 1] if self.continuity >= order - 1 else math.inf
-
-
-def _derivatives(side: list[float]) -> tuple[float, float, float]:
-    _, velocity, acceleration, jerk = (value + 0.0 for value in side)  # -0.0 becomes 0.0
-    return velocity, acceleration, jerk
+        return tuple(self.function.side(len(self.function.knots) - 1, -1, 3)[1:])
 
 
 class RiseParameters(Protocol):
@@ -145,31 +83,20 @@ class ClosedForm(ABC):
         return Rise(function=self.function(), mirrored=self.mirrored)
 
 
+_HOMES: Final = {
+    "rise_simple": ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal"),
+    "rise_polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
+    "rise_trapezoids": (
+        "trapezoidal-velocity",
+        "sine-trapezoidal-velocity",
+        "trapezoidal-acceleration",
+    ),
+    "rise_scca": ("modified-trapezoid", "modified-sine", "scca"),
+    "rise_points": ("b-spline", "table"),
+    "rise_formula": ("formula",),
+}
+
 RISES: Final[Registry[LawEntry]] = Registry(
-    "rise",
-    {
-        "gearcam.laws.rise_simple": (
-            "constant-velocity",
-            "constant-acceleration",
-            "harmonic",
-            "cycloidal",
-        ),
-        "gearcam.laws.rise_polynomials": (
-            "2-3",
-            "3-4-5",
-            "4-5-6-7",
-            "5-6-7-8-9",
-            "3-4-5-6",
-            "polynomial",
-        ),
-        "gearcam.laws.rise_trapezoids": (
-            "trapezoidal-velocity",
-            "sine-trapezoidal-velocity",
-            "trapezoidal-acceleration",
-        ),
-        "gearcam.laws.rise_scca": ("modified-trapezoid", "modified-sine", "scca"),
-        "gearcam.laws.rise_points": ("b-spline", "table"),
-        "gearcam.laws.rise_formula": ("formula",),
-    },
+    "rise", {f"gearcam.laws.{home}": names for home, names in _HOMES.items()}
 )
 """The rises by name."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import LAWS, RatioLaw, make_law
-from gearcam.laws.columns import ColumnsError, FromFile, CsvRows
+from gearcam.laws.columns import ColumnsError, CsvRows, FromFile
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
