@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 import gearcam
 import peers
-from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.errors import InfeasibleError
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.laws.formula import Formula
 
 Array = NDArray[np.float64]

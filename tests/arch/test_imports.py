@@ -158,11 +158,20 @@ LAWS = {f"gearcam.laws.{path.stem}" for path in (rules.SOURCE / "laws").glob("*.
 @pytest.mark.parametrize(
     ("file", "other", "laws"),
     [
-        ("ellipse", "cams", {"base", "driver", "ellipse", "entry", "span"}),
+        ("ellipse", "cams", {"base", "displacement", "driver", "ellipse", "entry", "span"}),
         (
             "eccentric_cam",
             "gears",
-            {"entry", "lift", "phases_of_lift", "placed", "rise_pieces", "rise_simple", "rises"},
+            {
+                "displacement",
+                "entry",
+                "lift",
+                "phases_of_lift",
+                "placed",
+                "rise_pieces",
+                "rise_simple",
+                "rises",
+            },
         ),
     ],
 )

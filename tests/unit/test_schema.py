@@ -13,6 +13,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from claims.of_laws import LAW_CLAIMS
+from claims.of_rises import RISE_CLAIMS
 from gearcam.designs import load
 from gearcam.designs.kind import KINDS
 from gearcam.designs.reader import examine
@@ -108,7 +110,7 @@ def test_what_the_design_decides_has_no_default(
 def test_every_law_has_a_branch_that_takes_its_examples(
     validator: jsonschema.Draft202012Validator, name: str
 ) -> None:
-    for claim in LAWS[name].claims():
+    for claim in LAW_CLAIMS[name]:
         values = vars(claim.parameters)
         law = {"type": name} | law_table(name).outward(values)
         validator.validate(GOOD | {"law": law})
@@ -121,8 +123,8 @@ def test_every_rise_has_branches_that_take_its_examples(
     validator: jsonschema.Draft202012Validator, phase: str
 ) -> None:
     number = [item["type"] for item in CAM["motion"]].index(phase)
-    for law, entry in RISES.items():
-        for claim in entry.claims():
+    for law, claims in RISE_CLAIMS.items():
+        for claim in claims:
             own = rise_table(law).document(claim.parameters)
             made = {"type": phase, "law": law, "angle_deg": 90, "lift_mm": 10, **own}
             document = copy.deepcopy(CAM)

@@ -182,28 +182,30 @@ def hash_of(design: Design) -> str:
     for title in ("limits", "meshing"):
         document.pop(title, None)
     del document["output"]["files"]
-    text = json.dumps(_with_rows(document), sort_keys=True)
+    text = json.dumps(_with_rows(document, design), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
 
 
-def _with_rows(value: Any) -> Any:
+def _with_rows(value: Any, design: Design) -> Any:
     """Return a part of a document with rows instead of files, and numbers of one type."""
     if isinstance(value, Mapping):
         return {
-            key: _rows(item) if key == "file" else _with_rows(item) for key, item in value.items()
+            key: _rows(item, design) if key == "file" else _with_rows(item, design)
+            for key, item in value.items()
         }
     if isinstance(value, list):
-        return [_with_rows(item) for item in value]
+        return [_with_rows(item, design) for item in value]
     return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
-def _rows(file: str) -> list[list[str]]:
-    from gearcam.laws.columns import ColumnsError, read_rows
+def _rows(file: str, design: Design) -> Any:
+    from gearcam.laws.columns import ColumnsError, rows_of
 
     try:
-        return [cells for _, cells in read_rows(file)]
+        rows = rows_of(file, design)
     except ColumnsError as error:
         raise InfeasibleError(str(error), where=file) from error
+    return rows and rows.cells
 
 
 def changed(design: Any, changes: Mapping[str, object]) -> Any:

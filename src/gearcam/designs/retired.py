@@ -54,12 +54,15 @@ class Retired:
         What it is now.
     turn : callable
         ``turn(value)`` returns what stands for it.
+    where : mapping of str to value
+        What other keys of the table must be for it to have been one.
     """
 
     title: str
     key: str
     doc: str
     turn: Callable[[Any], Instead]
+    where: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,14 +102,19 @@ def without_retired(document: Mapping[str, Any]) -> tuple[list[Found], Mapping[s
     found : list of Found
         Those that it has.
     rest : mapping
-        The document without them.
+        The document without them, with the keys of the same tables that stand for them.
     """
     found, rest = [], dict(document)
     for entry in RETIRED:
         table = rest.get(entry.title)
-        if isinstance(table, Mapping) and entry.key in table:
+        if (
+            isinstance(table, Mapping)
+            and entry.key in table
+            and all(table.get(key) == value for key, value in entry.where.items())
+        ):
             found.append(_found(entry, table[entry.key], document))
-            rest[entry.title] = {key: value for key, value in table.items() if key != entry.key}
+            kept = {key: value for key, value in table.items() if key != entry.key}
+            rest[entry.title] = kept | found[-1].instead.here
     return found, rest
 
 
@@ -184,5 +192,12 @@ RETIRED: Final = (
     _renamed("helix", "steps", "count", "steps"),
     _renamed("helix", "offset_mm", "offset_mm", "steps"),
     _renamed("meshing", "helix_step", "step"),
+    Retired(
+        title="law",
+        key="way",
+        doc="travel: that of the rack",
+        turn=lambda value: Instead(here={"travel": value}),
+        where={"type": "rack"},
+    ),
 )
 """All of them; a new one is one more entry."""

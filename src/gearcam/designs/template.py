@@ -104,7 +104,7 @@ def _example(entry: Key) -> Any:
 
 def law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
     """Yield comments on a law, by its first example: its `key`, `name`, `entry`, `known` table."""
-    given = known.document(entry.claims()[0].parameters)
+    given = known.document(entry.example)
     yield "#"
     yield key_line(key, name, entry.doc, "# ")
     for key, item in known.entries.items():

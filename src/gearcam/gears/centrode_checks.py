@@ -75,7 +75,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
 def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn at knots where a derivative jumps that the limit wants continuous."""
     law = subject.pair.law
-    for number, order in law.continuity:
+    for jump in law.jumps:
+        order = jump.order - 2  # of the ratio, which is a derivative itself
         if order < limit:
             yield Finding(
                 code="ratio-continuity",
@@ -83,7 +84,7 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
                 message=f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
                 value=float(order),
                 limit=limit,
-                where=angle_text(float(law.ratio.knots[number])),
+                where=angle_text(jump.theta or law.period),
             )
 
 

@@ -153,7 +153,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
     cosine, tilt = math.cos(alpha), complex(math.cos(alpha), -mounting.side * math.sin(alpha))
     turned = np.exp(-1j * phi1)
     foot1, n1 = first.p * turned, first.t * (tilt * turned)
-    nominal, ratio = law.phi2(phi1), law.derivatives(phi1, 0)[0]
+    nominal, ratio = law.derivatives(phi1, 1)
     if law.feeds:
         foot2 = second.p - 1j * (size * nominal + lead) + mounting.distance
         tangent2, carried, turns = second.t, np.full(phi1.shape, -1j), 0.0

@@ -177,7 +177,7 @@ class Rolling:
         i, *radius = _radii(self.law, x, 2 if curved else 1)
         r, dr, *more = (self.center_distance * v for v in radius)
         speed = np.sqrt(r * r + dr * dr)
-        way = phi if wheel == 1 else self.law.motion(x) + turns * self.law.lobes.advance
+        way = phi if wheel == 1 else self.law.driven(x) + turns * self.law.lobes.advance
         if wheel == 2 and self.law.feeds:
             pole, point = _complex(1.0 + 0.0 * r, 0.0 * r), _complex(r, self.center_distance * way)
         else:

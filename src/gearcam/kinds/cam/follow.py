@@ -50,9 +50,9 @@ def read_profile(file: str | Path) -> tuple[Array, Array]:
             from gearcam.export.dxf_read import read_outline
 
             return read_outline(Path(name).read_bytes())
-        from gearcam.laws.columns import read_columns
+        from gearcam.laws.columns import read_rows
 
-        vertices, _ = read_columns(name, _COLUMNS)
+        vertices, _ = read_rows(name).columns(_COLUMNS)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         rule = "a DXF file with one closed outline, or a CSV file with the columns x_mm, y_mm"

@@ -47,7 +47,7 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
 
     phi1 = result.centrode_angles()
     rolling = result.pair.rolling
-    (ratio,), phi2 = result.law.derivatives(phi1, 0), result.law.phi2(phi1)
+    phi2, ratio = result.law.derivatives(phi1, 1)
     one, two = rolling.frames(1, phi1), rolling.frames(2, phi1)
     with np.errstate(divide="ignore"):
         rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa
