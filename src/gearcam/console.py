@@ -14,6 +14,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TextIO
 
+from gearcam.numerals import decimal, shown
+
 if TYPE_CHECKING:
     from gearcam.design.listing import Listed
     from gearcam.errors import InfeasibleError
@@ -26,6 +28,9 @@ DEBUG: Final = "GEARCAM_DEBUG"
 
 _WIDTH: Final = 96
 
+_ROUNDING: Final = 1e-9
+"""What is smaller, mm, is rounding of a study."""
+
 
 def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     """Yield the line on the pair of a summary."""
@@ -33,13 +38,13 @@ def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     teeth = " : ".join(str(count) for count in pair.get("teeth", ()))
     distance, module = pair.get("center_distance_mm"), pair.get("module_mm")
     if distance is not None and module is not None:
-        yield f"centre distance {distance:.6g} mm, module {module:.6g} mm, teeth {teeth}"
+        yield f"centre distance {shown(distance)} mm, module {shown(module)} mm, teeth {teeth}"
     elif module is not None:
         way = pair["way_per_turn_mm"]
-        yield f"wheel and rack, {way:.6g} mm a turn, module {module:.6g} mm, teeth {teeth}"
+        yield f"wheel and rack, {shown(way)} mm a turn, module {shown(module)} mm, teeth {teeth}"
     rack = pair.get("rack", {})
     yielded = [
-        f"{name} {rack[name]:.6g} for the default {default:.6g}"
+        f"{name} {shown(rack[name])} for the default {shown(default)}"
         for name, default in rack.get("yielded", {}).items()
     ]
     if yielded:
@@ -55,12 +60,12 @@ def cam_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     radius = "base" if cam["follower"].endswith("flat") else "prime"
     follower = f"{'an' if cam['follower'][0] == 'o' else 'a'} {cam['follower']} follower"
     yield (
-        f"{cam['form']} cam for {follower}, lift {lift:.6g} {motion['unit']}, "
-        f"{radius} radius {cam[f'{radius}_radius_mm']:.6g} mm"
+        f"{cam['form']} cam for {follower}, lift {shown(lift)} {motion['unit']}, "
+        f"{radius} radius {shown(cam[f'{radius}_radius_mm'])} mm"
     )
     angles = cam["pressure_angle_deg"]
     told = [
-        f"{angles[f'{kind}_max']:.6g} deg on the {kind}"
+        f"{shown(angles[f'{kind}_max'])} deg on the {kind}"
         for kind in ("rise", "return")
         if angles.get(f"{kind}_max", 0.0) > 0.0
     ]
@@ -70,8 +75,9 @@ def cam_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     if found is not None:
         yield (
             f"the profile's lift differs from the program by up to "
-            f"{found['largest_difference']:.4g} {found['unit']} (at {found['at_deg']:.6g} deg), "
-            f"error of its chords {found['error']:.2g} {found['unit']}"
+            f"{shown(found['largest_difference'], 4)} {found['unit']} "
+            f"(at {shown(found['at_deg'])} deg), error of its chords {shown(found['error'], 2)} "
+            f"{found['unit']}"
         )
 
 
@@ -87,8 +93,8 @@ def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         else (f"{found['steps_done']} of {found['steps']} phases")
     )
     distance = found.get("center_distance_mm")
-    mounted = "" if distance is None else f" at centre distance {distance:.6g} mm"
-    yield f"{phases}{mounted}, driver turned {ahead} by {abs(found['advance_deg']):.6g} deg"
+    mounted = "" if distance is None else f" at centre distance {shown(distance)} mm"
+    yield f"{phases}{mounted}, driver turned {ahead} by {shown(abs(found['advance_deg']))} deg"
     rows = [
         ("contact ratio", found["contact_ratio"], ""),
         ("pairs in contact", found.get("pairs_in_contact"), ""),
@@ -122,14 +128,14 @@ def _span(value: Any) -> str:
     if isinstance(value, str):
         return value
     if not isinstance(value, Mapping):
-        return f"{value:.4g}"
+        return shown(value, 4)
     low, high = (_small(value[end]) for end in ("min", "max"))
     return low if low == high else f"{low} to {high}"
 
 
 def _small(value: float) -> str:
     """Write a number; what is rounding of millimetres is 0."""
-    return f"{0.0 if abs(value) < 1e-9 else value:.4g}"
+    return shown(0.0 if abs(value) < _ROUNDING else value, 4)
 
 
 def law_lines(law: Listed) -> Iterator[str]:
@@ -194,7 +200,7 @@ def _stale_lines(stale: Mapping[str, str | None]) -> Iterator[str]:
 
 
 def _number(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{value:.6g} {unit}".rstrip()
+    return "" if value is None else f"{shown(value)} {unit}".rstrip()
 
 
 def _size(path: Path) -> str:
@@ -204,7 +210,7 @@ def _size(path: Path) -> str:
         return ""
     if count < 1000:
         return f"{count} B"
-    return f"{count / 1e3:.1f} kB" if count < 1e6 else f"{count / 1e6:.1f} MB"
+    return f"{decimal(count / 1e3, 1)} kB" if count < 1e6 else f"{decimal(count / 1e6, 1)} MB"
 
 
 def fault_text(error: Exception, file: str) -> str:
@@ -238,7 +244,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more" if found.found else "a remedy"
-        yield f"the search for {sought} was given up after {found.seconds:g} s"
+        yield f"the search for {sought} was given up after {shown(found.seconds)} s"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 
@@ -252,7 +258,7 @@ def _value(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, float):
-        return f"{value:.10g}"
+        return shown(value, 10)
     return json.dumps(value)
 
 

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.numerals import shown
 from gearcam.numeric.contour import Contour
 from gearcam.parts.part import Part
 from gearcam.parts.shapes import Circle, Loop
@@ -230,13 +231,13 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
         case Circle(center=center, diameter=diameter):
             x, y = center.tolist()
             raise InfeasibleError(
-                f"the {feature.kind.lower()} at x = {x:.6g}, y = {y:.6g} mm is no wider than "
-                "what the cutter burns away",
+                f"the {feature.kind.lower()} at x = {shown(x)}, y = {shown(y)} mm is no wider "
+                "than what the cutter burns away",
                 where=where,
                 value=kerf,
                 limit=diameter,
                 unit="mm",
-                nearest=f"a kerf below {diameter:.6g} mm, or a larger {feature.kind.lower()}",
+                nearest=f"a kerf below {shown(diameter)} mm, or a larger {feature.kind.lower()}",
             )
         case Loop() as loop:
             inner = loop.contour(tolerance)

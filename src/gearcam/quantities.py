@@ -105,9 +105,3 @@ def params_of(owner: type) -> dict[str, Param]:
         for field in dataclasses.fields(owner)
         if "param" in field.metadata
     }
-
-
-def rounded_down(value: float) -> str:
-    """Return a positive limit in six digits, never above it: who takes it keeps it."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 5)
-    return f"{math.floor(value / step * (1.0 + 1e-12)) * step:.6g}"

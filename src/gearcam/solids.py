@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import GearcamError
+from gearcam.numerals import shown
 from gearcam.parts.part import Mark, Part
 from gearcam.parts.shapes import circle_points, circle_segments
 
@@ -118,8 +119,8 @@ def solid(part: Part) -> Mesh:
     missed, allowed = abs(mesh.volume - part.volume), volume_error(part)
     if missed > allowed:
         raise SolidError(
-            f"{part.name}: the solid's volume is {missed:.3g} mm3 off,"
-            f" {allowed:.3g} mm3 is explained"
+            f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
+            f" {shown(allowed, 3)} mm3 is explained"
         )
     return mesh
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearcam.drawings import OUTLINE, Drawing, Feature, pair_drawing, placed
+from gearcam.numerals import decimal
 from gearcam.parts.part import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets import (
@@ -15,7 +16,6 @@ from gearcam.sheets import (
     RoundDimension,
     Sheet,
     Text,
-    number,
     pair_sheet,
     strokes,
     text_box,
@@ -41,7 +41,7 @@ def hole(x: float, y: float, diameter: float) -> Opening:
     [(180.0, "180"), (0.5, "0.5"), (1.23456, "1.235"), (-0.0001, "0"), (100.0, "100")],
 )
 def test_numbers_have_no_idle_digits(value: float, text: str) -> None:
-    assert number(value) == text
+    assert decimal(value) == text
 
 
 def test_tolerances_are_never_rounded_to_nothing() -> None:

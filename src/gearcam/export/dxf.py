@@ -42,6 +42,7 @@ from gearcam.drawings import (
     Shape,
     reach,
 )
+from gearcam.numerals import shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.splines import DEGREE, fit_spline
@@ -223,7 +224,7 @@ def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]
         poles = spline.poles.copy()
         gap = float(np.hypot(*(poles[-1] - following.poles[0])))
         if gap > style.tolerance:
-            raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
+            raise ValueError(f"runs do not join: a gap of {shown(gap, 3)} mm")
         poles[-1] = following.poles[0]
         yield poles, spline.knots
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import BORE, CENTRODE, HOLE, OUTLINE, SLOT, Circle, Cross, Feature, Loop, Path
+from gearcam.numerals import decimal
 from gearcam.numeric.contour import Contour
 from gearcam.sheets import CENTERLINE, EDGE, HIDDEN, Sheet, Strokes, Text
 
@@ -42,7 +43,7 @@ SAGITTA: Final = 0.005
 
 def sheet_svg(sheet: Sheet) -> bytes:
     """Write a `sheet` as SVG, UTF-8; the same sheet gives the same bytes."""
-    wide, tall = (_number(value) for value in sheet.size)
+    wide, tall = (decimal(value) for value in sheet.size)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
     font = f'font-family="sans-serif" fill="{INK}"'
     lines = [
@@ -87,8 +88,8 @@ def _feature(sheet: Sheet, feature: Feature) -> str:
     match shape:
         case Circle(center=center, diameter=diameter):
             ((x, y),) = _on_page(sheet, center[None, :])
-            radius = _number(0.5 * diameter * sheet.scale)
-            return f'<circle {style} cx="{_number(x)}" cy="{_number(y)}" r="{radius}"/>'
+            radius = decimal(0.5 * diameter * sheet.scale)
+            return f'<circle {style} cx="{decimal(x)}" cy="{decimal(y)}" r="{radius}"/>'
         case Cross(center=center, size=size):
             flat = np.array([[-0.5 * size, 0.0], [0.5 * size, 0.0]])
             arms = [_data(sheet, center + arm, closed=False) for arm in (flat, flat[:, ::-1])]
@@ -106,7 +107,7 @@ def _data(sheet: Sheet, points: Array, *, closed: bool) -> str:
     """Path data; neighbours that fall together are written once."""
     page = np.round(_on_page(sheet, points), 2)
     kept = np.append(True, (np.diff(page, axis=0) != 0.0).any(axis=1))
-    steps = " ".join(f"{_number(x)} {_number(y)}" for x, y in page[kept].tolist())
+    steps = " ".join(f"{decimal(x)} {decimal(y)}" for x, y in page[kept].tolist())
     return f"M{steps}" + ("Z" if closed else "")
 
 
@@ -121,13 +122,7 @@ def _head(sheet: Sheet, head: Array) -> str:
 
 def _text(sheet: Sheet, text: Text, name: str) -> str:
     ((x, y),) = _on_page(sheet, text.place[None, :])
-    place = f'x="{_number(x)}" y="{_number(y)}"'
-    size = f'font-size="{_number(text.height / CAPITAL)}" text-anchor="{text.anchor}"'
-    turn = f' transform="rotate(-90 {_number(x)} {_number(y)})"' if text.upright else ""
+    place = f'x="{decimal(x)}" y="{decimal(y)}"'
+    size = f'font-size="{decimal(text.height / CAPITAL)}" text-anchor="{text.anchor}"'
+    turn = f' transform="rotate(-90 {decimal(x)} {decimal(y)})"' if text.upright else ""
     return f'<text class="{name}" {place} {size}{turn}>{escape(text.text)}</text>'
-
-
-def _number(value: float) -> str:
-    """Three decimals, no idle zeros."""
-    text = f"{value:.3f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text

@@ -23,6 +23,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearcam.numerals import shown
 from gearcam.numeric.bulges import as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
@@ -105,8 +106,8 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
     allowed = VOLUME_ERROR * part.volume + _explained(part, tolerance)
     if missed > allowed:
         raise SolidError(
-            f"{part.name}: the solid's volume is {missed:.3g} mm3 off,"
-            f" {allowed:.3g} mm3 is explained"
+            f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
+            f" {shown(allowed, 3)} mm3 is explained"
         )
     return made
 

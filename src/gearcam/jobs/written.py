@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from gearcam.findings import Finding
+from gearcam.numerals import tree
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +68,7 @@ def finish(
 
     from gearcam.export.write import SUMMARY, write_all
 
-    text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(tree(summary), indent=2, ensure_ascii=False, allow_nan=False)
     everything = {**contents, SUMMARY: (text + "\n").encode()}
     removed = write_all(folder, everything, keep=keep)
     return Written(

@@ -18,7 +18,6 @@ from gearcam.sheets.sheet import (
     Sheet,
     Strokes,
     Text,
-    number,
     strokes,
     text_box,
 )
@@ -36,7 +35,6 @@ __all__ = [
     "Sheet",
     "Strokes",
     "Text",
-    "number",
     "pair_sheet",
     "strokes",
     "text_box",

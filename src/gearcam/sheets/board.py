@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import Cross, Feature, Path, Shape
+from gearcam.numerals import decimal
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.sheet import (
     ARROW_ROOM,
@@ -32,7 +33,6 @@ from gearcam.sheets.sheet import (
     RoundDimension,
     Text,
     arrow_head,
-    number,
     strokes,
     text_box,
     text_width,
@@ -196,7 +196,7 @@ class Board:
         ends = np.array([first, second], dtype=np.float64)
         along = int(vertical)
         low, high = np.sort(ends[:, along])
-        label = prefix + number(float(high - low)) + suffix
+        label = prefix + decimal(float(high - low)) + suffix
         wide = text_width(label) * self.unit
         place = np.full(2, at)
         place[1 - along] += (GAP + 0.5 * HEIGHT) * self.unit * (-1.0 if vertical else 1.0)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import Feature
+from gearcam.numerals import decimal
 
 Array = NDArray[np.float64]
 
@@ -57,16 +58,10 @@ ARROW_ROOM: Final = 2 * ARROW + GAP
 """Dimension lines shorter than this, mm of paper, have their arrows outside."""
 
 
-def number(value: float) -> str:
-    """Return at most three decimals, no idle zeros."""
-    text = f"{value:.3f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
 def fine(value: float) -> str:
     """Return a small length, such as a tolerance, to two digits and without exponent."""
     digits = max(3, 1 - math.floor(math.log10(value)))
-    return f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return decimal(value, digits)
 
 
 def text_width(text: str, height: float = HEIGHT) -> float:
@@ -133,7 +128,7 @@ class LinearDimension:
     @property
     def label(self) -> str:
         """Its text."""
-        return f"{self.prefix}{number(self.value)}{self.suffix}"
+        return f"{self.prefix}{decimal(self.value)}{self.suffix}"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -178,7 +173,7 @@ class RoundDimension:
     @property
     def label(self) -> str:
         """Its text."""
-        return f"{self.prefix}{self.sign}{number(self.value)}{self.suffix}"
+        return f"{self.prefix}{self.sign}{decimal(self.value)}{self.suffix}"
 
     def point(self, distance: float) -> Array:
         """Return the point on the leader at a distance from the middle, (2,), mm."""

@@ -20,6 +20,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.drawings import part_features, placed
+from gearcam.numerals import decimal
 from gearcam.parts.part import Hub, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
@@ -35,7 +36,6 @@ from gearcam.sheets.sheet import (
     Sheet,
     Text,
     fine,
-    number,
     text_width,
 )
 
@@ -253,7 +253,7 @@ def _bore_view(board: Board, bore: _Bore, place: Array) -> None:
     line = np.array([x, below - 5.0 * unit - HEIGHT * unit])
     board.write(Text(text=words, place=line, anchor="middle"))
     kind = "flat" if bore.flat else "keyway"
-    board.rows.append((f"{kind}, direction", f"{number(math.degrees(bore.angle))} deg"))
+    board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(bore.angle))} deg"))
 
 
 def _callouts(board: Board, wheel: _Wheel) -> None:
@@ -266,9 +266,9 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
         if opening.kind == "SLOT" and isinstance(opening.shape, Loop):
             _slot(board, opening.shape)
     for mark in part.marks:
-        words = f", {number(mark.depth)} deep"
+        words = f", {decimal(mark.depth)} deep"
         if not board.round(mark.center, 0.5 * mark.diameter, prefix="mark ", suffix=words):
-            board.rows.append(("mark", f"Ø{number(mark.diameter)}{words}"))
+            board.rows.append(("mark", f"Ø{decimal(mark.diameter)}{words}"))
 
 
 def _radii(board: Board, wheel: _Wheel) -> None:
@@ -281,8 +281,8 @@ def _radii(board: Board, wheel: _Wheel) -> None:
         if board.round(np.zeros(2), radius, angles=ways, diameter=False, suffix=end):
             continue
         # a leader need not point to the axis
-        if not board.label(np.array([x, y]), f"R{number(radius)}{end}"):
-            board.rows.append((f"{words}. radius from axis", number(radius)))
+        if not board.label(np.array([x, y]), f"R{decimal(radius)}{end}"):
+            board.rows.append((f"{words}. radius from axis", decimal(radius)))
 
 
 def _holes(board: Board, part: Part) -> None:
@@ -299,7 +299,7 @@ def _holes(board: Board, part: Part) -> None:
         _ring(board, group)
     named = [(circle, f"H{k}") for k, circle in enumerate(singles, start=1)]
     for circle, letter in named:
-        size = f"{letter} Ø{number(circle.diameter)}"
+        size = f"{letter} Ø{decimal(circle.diameter)}"
         inside = circle.diameter * board.scale > text_width(size) + TIGHT
         gap = (-CLEAR - GAP, HEIGHT + GAP + 2.0 * CLEAR) if inside else None
         board.centre(circle.center, 0.5 * circle.diameter, gap)
@@ -308,8 +308,8 @@ def _holes(board: Board, part: Part) -> None:
     for group in patterns:
         _pattern(board, group)
     for circle, letter in named:
-        x, y = (number(value) for value in circle.center.tolist())
-        board.rows.append((f"{letter} Ø{number(circle.diameter)}", f"X {x}  Y {y}"))
+        x, y = (decimal(value) for value in circle.center.tolist())
+        board.rows.append((f"{letter} Ø{decimal(circle.diameter)}", f"X {x}  Y {y}"))
 
 
 def _even(circles: list[Circle]) -> bool:
@@ -340,8 +340,8 @@ def _pattern(board: Board, circles: list[Circle]) -> None:
     # the arrow points at the circle between two holes
     ring = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
     board.round(np.zeros(2), away, angles=ring)
-    words = f"on Ø{number(2.0 * away)}, at {number(math.degrees(first))} deg"
-    board.rows.append((f"{count} x Ø{number(one.diameter)}", words))
+    words = f"on Ø{decimal(2.0 * away)}, at {decimal(math.degrees(first))} deg"
+    board.rows.append((f"{count} x Ø{decimal(one.diameter)}", words))
 
 
 def _slot(board: Board, shape: Loop) -> None:
@@ -355,7 +355,7 @@ def _slot(board: Board, shape: Loop) -> None:
     end = corners[[half - 1, half]].mean()
     place = np.array([end.real, end.imag])
     if not board.round(place, 0.5 * width, diameter=False, prefix="slot "):
-        board.rows.append(("slot, width", number(width)))
-    board.rows.append(("slot, mid radius", number(middle)))
+        board.rows.append(("slot, width", decimal(width)))
+    board.rows.append(("slot, mid radius", decimal(middle)))
     last = first + math.degrees(sweep)
-    board.rows.append(("slot, ends at", f"{number(first)}, {number(last)} deg"))
+    board.rows.append(("slot, ends at", f"{decimal(first)}, {decimal(last)} deg"))
