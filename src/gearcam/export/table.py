@@ -53,7 +53,9 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
         if bad_rows.size:
             raise ValueError(f"column {name} is not a number in row {bad_rows[0]}")
         # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
-        tidy = np.where(np.isinf(plain), np.inf, plain + 0.0)
+        # What is missing may be anything, and adding to it may warn.
+        there = np.where(missing, 0.0, plain) + 0.0
+        tidy = np.where(np.isinf(there), np.inf, there)
         cells = [repr(exact(value)) for value in tidy.tolist()]
         for row in np.flatnonzero(missing).tolist():
             cells[row] = ""
