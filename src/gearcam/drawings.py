@@ -1,10 +1,10 @@
 """Drawings: what an exporter of flat files sees.
 
 A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the kind of
-what they hold: OUTLINE, BORE, HOLE, SLOT, MARK, CENTRODE, CENTER; a pair's layers begin with the
-wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME and FOLLOWER show
-what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name. *Placing* turns and
-shifts shapes without changing them otherwise.
+what they hold: OUTLINE, BORE, HOLE, SLOT, INNER (inner teeth), MARK, CENTRODE, CENTER; a pair's
+layers begin with the wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME
+and FOLLOWER show what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name.
+*Placing* turns and shifts shapes without changing them otherwise.
 
 What a cutter burns away, its *kerf*, is nothing of the part's: it moves the paths of a drawing to
 be cut, whose layers then end in ``_KERF``.
@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.numerals import shown
 from gearcam.numeric.contour import Contour
-from gearcam.parts.part import Part
+from gearcam.parts.body import Part
 from gearcam.parts.shapes import Circle, Loop
 
 Array = NDArray[np.float64]
@@ -36,6 +36,7 @@ OUTLINE: Final = "OUTLINE"
 BORE: Final = "BORE"
 HOLE: Final = "HOLE"
 SLOT: Final = "SLOT"
+INNER: Final = "INNER"
 MARK: Final = "MARK"
 CENTRODE: Final = "CENTRODE"
 CENTER: Final = "CENTER"
@@ -47,13 +48,13 @@ TOOL: Final = "TOOL"
 LABEL: Final = "LABEL"
 
 OUTER: Final = (OUTLINE, PROFILE)
-INNER: Final = (BORE, HOLE, SLOT)
+THROUGH: Final = (BORE, HOLE, SLOT, INNER)
 """Kinds that are cut: around the part, and right through it."""
 
 KERF: Final = "_KERF"
 """End of layers that hold paths of a cutter, not edges of the part."""
 
-CLOSED: Final = (*OUTER, PITCH, TOOL, *(kind + KERF for kind in (*OUTER, BORE, SLOT)))
+CLOSED: Final = (*OUTER, INNER, PITCH, TOOL, *(kind + KERF for kind in (*OUTER, BORE, SLOT, INNER)))
 """Ends of layers whose closed curves are contours."""
 
 CROSS_SIZE: Final = 0.04
@@ -177,10 +178,11 @@ def place(
 
 def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Feature, ...]:
     """Return the `outline` of a `step`, openings and marks of a `part`, in its own frame."""
+    layer = part.steps[step]
     return (
-        Feature(layer=outline, shape=part.contours[step]),
-        *(Feature(layer=opening.kind, shape=opening.shape) for opening in part.openings),
-        *(Feature(layer=MARK, shape=mark.circle) for mark in part.marks),
+        Feature(layer=outline, shape=layer.edge),
+        *(Feature(layer=opening.kind, shape=opening.shape) for opening in layer.openings),
+        *(Feature(layer=MARK, shape=pocket.edge) for pocket in part.pockets),
     )
 
 
@@ -214,7 +216,7 @@ def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
         drawing,
         features=tuple(
             Feature(layer=one.layer + KERF, shape=_path(one, kerf, tolerance, where))
-            if one.kind in (*OUTER, *INNER)
+            if one.kind in (*OUTER, *THROUGH)
             else one
             for one in drawing.features
         ),
@@ -243,8 +245,9 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
             inner = loop.contour(tolerance)
             there = f"{feature.kind.lower()} of {where}"
             return sized(lambda size: followed(inner, -0.5 * size), kerf, there, "kerf")
-        case Contour() as outer:
-            return sized(lambda size: moved(outer, 0.5 * size), kerf, where, "kerf")
+        case Contour() as edge:
+            side = -0.5 if feature.kind in THROUGH else 0.5
+            return sized(lambda size: moved(edge, side * size), kerf, where, "kerf")
         case shape:
             raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")
 

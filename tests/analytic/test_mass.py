@@ -13,10 +13,10 @@ import trimesh
 
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.mass import mass_properties
 from gearcam.parts.openings import Place
-from gearcam.parts.part import Hub, Mark, Opening, Part
 from gearcam.parts.shapes import Circle
 from gearcam.solids import solid
 from helpers_contour import arc, bore, contour_of, disc_contour, square_contour

@@ -23,9 +23,9 @@ from gearcam.jobs.cam import CamJob
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank, WheelBlank
+from gearcam.parts.body import Mark, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Place
-from gearcam.parts.part import Mark, Part
 from helpers_cam_files import ROLLER, read
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_distance import distances

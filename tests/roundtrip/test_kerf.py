@@ -22,9 +22,9 @@ from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
 from gearcam.jobs.cam import CamJob
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.parts.blank import Blank, WheelBlank
+from gearcam.parts.body import Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Place
-from gearcam.parts.part import Part
 from helpers_cam_files import ROLLER, read
 from helpers_contour import contour_of, disc_contour, line
 from helpers_distance import distances

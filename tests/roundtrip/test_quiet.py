@@ -64,10 +64,10 @@ def test_a_study_is_quiet(tmp_path: Path, name: str) -> None:
 
 
 def test_followers_and_files_read_back_are_quiet(tmp_path: Path) -> None:
-    cam = str(PROFILES / "undercut_cam.toml")
+    cam = str(PROFILES / "eccentric_cam.toml")
     strictly(tmp_path, "build", cam, "--only", "dxf,csv")
     for profile in ("cam.dxf", "profile.csv"):
-        strictly(tmp_path, "follow", cam, str(tmp_path / "undercut_cam" / profile))
+        strictly(tmp_path, "follow", cam, str(tmp_path / "eccentric_cam" / profile))
 
 
 def test_what_libraries_say_is_kept_and_errors_are_not() -> None:

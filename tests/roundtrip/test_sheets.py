@@ -24,9 +24,9 @@ from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Place
-from gearcam.parts.part import Hub, Mark, Opening, Part
 from gearcam.parts.shapes import Circle
 from gearcam.sheets import Sheet, pair_sheet, wheel_sheet
 from helpers_contour import disc_contour, gear_contour
@@ -331,7 +331,7 @@ import hashlib
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
-from gearcam.parts.part import Hub, Part
+from gearcam.parts.body import Hub, Part
 from gearcam.sheets import wheel_sheet
 from helpers_contour import square_contour
 part = Part(name="p", contours=(square_contour(90.0),), width=1.0, hub=Hub(diameter=9.0, front=2.0))

@@ -13,9 +13,9 @@ from gearcam.errors import InfeasibleError
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Opening, Part
 from gearcam.parts.make import finished, make_part
 from gearcam.parts.openings import Place
-from gearcam.parts.part import Opening, Part
 from gearcam.parts.shapes import Circle
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_pairs import profile

@@ -14,10 +14,10 @@ import shapely
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.make import finished, make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Place, bore, openings
-from gearcam.parts.part import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import disc_contour, gear_contour
 from helpers_distance import distances
@@ -310,7 +310,7 @@ def test_a_closed_wheel_has_no_stop() -> None:
 def test_a_bore_goes_through_its_hub_however_thin(wall: float) -> None:
     reach = 2 * KEYED.bore_reach
     part = made(disc_contour(50.0), replace(KEYED, hub_diameter=reach + wall, hub_front=5.0))
-    assert [opening.name for opening in part.in_hub] == ["bore"]
+    assert [opening.name for opening in part.bosses[0].openings] == ["bore"]
 
 
 def test_a_mark_must_lie_on_metal() -> None:

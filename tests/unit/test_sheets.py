@@ -9,7 +9,7 @@ import pytest
 
 from gearcam.drawings import OUTLINE, Drawing, Feature, pair_drawing, placed
 from gearcam.numerals import decimal
-from gearcam.parts.part import Mark, Opening, Part
+from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets import (
     LinearDimension,

@@ -20,7 +20,18 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import INNER, LABEL, MARK, OUTER, Circle, Drawing, Feature, Loop, Path, reach
+from gearcam.drawings import (
+    LABEL,
+    MARK,
+    OUTER,
+    THROUGH,
+    Circle,
+    Drawing,
+    Feature,
+    Loop,
+    Path,
+    reach,
+)
 from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data
 from gearcam.numerals import decimal, shown
@@ -40,7 +51,7 @@ MARGIN: Final = 1.0
 
 GROUPS: Final = (
     ("engrave", (MARK, LABEL), ENGRAVED),
-    ("cut-inner", INNER, CUT),
+    ("cut-inner", THROUGH, CUT),
     ("cut-outer", OUTER, CUT),
 )
 """What is drawn, in this order: name, kinds, colour."""

@@ -15,7 +15,7 @@ import io
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.drawings import BORE, HOLE, OUTLINE, SLOT
+from gearcam.drawings import OUTLINE, THROUGH
 from gearcam.export import dxf
 from gearcam.export.dxf import COLORS, DASHED, MILLIMETRES, DxfStyle
 from gearcam.sheets import (
@@ -47,7 +47,7 @@ LINETYPES: Final = {
 }
 """Lengths of the pattern, its dashes and gaps, mm of paper."""
 
-HEAVY: Final = (OUTLINE, BORE, HOLE, SLOT, EDGE)
+HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
 """Kinds that are drawn thick."""
 
 THICK: Final = 50

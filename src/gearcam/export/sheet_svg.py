@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import BORE, CENTRODE, HOLE, OUTLINE, SLOT, Circle, Cross, Feature, Loop, Path
+from gearcam.drawings import CENTRODE, OUTLINE, THROUGH, Circle, Cross, Feature, Loop, Path
 from gearcam.numerals import decimal
 from gearcam.numeric.contour import Contour
 from gearcam.sheets import CENTERLINE, EDGE, HIDDEN, Sheet, Strokes, Text
@@ -26,7 +26,7 @@ THICK: Final = 0.5
 THIN: Final = 0.25
 """Line widths, mm."""
 
-HEAVY: Final = (OUTLINE, BORE, HOLE, SLOT, EDGE)
+HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
 """Kinds that are drawn thick."""
 
 DASHES: Final = {HIDDEN: "3 1.5", CENTRODE: "4 1.5", CENTERLINE: "8 1.5 1 1.5"}

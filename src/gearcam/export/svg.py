@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from gearcam.drawings import (
     CENTRODE,
     FOLLOWER,
+    INNER,
     MARK,
     PITCH,
     PRIME,
@@ -54,6 +55,7 @@ INKS: Final = ("#27598c", "#a35f22")
 
 CENTRODE_INK: Final = "#5a5a5a"
 TEXT_INK: Final = "#222222"
+GROUND: Final = "#ffffff"
 
 DECIMALS: Final = 4
 """Of the picture's numbers."""
@@ -103,7 +105,7 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     box = " ".join(_number(value) for value in (left, top, whole, tall))
     base = -float(low[1]) + margin + size
     ground = f'x="{_number(left)}" y="{_number(top)}"'
-    ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="#ffffff"'
+    ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="{GROUND}"'
     sheet = f'viewBox="{box}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
     elements = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -149,7 +151,7 @@ def _element(feature: Feature, pixel: float) -> list[str]:
             style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
             return [f'<path class={name} {style} d="{_data(points, True)}"/>']
         case Contour(vertices=points):
-            style = f'fill="{fill}" stroke="{ink}"'
+            style = f'fill="{GROUND if feature.kind == INNER else fill}" stroke="{ink}"'
             return [f'<path class={name} {style} d="{_data(points, True)}"/>']
         case Path(points=points, closed=closed):
             style = f'fill="none" stroke="{ink}"'
@@ -157,14 +159,14 @@ def _element(feature: Feature, pixel: float) -> list[str]:
                 style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
             return [f'<path class={name} {style} d="{_data(points, closed)}"/>']
         case Circle(center=center, diameter=diameter):
-            inside = {MARK: ink, PRIME: "none", FOLLOWER: fill}.get(feature.kind, "#ffffff")
+            inside = {MARK: ink, PRIME: "none", FOLLOWER: fill}.get(feature.kind, GROUND)
             line = f'{CENTRODE_INK}" {dash}' if feature.kind == PRIME else f'{ink}"'
             place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'
             size = f'r="{_number(0.5 * diameter)}"'
             return [f'<circle class={name} {place} {size} fill="{inside}" stroke="{line}/>']
         case Loop():
             data = arc_data(shape.vertices, shape.bulges)
-            return [f'<path class={name} fill="#ffffff" stroke="{ink}" d="{data}"/>']
+            return [f'<path class={name} fill="{GROUND}" stroke="{ink}" d="{data}"/>']
         case Cross(center=center, size=size):
             x, y, arm = float(center[0]), -float(center[1]), _number(size)
             start = f"M{_number(x - 0.5 * size)} {_number(y)}h{arm}"

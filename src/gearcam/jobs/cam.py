@@ -24,8 +24,8 @@ from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import CAM_KIND
 
 if TYPE_CHECKING:
+    from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
-    from gearcam.parts.part import Part
 
 NAME = "cam"
 """Stem of the cam's files."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing
     from gearcam.export.dxf import DxfStyle
-    from gearcam.parts.part import Part
+    from gearcam.parts.body import Part
     from gearcam.solids import Mesh
 
 STEP_PART = 2e-3

@@ -34,8 +34,8 @@ from gearcam.parts.blank import Blank
 
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing
+    from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
-    from gearcam.parts.part import Part
 
 MESHING = "meshing.csv"
 """The rows of a meshing study."""

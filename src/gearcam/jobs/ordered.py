@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from gearcam.gears.pair import Gear
 from gearcam.gears.rolling import Plane
+from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Place
-from gearcam.parts.part import Mark, Part
 
 if TYPE_CHECKING:
     from gearcam.jobs.gear_pair import GearPairJob

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from gearcam.export.dxf import DxfStyle
     from gearcam.jobs.gear_pair import GearPairJob
     from gearcam.parts.blank import WheelBlank
-    from gearcam.parts.part import Part
+    from gearcam.parts.body import Part
 
 
 def sheet_files(job: GearPairJob, pair: Drawing, style: DxfStyle, ending: str) -> dict[str, bytes]:

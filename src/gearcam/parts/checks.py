@@ -12,7 +12,7 @@ from functools import cached_property
 from gearcam.findings import Finding, check
 from gearcam.numerals import decimal, shown
 from gearcam.parts.blank import CAM_KIND, KIND
-from gearcam.parts.part import Part
+from gearcam.parts.body import Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param

@@ -12,8 +12,8 @@ import numpy as np
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Hub, Mark, Part
 from gearcam.parts.openings import Place, openings
-from gearcam.parts.part import Hub, Mark, Part
 
 Marker = Callable[[], Mark]
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
-from gearcam.parts.part import Mark
+from gearcam.parts.body import Mark
 
 MARK_DIAMETER: Final = 0.4
 """Diameter of a timing mark, modules: seen by eye, smaller than any rim that carries teeth."""

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.part import Opening
+from gearcam.parts.body import Opening
 from gearcam.parts.shapes import Circle, Loop
 
 if TYPE_CHECKING:

@@ -19,9 +19,10 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import part_features, placed
+from gearcam.drawings import INNER, part_features, placed, reach
 from gearcam.numerals import decimal
-from gearcam.parts.part import Hub, Part
+from gearcam.numeric.contour import Contour
+from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
 from gearcam.sheets.extent import true_points
@@ -65,12 +66,11 @@ class _Bore:
 
 def _bore(part: Part) -> _Bore | None:
     """Read the bore's sizes from its shape."""
-    shapes = [opening.shape for opening in part.openings if opening.kind == "BORE"]
-    if not shapes:
-        return None
-    shape = shapes[0]
+    shape = next((one.shape for one in part.openings if one.kind == "BORE"), None)
     if isinstance(shape, Circle):
         return _Bore(radius=0.5 * shape.diameter)
+    if not isinstance(shape, Loop):
+        return None
     corners = shape.vertices @ np.array([1.0, 1j])
     floor = corners[[-1, -2]] if len(corners) == 5 else corners[[0, -1]]
     middle = complex(floor.mean())
@@ -175,7 +175,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
 
 def _front_view(board: Board, wheel: _Wheel) -> None:
     part = wheel.part
-    for feature in part_features(part, len(part.contours) - 1):
+    for feature in part_features(part, -1):
         board.draw(feature.layer, feature.shape)
     if part.hub is not None:
         circle = Circle(center=np.zeros(2), diameter=part.hub.diameter)
@@ -196,11 +196,13 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     """Draw the view from the left, its back at x = `left`."""
     part, hub, unit = wheel.part, wheel.hub, board.unit
     back, end = left + hub.back, left + part.thickness
-    for contour, low, high in part.plates:
-        ys = true_points([contour])[:, 1]
-        _rectangle(board, (back + low, float(ys.min())), (back + high, float(ys.max())))
-    for low, high in part.bosses:
-        _rectangle(board, (back + low, -0.5 * hub.diameter), (back + high, 0.5 * hub.diameter))
+    for layer in part.layers:
+        low, high = back + layer.low, back + layer.high
+        bottom, top = _span(layer.edge)
+        _rectangle(board, (low, bottom), (high, top))
+        for opening in layer.openings:
+            for y in _span(opening.shape) if opening.kind == INNER else ():
+                board.line(HIDDEN, (low, y), (high, y))
     if wheel.turns:
         over = OVERHANG * unit
         board.line(CENTERLINE, (left - over, 0.0), (end + over, 0.0))
@@ -209,7 +211,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
             board.line(HIDDEN, (left, y), (end, y))
     base = float(wheel.low[1])
     lengths = [(back, back + part.width)]
-    lengths += [(back + low, back + high) for low, high in part.bosses]
+    lengths += [(back + boss.low, back + boss.high) for boss in part.bosses]
     lengths += [(left, end)] if part.hub is not None else []
     for level, (low, high) in enumerate(lengths):
         y = [base if (x in (back, back + part.width)) else -0.5 * hub.diameter for x in (low, high)]
@@ -226,6 +228,12 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
         x = end if front else left
         at = end + (FIRST_LEVEL + LEVEL * level) * unit if front else left - FIRST_LEVEL * unit
         board.linear((x, -radius), (x, radius), at, vertical=True, prefix="Ø")
+
+
+def _span(edge: Edge) -> tuple[float, float]:
+    """Return how far an edge reaches along y, mm."""
+    ys = (true_points([edge]) if isinstance(edge, Contour) else reach(edge))[:, 1]
+    return float(ys.min()), float(ys.max())
 
 
 def _rectangle(board: Board, low: tuple[float, float], high: tuple[float, float]) -> None:
