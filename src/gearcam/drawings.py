@@ -17,7 +17,7 @@ Depends on parts and numeric, numpy only.
 from __future__ import annotations
 
 import cmath
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -50,6 +50,9 @@ LABEL: Final = "LABEL"
 OUTER: Final = (OUTLINE, PROFILE)
 THROUGH: Final = (BORE, HOLE, SLOT, INNER)
 """Kinds that are cut: around the part, and right through it."""
+
+DASHED: Final = (CENTRODE, PITCH, PRIME)
+"""Kinds that are drawn dashed."""
 
 KERF: Final = "_KERF"
 """End of layers that hold paths of a cutter, not edges of the part."""
@@ -164,6 +167,19 @@ def reach(shape: Shape) -> Array:
             return points
         case Circle(center=center, diameter=size) | Cross(center=center, size=size):
             return np.array([center - 0.5 * size, center + 0.5 * size])
+
+
+def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Array, bool]]:
+    """Yield the chains of points of a `shape`, chords within `sagitta`, mm, and if they close."""
+    match shape:
+        case Path(points=points, closed=closed):
+            yield points, closed
+        case Cross(center=center, size=size):
+            arm = np.array([[-0.5 * size, 0.0], [0.5 * size, 0.0]])
+            yield center + arm, False
+            yield center + arm[:, ::-1], False
+        case _:
+            yield shape.points(sagitta), True
 
 
 def place(

@@ -15,10 +15,9 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import CENTRODE, OUTLINE, THROUGH, Circle, Cross, Feature, Loop, Path
+from gearcam.drawings import CENTRODE, OUTLINE, THROUGH, Circle, Feature, chains
 from gearcam.numerals import decimal
-from gearcam.numeric.contour import Contour
-from gearcam.sheets import CENTERLINE, EDGE, HIDDEN, Sheet, Strokes, Text
+from gearcam.sheets.sheet import CENTERLINE, EDGE, HIDDEN, DrawnDimension, Sheet, Text
 
 Array = NDArray[np.float64]
 
@@ -84,23 +83,13 @@ def _feature(sheet: Sheet, feature: Feature) -> str:
     style += f' stroke-width="{width}"'
     if kind in DASHES:
         style += f' stroke-dasharray="{DASHES[kind]}"'
-    shape = feature.shape
-    match shape:
-        case Circle(center=center, diameter=diameter):
-            ((x, y),) = _on_page(sheet, center[None, :])
-            radius = decimal(0.5 * diameter * sheet.scale)
-            return f'<circle {style} cx="{decimal(x)}" cy="{decimal(y)}" r="{radius}"/>'
-        case Cross(center=center, size=size):
-            flat = np.array([[-0.5 * size, 0.0], [0.5 * size, 0.0]])
-            arms = [_data(sheet, center + arm, closed=False) for arm in (flat, flat[:, ::-1])]
-            return f'<path {style} d="{"".join(arms)}"/>'
-        case Path(points=points, closed=closed):
-            return f'<path {style} d="{_data(sheet, points, closed=closed)}"/>'
-        case Contour(vertices=points):
-            return f'<path {style} d="{_data(sheet, points, closed=True)}"/>'
-        case Loop():
-            points = shape.points(SAGITTA / sheet.scale)
-            return f'<path {style} d="{_data(sheet, points, closed=True)}"/>'
+    if isinstance(circle := feature.shape, Circle):
+        ((x, y),) = _on_page(sheet, circle.center[None, :])
+        radius = decimal(0.5 * circle.diameter * sheet.scale)
+        return f'<circle {style} cx="{decimal(x)}" cy="{decimal(y)}" r="{radius}"/>'
+    drawn = chains(feature.shape, SAGITTA / sheet.scale)
+    data = "".join(_data(sheet, points, closed=closed) for points, closed in drawn)
+    return f'<path {style} d="{data}"/>'
 
 
 def _data(sheet: Sheet, points: Array, *, closed: bool) -> str:
@@ -111,7 +100,7 @@ def _data(sheet: Sheet, points: Array, *, closed: bool) -> str:
     return f"M{steps}" + ("Z" if closed else "")
 
 
-def _dimension(sheet: Sheet, one: Strokes) -> str:
+def _dimension(sheet: Sheet, one: DrawnDimension) -> str:
     data = "".join(_data(sheet, line, closed=False) for line in one.lines)
     return f'<path class="dimension" d="{data}"/>'
 

@@ -20,23 +20,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import (
-    CENTRODE,
+    DASHED,
     FOLLOWER,
-    INNER,
     MARK,
-    PITCH,
-    PRIME,
+    OUTLINE,
+    PROFILE,
     Circle,
     Cross,
     Drawing,
     Feature,
     Loop,
     Path,
+    chains,
     reach,
 )
 from gearcam.numerals import decimal, shown
 from gearcam.numeric.bulges import as_complex
-from gearcam.numeric.contour import Contour
 
 Array = NDArray[np.float64]
 
@@ -113,7 +112,7 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
         f"<title>{escape(title)}</title>",
         f"<rect {ground}/>",
         f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
-        *(line for feature in drawing.features for line in _element(feature, pixel)),
+        *(_element(feature, pixel) for feature in drawing.features),
         "</g>",
         *_caption(lines, float(low[0]), base, size),
         "</svg>",
@@ -140,38 +139,30 @@ def _caption(lines: Sequence[str], left: float, base: float, size: float) -> lis
     return made
 
 
-def _element(feature: Feature, pixel: float) -> list[str]:
-    """Return the SVG elements of one feature; the class is its layer."""
+def _element(feature: Feature, pixel: float) -> str:
+    """Return the SVG element of one feature; the class is its layer."""
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
     wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
-    dash = f'stroke-dasharray="{_number(7 * pixel)} {_number(4 * pixel)}"'
+    inside = {MARK: ink, FOLLOWER: fill, OUTLINE: fill, PROFILE: fill}.get(feature.kind, GROUND)
+    line = f'stroke="{ink}"'
+    if feature.kind in DASHED:
+        dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
+        line = f'stroke="{CENTRODE_INK}" stroke-dasharray="{dash}"'
+    elif isinstance(shape, Cross):
+        line = f'stroke="{TEXT_INK}"'
+    if feature.kind in DASHED or isinstance(shape, Path | Cross):
+        inside = "none"
+    style = f'class={name} fill="{inside}" {line}'
     match shape:
-        case Contour(vertices=points) if feature.kind == PITCH:
-            style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
-            return [f'<path class={name} {style} d="{_data(points, True)}"/>']
-        case Contour(vertices=points):
-            style = f'fill="{GROUND if feature.kind == INNER else fill}" stroke="{ink}"'
-            return [f'<path class={name} {style} d="{_data(points, True)}"/>']
-        case Path(points=points, closed=closed):
-            style = f'fill="none" stroke="{ink}"'
-            if feature.kind == CENTRODE:
-                style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
-            return [f'<path class={name} {style} d="{_data(points, closed)}"/>']
         case Circle(center=center, diameter=diameter):
-            inside = {MARK: ink, PRIME: "none", FOLLOWER: fill}.get(feature.kind, GROUND)
-            line = f'{CENTRODE_INK}" {dash}' if feature.kind == PRIME else f'{ink}"'
             place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'
-            size = f'r="{_number(0.5 * diameter)}"'
-            return [f'<circle class={name} {place} {size} fill="{inside}" stroke="{line}/>']
+            return f'<circle {style} {place} r="{_number(0.5 * diameter)}"/>'
         case Loop():
             data = arc_data(shape.vertices, shape.bulges)
-            return [f'<path class={name} fill="{GROUND}" stroke="{ink}" d="{data}"/>']
-        case Cross(center=center, size=size):
-            x, y, arm = float(center[0]), -float(center[1]), _number(size)
-            start = f"M{_number(x - 0.5 * size)} {_number(y)}h{arm}"
-            upright = f"M{_number(x)} {_number(y - 0.5 * size)}v{arm}"
-            return [f'<path class={name} fill="none" stroke="{TEXT_INK}" d="{start}{upright}"/>']
+        case _:
+            data = "".join(_data(points, closed) for points, closed in chains(shape, THINNING))
+    return f'<path {style} d="{data}"/>'
 
 
 def _data(points: Array, closed: bool) -> str:

@@ -102,11 +102,11 @@ class CamJob(Job):
     def part(self) -> Part:
         """The cam as a part: bore, hub, holes, moved edges."""
         from gearcam.parts.make import finished, make_part
-        from gearcam.parts.openings import RIM, Place
+        from gearcam.parts.openings import RIM, Workpiece
 
         profile, thickness = self.profile, self.design.cam.thickness
         with self._stage("part"):
-            place = Place(wheel=None, module=_RIM_PART * thickness / RIM)
+            place = Workpiece(wheel=None, module=_RIM_PART * thickness / RIM)
             blank = self.design.blank
             return make_part(NAME, [finished(profile, blank, place)], thickness, blank, place)
 

@@ -15,7 +15,7 @@ from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.openings import Place
+from gearcam.parts.openings import Workpiece
 
 if TYPE_CHECKING:
     from gearcam.jobs.gear_pair import GearPairJob
@@ -65,7 +65,7 @@ def _part(job: GearPairJob, number: int) -> Part:
         contours,
         job.design.pair.face_width,
         blank,
-        Place(wheel=number, module=job.pair.module, travel=travel),
+        Workpiece(wheel=number, module=job.pair.module, travel=travel),
         None if rack else lambda: _mark(job, gear),
     )
 
