@@ -10,12 +10,14 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import logging
 import os
 import shlex
 import sys
 import textwrap
 import time
 import traceback
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -79,6 +81,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with contextlib.suppress(AttributeError, ValueError):
             stream.reconfigure(errors="backslashreplace")  # pyright: ignore[reportAttributeAccessIssue]
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None and not (sys.warnoptions or "--debug" in words or os.environ.get(DEBUG)):
+        # libraries warn programmers; errors are told all the same
+        warnings.simplefilter("ignore")
+        logging.getLogger().addHandler(logging.NullHandler())
     try:
         _dispatch(words)
     except SystemExit as stop:

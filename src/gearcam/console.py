@@ -14,6 +14,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
+from gearcam.numerals import decimal, shown
+
 if TYPE_CHECKING:
     from gearcam.advice import Remedies
     from gearcam.designs.listing import Listed
@@ -26,6 +28,9 @@ DEBUG: Final = "GEARCAM_DEBUG"
 """The variable that asks for tracebacks."""
 
 _WIDTH: Final = 96
+
+_ROUNDING: Final = 1e-9
+"""What is smaller, mm, is rounding of a study."""
 
 
 def fact_lines(facts: Facts) -> Iterator[str]:
@@ -113,7 +118,7 @@ def _stale_lines(stale: Mapping[str, str | None]) -> Iterator[str]:
 
 
 def _number(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{value:.6g} {unit}".rstrip()
+    return "" if value is None else f"{shown(value)} {unit}".rstrip()
 
 
 def _size(path: Path) -> str:
@@ -123,7 +128,7 @@ def _size(path: Path) -> str:
         return ""
     if count < 1000:
         return f"{count} B"
-    return f"{count / 1e3:.1f} kB" if count < 1e6 else f"{count / 1e6:.1f} MB"
+    return f"{decimal(count / 1e3, 1)} kB" if count < 1e6 else f"{decimal(count / 1e6, 1)} MB"
 
 
 def fault_text(error: Exception, file: str) -> str:
@@ -157,7 +162,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more" if found.found else "a remedy"
-        yield f"the search for {sought} was given up after {found.seconds:g} s"
+        yield f"the search for {sought} was given up after {shown(found.seconds)} s"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 
@@ -171,7 +176,7 @@ def _value(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, float):
-        return f"{value:.10g}"
+        return shown(value, 10)
     return json.dumps(value)
 
 

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
 
+from gearcam.numerals import shown
+
 _UNITS: Final = {
     "_per_mm": "1/mm",
     "_kg_m3": "kg/m3",
@@ -89,21 +91,21 @@ class NamedFact:
     @property
     def text(self) -> str:
         """The value with its unit: ``0.4 to 1.6``, ``36 : 36``, ``4.92299 mm``."""
-        return f"{shown(self.value)} {self.unit}".rstrip()
+        return f"{text_of(self.value)} {self.unit}".rstrip()
 
 
-def shown(value: Any) -> str:
-    """Return a value as people read it, numbers in six digits."""
+def text_of(value: Any) -> str:
+    """Return a `value` as people read it, numbers in few digits."""
     if isinstance(value, Mapping):
-        low, high = map(shown, value.values())
+        low, high = map(text_of, value.values())
         if low == high:
             return low
         return f"{low} to {high}" if "max" in value else f"{low}, mean {high}"
     if isinstance(value, list | tuple):
-        return " : ".join(map(shown, value))
+        return " : ".join(map(text_of, value))
     if isinstance(value, bool | str):
         return str(value)
-    return f"{value:.6g}"
+    return shown(value)
 
 
 class Facts(Mapping[str, Any]):

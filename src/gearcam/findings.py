@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
+from gearcam.numerals import settled
 from gearcam.quantities import Param
 
 Severity = Literal["note", "warning", "error"]
@@ -30,7 +31,8 @@ class Finding:
     message : str
         One or two plain sentences.
     value, limit : float or None
-        The number found and the limit it is held against, in `unit`.
+        The number found and the limit it is held against, in `unit`; rounding noise against the
+        limit is 0.
     unit : str
         Unit of both.
     where : str
@@ -44,6 +46,10 @@ class Finding:
     limit: float | None = None
     unit: str = ""
     where: str = ""
+
+    def __post_init__(self) -> None:
+        if self.value is not None and self.limit is not None:
+            object.__setattr__(self, "value", settled(self.value, self.limit))
 
     def as_dict(self) -> dict[str, Any]:
         """Return the finding for JSON: what does not exist is left out."""

@@ -23,6 +23,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Facts
 from gearcam.findings import Finding
+from gearcam.numerals import tree
 from gearcam.tolerances import DEFAULT, Tolerances
 from gearcam.version import __version__
 
@@ -229,19 +230,21 @@ class Result(ABC):
         made = self.design_hash
         hashes = {name: made if name in contents else old for name, old in there.items()}
         stale = {name: old for name, old in hashes.items() if old != made}
-        summary = {
-            "format": FORMAT,
-            "name": self.design.name,
-            "kind": self.design.kind,
-            **facts.document,
-            "hash": made,
-            "files": {name: made for name in hashes if name not in stale},
-            **({"stale": stale} if stale else {}),
-            "findings": [finding.as_dict() for finding in findings],
-            "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
-            "versions": _versions(),
-            "design": document_of(self.design),
-        }
+        summary = tree(
+            {
+                "format": FORMAT,
+                "name": self.design.name,
+                "kind": self.design.kind,
+                **facts.document,
+                "hash": made,
+                "files": {name: made for name in hashes if name not in stale},
+                **({"stale": stale} if stale else {}),
+                "findings": [finding.as_dict() for finding in findings],
+                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
+                "versions": _versions(),
+                "design": document_of(self.design),
+            }
+        )
         text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
         everything = {**contents, SUMMARY: (text + "\n").encode()}
         folder = Path(directory) / self.design.name

@@ -21,6 +21,10 @@ _SUFFIX = re.compile(r"_(deg|rad|mm|cm|m|in|inch|rpm|um)$")
 _KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 _SHOWN: Final = 60
 
+_SURE: Final = 0.75
+"""Likeness of words (twice the letters that they share over the letters of both) from which the
+first letter may be wrong too, which it rarely is in a slip."""
+
 
 @dataclass(frozen=True)
 class Fault:
@@ -75,7 +79,9 @@ def show(value: Any) -> str:
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the known word that was probably meant, or nothing."""
     by_lower = {name.lower(): name for name in known}
-    close = difflib.get_close_matches(word.lower(), by_lower, n=1)
+    meant = word.lower()
+    close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=_SURE)
+    close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
     return by_lower[close[0]] if close else ""
 
 

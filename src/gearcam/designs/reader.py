@@ -17,6 +17,9 @@ from gearcam.designs.lines import line_at, lines_of
 from gearcam.errors import DesignError, Problem
 
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+_COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
+"""A number with a decimal comma at the end of a line."""
+
 _PLAIN: Final = {
     "Invalid value": "this value cannot be read (texts stand in quotes, numbers use a point)",
     "Invalid statement": "this line is neither a table [name] nor key = value",
@@ -191,7 +194,10 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
     what = message[: place.start()] if place else message
     what = _PLAIN.get(what, what)
     if place and place.group(1):
-        return Problem(f"column {place.group(2)}: {what}", file=file, line=int(place.group(1)))
+        line = int(place.group(1))
+        comma = _COMMA.search(text.split("\n")[line - 1])
+        hint = f"use a decimal point: {comma[1]}.{comma[2]}" if comma else ""
+        return Problem(f"column {place.group(2)}: {what}", file=file, line=line, hint=hint)
     if place:
         last = text.rstrip().count("\n") + 1
         return Problem(f"{what} (the file ends)", file=file, line=last)

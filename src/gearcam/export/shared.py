@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from gearcam.drawings import Drawing
     from gearcam.export.dxf import DxfStyle
     from gearcam.facts import Facts
-    from gearcam.parts.part import Part
+    from gearcam.parts.body import Part
     from gearcam.parts.tools import ToolLimits
     from gearcam.solids import Mesh
 

@@ -20,8 +20,8 @@ from gearcam.result import Progress, Result, Written
 from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
+    from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
-    from gearcam.parts.part import Part
 
 CAM: Final = "cam"
 """Stem of the cam's files."""
@@ -96,11 +96,11 @@ class CamResult(Result):
     def part(self) -> Part:
         """The cam as a part: bore, hub, holes, moved edges."""
         from gearcam.parts.make import finished, make_part
-        from gearcam.parts.openings import RIM, Place
+        from gearcam.parts.openings import RIM, Workpiece
 
         profile, thickness = self.profile, self.design.cam.thickness
         with self.stage("part"):
-            place = Place(wheel=None, module=_RIM_PART * thickness / RIM)
+            place = Workpiece(wheel=None, module=_RIM_PART * thickness / RIM)
             blank = self.design.blank
             return make_part(CAM, [finished(profile, blank, place)], thickness, blank, place)
 

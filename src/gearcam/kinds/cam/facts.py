@@ -12,6 +12,7 @@ from gearcam.cams.checks import KIND, PRESSURE
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
+from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.cams.measures import Range
@@ -142,7 +143,7 @@ def _pressure(result: CamResult) -> Tree:
                 math.degrees(found.largest),
                 f"pressure angle, {kind}",
                 at_most=math.degrees(limit),
-                place=f"at {math.degrees(worst.theta):.6g} deg",
+                place=f"at {shown(math.degrees(worst.theta), scale=360.0)} deg",
                 unit="deg",
                 shown=found.largest > 0.0,
             )

@@ -29,8 +29,8 @@ from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing
+    from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
-    from gearcam.parts.part import Part
 
 MESHING = "meshing.csv"
 """The rows of a meshing study."""

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from gearcam.gears.pair import Gear
 from gearcam.gears.rolling import Plane
+from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.openings import Place
-from gearcam.parts.part import Mark, Part
+from gearcam.parts.openings import Workpiece
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
@@ -65,7 +65,7 @@ def _part(result: GearPairResult, number: int) -> Part:
         contours,
         result.design.pair.face_width,
         blank,
-        Place(wheel=number, module=result.pair.module, travel=travel),
+        Workpiece(wheel=number, module=result.pair.module, travel=travel),
         None if rack else lambda: _mark(result, gear),
     )
 
