@@ -42,7 +42,7 @@ def _reach(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array]:
     far = _FAR * replace(toothing.cutter, kc=0.0).reach
     cusps = find_cusps(toothing, sf, sigma, -far, far)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, far))
-    return cusps.dedendum, sigma * (sf - toothing.rolling.arc_length(tips.phi))
+    return cusps.dedendum, sigma * (sf - toothing.track.arc_length(tips.phi))
 
 
 def demand_cutters(first: Toothing, second: Toothing) -> None:
@@ -62,7 +62,7 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
         cutter = toothing.cutter
         if cutter.fits:
             continue
-        radius = -1.0 / float(toothing.rolling.curvature_extremes(toothing.wheel)[1].min())
+        radius = -1.0 / float(toothing.track.curvature_extremes[1].min())
         least, bound = cutter.least_concave_radius, contact_bound(first, second)
         drives = bound >= 1.0
         raise InfeasibleError(

@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Frames, Plane
+from gearcam.gears.guide import Guide
+from gearcam.gears.track import Frames, Plane, Track, Wheel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -51,6 +52,8 @@ class Mounting:
     ----------
     toothings : (Toothing, Toothing)
         Driver and driven wheel.
+    guide : Guide
+        What guides the driven one.
     side : {-1, +1}
         sigma of the driver's flanks.
     distance : float, mm
@@ -58,13 +61,23 @@ class Mounting:
     """
 
     toothings: tuple[Toothing, Toothing]
+    guide: Guide
     side: int
     distance: float
+
+    @property
+    def track(self) -> Track:
+        """The driver's track; the driven one shares its parameter and arc length."""
+        return self.toothings[0].track
 
     @property
     def pitch(self) -> float:
         """Pitch, mm."""
         return self.toothings[0].pitch
+
+    def sigma(self, wheel: Wheel) -> int:
+        """Return sigma of a wheel's flanks."""
+        return self.side if wheel == 1 else -self.side
 
 
 class Pose(NamedTuple):
@@ -148,22 +161,17 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
         toothing.frames(angle)
         for toothing, angle in zip(mounting.toothings, (one, two), strict=True)
     )
-    rolling, alpha = mounting.toothings[0].rolling, mounting.toothings[0].cutter.alpha
-    law, size = rolling.law, rolling.center_distance
-    cosine, tilt = math.cos(alpha), complex(math.cos(alpha), -mounting.side * math.sin(alpha))
-    turned = np.exp(-1j * phi1)
-    foot1, n1 = first.p * turned, first.t * (tilt * turned)
-    nominal, ratio = law.phi2(phi1), law.derivatives(phi1, 0)[0]
-    if law.feeds:
-        foot2 = second.p - 1j * (size * nominal + lead) + mounting.distance
-        tangent2, carried, turns = second.t, np.full(phi1.shape, -1j), 0.0
-        ratio = size * ratio
-    else:
-        back = np.exp(1j * (nominal + lead))
-        foot2, tangent2, turns = second.p * back, second.t * back, 1.0
-        carried = 1j * foot2
-        foot2 = foot2 + mounting.distance
-    n2 = tangent2 * tilt
+    guide, alpha = mounting.guide, mounting.toothings[0].cutter.alpha
+    cosine, turned = math.cos(alpha), np.exp(-1j * phi1)
+    n1, n2 = (
+        toothing.normals(frames, mounting.sigma(toothing.wheel))
+        for toothing, frames in zip(mounting.toothings, (first, second), strict=True)
+    )
+    back, shift = guide.stand(phi1, lead)
+    foot1, n1 = first.p * turned, n1 * turned
+    foot2, n2, tangent2 = second.p * back + shift, n2 * back, second.t * back
+    carried, turns, ratio = guide.carried(foot2), guide.turns, guide.rate(phi1)
+    foot2 = foot2 + mounting.distance
     across = np.conj(n1) * (foot2 - foot1)
     aligned = np.conj(n2) * n1
     distance = across.real + (first.s - second.s + play) * cosine

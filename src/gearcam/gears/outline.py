@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
-from gearcam.gears.flank import Kind, Rows, Toothing
+from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.rounding import round_tips
 from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
@@ -104,7 +104,7 @@ class Outline:
     @property
     def _reversed(self) -> bool:
         """Whether rising s runs clockwise."""
-        return self.toothing.wheel == 2
+        return self.toothing.track.clockwise
 
     @cached_property
     def toothed(self) -> Array:
@@ -231,7 +231,7 @@ def _find_flanks(
     cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
     if mate is not None and tolerance is not None:
-        reach = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+        reach = sigma * (sf - toothing.track.arc_length(tips.phi))
 
         def mate_outline() -> Array:
             return build_outline(mate, toothing, tolerance, tolerances, follow=False).points
@@ -241,7 +241,7 @@ def _find_flanks(
             limit = np.where(allowed < reach, allowed, np.minimum(cusps.addendum, mate_reach))
             tips = find_tips(toothing, sf, sigma, limit)
     tips = _sharpen(toothing, sf, sigma, tips)
-    highest = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+    highest = sigma * (sf - toothing.track.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
     addendum = np.where(cusps.addendum <= highest * (1.0 + 1e-12), cusps.addendum, np.inf)
     lowest = np.full(2 * z, -toothing.cutter.reach)
@@ -263,10 +263,10 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
         return tips
     phi, foot, height = tips.phi.copy(), tips.foot.copy(), tips.height.copy()
     full = tips.full.copy()
-    base = toothing.rolling.angle(sf)
+    base = toothing.track.angle(sf)
     zero = np.zeros(2 * z)
     rows = Rows(
-        kind=np.full(2 * z, Kind.FLANK),
+        kind=np.full(2 * z, Curve.FLANK),
         sf=sf,
         sigma=sigma,
         start=base,
@@ -306,7 +306,7 @@ def _assemble(
     joined = join(parts)
     if not toothing.closed:
         joined = cut_ends(toothing, joined, flanks.tips)
-    pointed = (joined.kind == Kind.TIP) & (joined.start == joined.end)
+    pointed = (joined.kind == Curve.TIP) & (joined.start == joined.end)
     joined = select(joined, np.flatnonzero(~pointed))
     flanks = replace(flanks, lowest=lowest)
     if not toothing.rounding:
@@ -324,10 +324,10 @@ def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossin
     z, first = len(toothing.numbers), toothing.numbers[0]
     for crossing in crossings:
         for number, phi in ((crossing.before, crossing.leaves), (crossing.after, crossing.enters)):
-            if rows.kind[number] == Kind.FLANK:
+            if rows.kind[number] == Curve.FLANK:
                 sf, sigma = rows.sf[number], rows.sigma[number]
                 flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
-                reach = sigma * (sf - float(toothing.rolling.arc_length(phi)))
+                reach = sigma * (sf - float(toothing.track.arc_length(phi)))
                 # A flank that crosses itself counts down to its first loop only.
                 lowest[flank] = max(lowest[flank], reach)
 
@@ -340,7 +340,7 @@ def _demand_simple(outline: Outline) -> None:
     if LinearRing(outline.points).is_simple and not repeats:
         return
     toothing = outline.toothing
-    kappa = float(toothing.rolling.curvature_extremes(toothing.wheel)[1].max())
+    kappa = float(toothing.track.curvature_extremes[1].max())
     largest = np.sin(toothing.cutter.alpha) ** 2 / kappa if kappa > 0.0 else 0.0
     raise InfeasibleError(
         f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
@@ -361,7 +361,7 @@ def _demand_shaft(outline: Outline) -> None:
     if abs(float(np.angle(points[1:] * np.conj(points[:-1])).sum())) > np.pi:
         return
     toothing = outline.toothing
-    turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+    turn = toothing.track.around
     radius = float(np.abs(toothing.frames(np.linspace(0.0, turn, 1441)).p).min())
     module = toothing.pitch / np.pi
     largest = module * radius / toothing.cutter.dedendum

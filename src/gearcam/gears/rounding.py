@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.gears.flank import Kind, Rows, Toothing
-from gearcam.gears.rolling import Frames, Plane
+from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
+from gearcam.gears.track import Frames, Plane
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -92,7 +92,7 @@ def _arcs(toothing: Toothing, rows: Rows, radius: float) -> tuple[Rows, Array, I
             return None
         phi[pairs[0]], phi[pairs[1]] = both
         fits[pairs] = True
-    s = toothing.rolling.arc_length(phi)
+    s = toothing.track.arc_length(phi)
     reach = joints.sigma * (joints.sf - s)
     if not (fits.all() and bool(np.all(reach > 0.0))):
         return None
@@ -110,8 +110,8 @@ class _Joints:
         this, after = np.arange(size), np.roll(np.arange(size), -1)
         if not toothing.closed:
             this, after = this[:-1], after[:-1]
-        turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
-        flank, tip = kind == Kind.FLANK, kind == Kind.TIP
+        turn = toothing.track.around
+        flank, tip = kind == Curve.FLANK, kind == Curve.TIP
         rises, falls = flank & (rows.sigma < 0.0), flank & (rows.sigma > 0.0)
         up = np.flatnonzero(rises[this] & tip[after])
         down = np.flatnonzero(tip[this] & falls[after])
@@ -178,7 +178,7 @@ def _meet(
     """Find the driver angles, rad, (2, n), at which both moved flanks of teeth cross."""
     row, sigma = joints.row[pairs], joints.sigma[pairs]
     sf = joints.sf[pairs] - sigma * radius / math.cos(toothing.cutter.alpha)
-    turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+    turn = toothing.track.around
     phi = np.where(sigma < 0.0, rows.end[row], rows.start[row])
     # at the seam both flanks are told in one turn
     seam = np.where(np.abs(sf[0] - sf[1]) > toothing.length / 2.0, 1.0, 0.0)
@@ -227,7 +227,7 @@ def _put_in(
     shortened = replace(rows, start=start, end=end, low=low, high=high, corner=corner)
 
     frames = toothing.frames(phi)
-    sides = joints.sigma * frames.t * (np.cos(alpha) + joints.sigma * np.sin(alpha) * w)
+    sides = joints.sigma * toothing.normals(frames, joints.sigma)
     way = _tip_curve(toothing, rows, joints, foot, toothing.frames(foot))[1]
     others = w * way / np.abs(way)
     others[pairs[0]] = sides[pairs[1]]
@@ -237,7 +237,7 @@ def _put_in(
     first = np.angle(np.where(rising, sides, others))
     at = np.flatnonzero(own)
     arcs = Rows(
-        kind=np.full(at.size, Kind.ROUND),
+        kind=np.full(at.size, Curve.ROUND),
         sf=(joints.sf - joints.sigma * radius / math.cos(alpha))[at],
         sigma=joints.sigma[at],
         start=np.where(rising, phi, phi - 1.0)[at],

@@ -50,25 +50,20 @@ class Subject:
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
         """Extremes of the centrodes' slope psi, ``tan(psi) = r1'/r1``: phi1, rad, and psi, rad."""
-        law = self.pair.law
 
         def slope(phi: Array) -> tuple[Array, Array]:
-            i, di, ddi = law.ratio.derivatives(phi, 2)
-            factor = 1.0 if law.feeds else 1.0 / (1.0 + i)
-            tangent = di / i * factor  # r1'/r1
-            bend = ddi / i * factor - tangent * tangent
-            if not law.feeds:
-                bend = bend - 2.0 * di * di / i * factor * factor
-            return np.arctan(tangent)[None], (bend / (1.0 + tangent * tangent))[None]
+            r, dr, ddr = self.pair.rolling.radii(phi, 2)
+            bend = (ddr * r - dr * dr) / (r * r + dr * dr)
+            return np.arctan(dr / r)[None], bend[None]
 
-        ((places, values),) = extremes(slope, law.knots)
+        ((places, values),) = extremes(slope, self.pair.law.knots)
         return places, values
 
     @cached_property
     def accelerations(self) -> tuple[Array, Array]:
         """Extremes of ``d(i21)/dphi1``: phi1, rad, and values; of a rack over its mean speed."""
         law = self.pair.law
-        scale = law.lobes.period / law.lobes.advance if law.feeds else 1.0
+        scale = 1.0 / self.pair.rolling.mean_radius
 
         def change(phi: Array) -> tuple[Array, Array]:
             _, di, ddi = law.ratio.derivatives(phi, 2)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Plane
+from gearcam.gears.track import Plane
 from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     """
     addendum = toothing.cutter.addendum
     phi, foot, height = _quick(toothing, sf, sigma)
-    reach = sigma * (sf - toothing.rolling.arc_length(phi))
+    reach = sigma * (sf - toothing.track.arc_length(phi))
     full = np.isfinite(height) & (reach > 0.0) & (reach <= highest)
     rest = np.flatnonzero(~full)
     if rest.size:
@@ -81,7 +81,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
     """Driver angles of the crossings with the tip curve, and of their feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
-    phi, foot = toothing.rolling.angle(
+    phi, foot = toothing.track.angle(
         np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
     )
     miss = np.full(sf.shape, np.inf, dtype=complex)
@@ -105,10 +105,10 @@ def _search(
     toothing: Toothing, sf: Array, sigma: Array, highest: Array
 ) -> tuple[Array, Array, Array, Mask]:
     """Search tip ends in their bracket: driver angles, feet, heights, whether they are full."""
-    rolling, addendum, w = toothing.rolling, toothing.cutter.addendum, toothing.turn
+    track, addendum, w = toothing.track, toothing.cutter.addendum, toothing.turn
     around = 3.0 * toothing.cutter.half_space + addendum
     near = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
-    start, end, low, high, guess = rolling.angle(
+    start, end, low, high, guess = track.angle(
         np.stack([sf, sf - sigma * highest, sf - around, sf + around, near])
     )
 
@@ -118,9 +118,7 @@ def _search(
         foot = feet(toothing, points, low[at], high[at], guess[at])
         base = toothing.frames(foot)
         outward = base.t * w
-        g = sigma[at] * toothing.regularity(frames, sf[at], sigma[at])
-        normal = frames.t * np.exp(w * sigma[at] * toothing.cutter.alpha)
-        slope = np.real(np.conj(outward) * (-g * frames.speed * w * normal))
+        slope = np.real(np.conj(outward) * toothing.flank_motion(frames, sf[at], sigma[at]))
         return np.real(np.conj(outward) * (points - base.p)), slope, foot
 
     height, _, foot = distance(end, slice(None))
@@ -134,7 +132,7 @@ def _search(
             return value - addendum, slope
 
         first = start[at] + (end - start)[at] * np.clip(addendum / height[at], 0.0, 1.0)
-        tolerance = _ANGLE * rolling.law.lobes.period
+        tolerance = _ANGLE * track.arc.period
         phi[at] = newton_in_bracket(over, start[at], end[at], first, tolerance)
         height[at], _, foot[at] = distance(phi[at], at)
     return phi, foot, height, full
@@ -165,4 +163,4 @@ def feet(toothing: Toothing, points: Plane, low: Array, high: Array, start: Arra
         return along, frames.speed * (1.0 + frames.kappa * out)
 
     inside = np.clip(start, np.minimum(low, high), np.maximum(low, high))
-    return newton_in_bracket(miss, low, high, inside, _ANGLE * toothing.rolling.law.lobes.period)
+    return newton_in_bracket(miss, low, high, inside, _ANGLE * toothing.track.arc.period)

@@ -55,7 +55,7 @@ def find_cusps(
         A cusp is a sign change of g, at a root or at a jump of the curvature.
     """
     sine, cosine = np.sin(toothing.cutter.alpha), np.cos(toothing.cutter.alpha)
-    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    kappa = toothing.track.curvature_extremes[1]
     sides = []
     for reach, worst in ((lowest, kappa.max()), (highest, kappa.min())):
         cusp = np.full(sf.shape, np.copysign(np.inf, reach))
@@ -83,19 +83,18 @@ def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Ar
         lambda x: regularity(x, hit),
         grid[hit, np.maximum(first[hit] - 1, 0)],
         grid[hit, first[hit]],
-        1e-14 * toothing.rolling.law.lobes.period,
+        1e-14 * toothing.track.arc.period,
     )
-    result[hit] = sigma[hit] * (sf[hit] - toothing.rolling.arc_length(phi))
+    result[hit] = sigma[hit] * (sf[hit] - toothing.track.arc_length(phi))
     return result
 
 
 def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
     """Driver angles from w = 0 to `reach`, a flank a row, both sides of every knot among them."""
-    law = toothing.rolling.law
-    start, end = toothing.rolling.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
+    start, end = toothing.track.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
     span = end - start
     columns = [np.broadcast_to(np.linspace(0.0, 1.0, 33), (len(sf), 33))]
-    for nearest in np.moveaxis(law.knots_near(0.5 * (start + end)[:, 0]), -1, 0):
+    for nearest in np.moveaxis(toothing.track.knots_near(0.5 * (start + end)[:, 0]), -1, 0):
         columns += [
             np.clip((nearest[:, None] - start) / span + side, 0.0, 1.0) for side in (-1e-9, 1e-9)
         ]

@@ -53,9 +53,8 @@ def _tables(job: GearPairJob) -> dict[str, bytes]:
     from gearcam.export.table import outline_bytes, table_bytes
 
     phi1 = job.centrode_angles()
-    rolling = job.pair.rolling
     (ratio,), phi2 = job.law.derivatives(phi1, 0), job.law.phi2(phi1)
-    one, two = rolling.frames(1, phi1), rolling.frames(2, phi1)
+    one, two = (track.frames(phi1) for track in job.pair.rolling.tracks)
     with np.errstate(divide="ignore"):
         rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa
     driven = {
@@ -64,7 +63,7 @@ def _tables(job: GearPairJob) -> dict[str, bytes]:
         "r1_mm": np.abs(one.p),
         "r2_mm": np.abs(two.p),
     }
-    if job.law.feeds:
+    if job.pair.on_rack:
         driven = {"way_mm": two.p.imag, "r1_mm": np.abs(one.p)}
     centrodes = {
         "phi1_deg": np.degrees(phi1),
@@ -82,7 +81,7 @@ def _pair_drawing(job: GearPairJob) -> Drawing:
 
     lobes = job.law.lobes
     ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
-    if job.law.feeds:
+    if job.pair.on_rack:
         ends[1] = job.centrode_angles()[-1]
     centrodes = [
         gear.centrode(np.linspace(0.0, end, 721)[: -1 if gear.toothing.closed else None])
@@ -98,7 +97,7 @@ def poses(job: GearPairJob) -> tuple[Pose, Pose]:
     """Return how the wheels of a `job` stand when assembled: wheel 1 turned by -phi1."""
     phi1 = job.design.output.pose
     phi2 = float(job.law.phi2(np.array(phi1)))
-    if job.law.feeds:
+    if job.pair.on_rack:
         return (-phi1, (0.0, 0.0)), (0.0, (0.0, -job.pair.center_distance * phi2))
     return (-phi1, (0.0, 0.0)), (phi2, (job.pair.shift, 0.0))
 

@@ -23,8 +23,8 @@ from gearcam.findings import Finding, in_order, run_checks
 from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.helix import leads, stepped
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
-from gearcam.gears.rolling import Wheel
 from gearcam.gears.spec import Finish
+from gearcam.gears.track import Wheel
 from gearcam.jobs.job import Job, Progress
 from gearcam.jobs.written import Written, finish
 from gearcam.laws.base import RatioLaw
@@ -145,7 +145,7 @@ class GearPairJob(Job):
         """Bore diameters, mm, of circles that hold their keyways; a rack has none."""
         blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
         first, second = (2.0 * blank.bore_reach for blank in blanks)
-        return first or None, None if self.law.feeds else second or None
+        return first or None, None if self.pair.on_rack else second or None
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -203,7 +203,7 @@ class GearPairJob(Job):
     def centrode_angles(self) -> NDArray[np.float64]:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
         lobes = self.law.lobes
-        if self.law.feeds:
+        if self.pair.on_rack:
             end = self.pair.rolling.angle(np.array(self.gear2.toothing.length))
             return np.linspace(0.0, float(end), CENTRODE_POINTS + 1)
         if not lobes.closed:

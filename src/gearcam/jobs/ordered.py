@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.pair import Gear
-from gearcam.gears.rolling import Plane
+from gearcam.gears.track import Plane
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
@@ -51,7 +51,7 @@ def make_parts(job: GearPairJob) -> tuple[Part, Part]:
 def _part(job: GearPairJob, number: int) -> Part:
     gear = job.gears[number - 1]
     contours = [gears[number - 1].profile.contour for gears in job.steps]
-    rack = number == 2 and job.law.feeds
+    rack = gear.toothing.track.slides
     travel = None
     if not job.law.lobes.closed and not rack:
         travel = job.law.lobes.period if number == 1 else job.law.lobes.advance
@@ -71,7 +71,7 @@ def _part(job: GearPairJob, number: int) -> Part:
 
 
 def _mark(job: GearPairJob, gear: Gear) -> Mark:
-    frames = job.pair.rolling.frames(gear.wheel, np.zeros(1))
+    frames = gear.toothing.frames(np.zeros(1))
     radius = complex(frames.p[0])
     normal = complex(frames.t[0]) * gear.toothing.turn
     blank = job.design.blank.wheel(gear.wheel).widened
@@ -131,7 +131,7 @@ def flank_places(gear: Gear, reach: Array) -> tuple[Plane, Plane]:
     """
     flanks, toothing = gear.profile.flanks, gear.toothing
     s = flanks.sf - flanks.sigma * reach
-    frames = toothing.frames(toothing.rolling.angle(s.ravel()))
+    frames = toothing.frames(toothing.track.angle(s.ravel()))
     sf, sigma = (np.tile(values, len(reach)) for values in (flanks.sf, flanks.sigma))
     points = toothing.flank_points(frames, sf, sigma)
     cosine, sine = math.cos(toothing.cutter.alpha), math.sin(toothing.cutter.alpha)

@@ -41,7 +41,7 @@ def sheet_files(job: GearPairJob, pair: Drawing, style: DxfStyle, ending: str) -
     from gearcam.sheets import pair_sheet, wheel_sheet
 
     phi1 = np.array([job.design.output.pose])
-    radius = float(abs(job.pair.rolling.frames(1, phi1).p[0]))
+    radius = float(abs(job.pair.rolling.tracks[0].frames(phi1).p[0]))
     title = job.design.name
     sheets = [
         wheel_sheet(part, wheel_facts(job, gear), title)
@@ -107,7 +107,7 @@ def pair_facts(job: GearPairJob) -> dict[str, str]:
     low, high = (value for _, value in job.law.ratio_range)
     facts = {"law": job.design.law_type, "teeth": f"{job.pair.teeth[0]} : {job.pair.teeth[1]}"}
     facts |= _common(job)
-    if not job.law.feeds:
+    if not job.pair.on_rack:
         facts["ratio i21"] = f"{low:.5g} to {high:.5g}"
     facts["drawn at phi1"] = f"{math.degrees(job.design.output.pose):.6g} deg"
     return facts

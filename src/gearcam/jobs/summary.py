@@ -53,7 +53,7 @@ def summarize(
     low, high = pair.law.ratio_range[0][1], pair.law.ratio_range[1][1]
     size = pair.center_distance
     facts: dict[str, Any] = {"center_distance_mm": size, "ratio": {"min": low, "max": high}}
-    if pair.law.feeds:
+    if pair.on_rack:
         radius = {"min": size * low, "max": size * high}
         facts = {"way_per_turn_mm": size * pair.law.lobes.advance, "radius_mm": radius}
         solved["mm_per_unit_of_r1"] = size

@@ -69,17 +69,17 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
         _demand_travel(first, last, pairs.way)
     if spec.teeth is None:
         return phi1
-    rolling = pairs.toothings[0].rolling
+    track = pairs.track
     wanted = np.isin(pairs.tooth(1, pairs.numbers), spec.teeth)
-    start, end = (rolling.arc_length(edge[wanted]) for edge in pairs.arcs)
-    apart = rolling.arc_length(phi1)[:, None] - start
+    start, end = (track.arc_length(edge[wanted]) for edge in pairs.arcs)
+    apart = track.arc_length(phi1)[:, None] - start
     margin = _BESIDE * pairs.pitch
     if pairs.closed:
-        apart = np.mod(apart + margin, rolling.length(1)) - margin
+        apart = np.mod(apart + margin, track.length) - margin
     inside = (apart >= -margin) & (apart <= end - start + margin)
     chosen = phi1[inside.any(axis=1)]
     if not chosen.size:
-        angles = np.degrees(rolling.angle(0.5 * (start + end)))
+        angles = np.degrees(track.angle(0.5 * (start + end)))
         raise InfeasibleError(
             "none of the phases has one of these teeth in contact",
             where="meshing.teeth",
