@@ -29,7 +29,7 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
     Returns
     -------
     float
-        Smallest of any flank: from tip curve to tip curve, cusps taken off.
+        Smallest of any flank: from addendum curve to addendum curve, cusps taken off.
     """
     half, places = first.half_tooth, first.tooth_places[first.whole]
     sf, sigma = np.concatenate([places + half, places - half]), np.repeat([1.0, -1.0], len(places))
@@ -38,7 +38,7 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
 
 
 def _reach(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array]:
-    """Reach of flanks from their cusps, or without end, to the tip curve, mm."""
+    """Reach of flanks from their cusps, or without end, to the addendum curve, mm."""
     far = _FAR * replace(toothing.cutter, kc=0.0).reach
     cusps = find_cusps(toothing, sf, sigma, -far, far)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, far))

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearcam.findings import Finding, check
-from gearcam.gears.subject import KIND, Subject
+from gearcam.gears.subject import KIND, ROUNDING, Subject
 from gearcam.laws.span import angle_text
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
@@ -125,7 +125,7 @@ def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn where a centrode bends so sharply that teeth have hardly a root."""
     for gear in subject.gears:
         radius = gear.convex_radius / subject.pair.module
-        if radius < limit * (1.0 - 1e-9):
+        if radius < limit * (1.0 - ROUNDING):
             place = float(gear.curvature_places[np.argmax(gear.curvatures)])
             yield Finding(
                 code="sharp",

@@ -35,6 +35,9 @@ DRIVE, COAST = -1, 1
 _EVEN = 1e-12
 """Difference of the places of flanks, in pitches, that is rounding."""
 
+_ONE = 1e-12
+"""Difference of the ends of arcs, in travels, that is rounding: they are one."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FlankPairs(Mounting):
@@ -54,7 +57,7 @@ class FlankPairs(Mounting):
         return all(toothing.closed for toothing in self.toothings)
 
     @cached_property
-    def way(self) -> float:
+    def travel(self) -> float:
         """Driver angle of a turn, of an open pair's travel, or along a rack, rad."""
         if self.toothings[0].closed == self.closed:
             return self.track.around
@@ -100,19 +103,19 @@ class FlankPairs(Mounting):
         flanks, number = self.flanks[wheel - 1], self._flank(wheel, j)
         return flanks.lowest[number], flanks.highest[number]
 
-    def play(self, j: Ints) -> Array:
+    def separation(self, j: Ints) -> Array:
         """Return how far the driven flanks of pairs `j` lie behind the driver's, mm: sf2 - sf1."""
         return self.place(2, j) - self.place(1, j)
 
     @cached_property
     def even(self) -> bool:
         """Whether all pairs of the side touch together."""
-        plays = self.play(self.numbers)
-        return plays.size == 0 or bool(np.ptp(plays) <= _EVEN * self.pitch)
+        found = self.separation(self.numbers)
+        return found.size == 0 or bool(np.ptp(found) <= _EVEN * self.pitch)
 
     @cached_property
     def numbers(self) -> Ints:
-        """Numbers j of the pairs of a turn of the driver, or of the way of an open pair."""
+        """Numbers j of the pairs of a turn of the driver, or of the travel of an open pair."""
         if self.closed:
             return np.arange(self.toothings[0].teeth)
         open_one = next(toothing for toothing in self.toothings if not toothing.closed)
@@ -153,7 +156,7 @@ class FlankPairs(Mounting):
                 places.append(track.angle(self.place(wheel, j) - self.sigma(wheel) * reach))
                 known.append(np.full(j.shape, wheel))
         start = np.concatenate(places)
-        ends, found = touch(self, start, np.tile(self.play(j), 4), np.concatenate(known))
+        ends, found = touch(self, start, np.tile(self.separation(j), 4), np.concatenate(known))
         low1, high1, low2, high2 = ends.phi1.reshape(4, -1)
         first, last = np.maximum(low1, high2), np.minimum(high1, low2)
         if self.side == COAST:
@@ -176,18 +179,18 @@ class FlankPairs(Mounting):
 
     @cached_property
     def stretches(self) -> tuple[Array, Array, Ints]:
-        """Stretches of a turn of the driver, or of an open pair's way, by the pairs that carry.
+        """Stretches of a turn of the driver, or of an open pair's travel, by the pairs that carry.
 
         Driver angles of start and end, rad, and how many pairs carry there: 1 on single-pair arcs,
         2 on double-pair arcs, 0 where no flanks touch.
         """
-        turn = self.way
+        turn = self.travel
         start, end = (edge[self.arcs[1] > self.arcs[0]] for edge in self.arcs)
         turns = np.arange(-1, 2)[:, None] if self.closed else np.zeros((1, 1))
         start, end = ((edge + turn * turns).ravel() for edge in (start, end))
         edges = np.clip(np.concatenate([start, end]), 0.0, turn)
         edges = np.unique(np.concatenate([[0.0], edges, [turn]]))
-        edges = edges[np.append(np.diff(edges) > 1e-12 * turn, True)]
+        edges = edges[np.append(np.diff(edges) > _ONE * turn, True)]
         edges[0] = 0.0
         carrying = self._carrying(0.5 * (edges[:-1] + edges[1:]), start, end)
         first = np.flatnonzero(np.append(True, np.diff(carrying) != 0))

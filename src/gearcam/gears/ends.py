@@ -30,7 +30,7 @@ _GAP = 0.1
 """Angle, rad, that the ends of a wheel leave free between them."""
 
 _WHOLE = 350.0
-"""Way of a wheel, deg, beyond which no tooth count helps."""
+"""Travel of a wheel, deg, beyond which no tooth count helps."""
 
 _HUB = 0.6
 """Radius of the hub over the smallest radius that the body has room for."""

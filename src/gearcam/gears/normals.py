@@ -8,7 +8,7 @@ As designed the rolls are equal and the lead is 0. It is the same for all pairs 
 flanks: they touch together at any distance of the shafts.
 
 Positions are those of the mounted pair: O1 at 0, O2 at the distance of the shafts, as complex
-numbers. A rack has no O2; its lead is a way, mm, in the direction in which it is driven.
+numbers. A rack has no O2; its lead is part of its travel, mm, in the direction in which it is driven.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class Pose(NamedTuple):
     one, two : arrays, rad
         Driver angles that name the rolls of driver and driven wheel.
     lead : array, rad
-        How far the driven wheel is ahead of its nominal place; of a rack its way, mm.
+        How far the driven wheel is ahead of its nominal place; of a rack in its travel, mm.
     """
 
     phi1: Array
@@ -134,7 +134,7 @@ class Normals:
         return -_solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
 
 
-def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
+def normals(mounting: Mounting, pose: Pose, separation: Array) -> Normals:
     """Return normals of both wheels' flanks, and what they miss of being one.
 
     Parameters
@@ -143,7 +143,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
         The wheels and the side.
     pose : Pose
         Of n pairs.
-    play : (n,) array, mm
+    separation : (n,) array, mm
         sf2 - sf1.
 
     Returns
@@ -174,7 +174,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
     foot2 = foot2 + mounting.distance
     across = np.conj(n1) * (foot2 - foot1)
     aligned = np.conj(n2) * n1
-    distance = across.real + (first.s - second.s + play) * cosine
+    distance = across.real + (first.s - second.s + separation) * cosine
     by_lead = np.conj(n1) * carried
     by_one = -1j * (first.kappa * across + mounting.side * math.sin(alpha))
     by_two = np.conj(n1) * tangent2 - cosine
@@ -197,7 +197,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
 
 
 def touch(
-    mounting: Mounting, start: Array, play: Array, known: Ints | int = 0
+    mounting: Mounting, start: Array, separation: Array, known: Ints | int = 0
 ) -> tuple[Pose, Mask]:
     """Find where flanks touch.
 
@@ -208,7 +208,7 @@ def touch(
     start : (n,) array, rad
         What is known: the phase, or the driver angle that names the roll of a wheel. As designed
         all three are equal, so that the search begins there.
-    play : (n,) array, mm
+    separation : (n,) array, mm
         sf2 - sf1.
     known : int or (n,) int array
         Which it is: 0 the phase, 1 the driver's roll, 2 the driven wheel's.
@@ -223,16 +223,16 @@ def touch(
     x = np.stack([start, start, start, np.zeros(start.shape)])
     free = _FREE[np.broadcast_to(known, start.shape)].T
     rows = np.arange(start.size)
-    speed = np.maximum(mounting.toothings[0].frames(start, curved=False).speed, 1e-300)
+    speed = mounting.track.frames(start, curved=False).speed
     longest = 0.5 * mounting.pitch
-    at = normals(mounting, Pose(*x), play)
+    at = normals(mounting, Pose(*x), separation)
     for _ in range(_STEPS):
         step = -_solve(at.slopes[:, free, rows], at.equations)
         size = np.abs(step[:2]).max(axis=0) * speed
         with np.errstate(invalid="ignore", divide="ignore"):
             step = step * np.minimum(1.0, longest / size)
         x[free, rows] += np.where(np.isfinite(step), step, 0.0)
-        at = normals(mounting, Pose(*x), play)
+        at = normals(mounting, Pose(*x), separation)
         if not np.any(size > _SMALL * mounting.pitch):
             break
     found = np.abs(at.equations[0]) <= _MISS

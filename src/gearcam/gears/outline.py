@@ -38,6 +38,9 @@ Mask = NDArray[np.bool_]
 _NO_MATE = 3.0
 """Reach in pitches that no flank has."""
 
+_AT_TIP = 1e-12
+"""Share of a flank's reach within which a cusp is at its tip: rounding."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Flanks:
@@ -64,7 +67,7 @@ class Flanks:
 
     @property
     def undercut(self) -> Mask:
-        """Whether a flank turns back on itself between its joint and its tip, (2z,)."""
+        """Whether a flank turns back on itself between its form point and its tip, (2z,)."""
         return np.isfinite(self.cusps.dedendum) | np.isfinite(self.cusps.addendum)
 
 
@@ -186,7 +189,7 @@ def build_outline(
         The wheel.
     mate : Toothing or None
         The other wheel: flanks end where its flanks do, since beyond there is nothing to
-        touch but its fillet, and where their corners would meet its root. None: only the tip curve
+        touch but its fillet, and where their corners would meet its root. None: only the addendum curve
         ends them, for comparison.
     tolerance : float, mm
         Largest chord error.
@@ -243,7 +246,7 @@ def _find_flanks(
     tips = _sharpen(toothing, sf, sigma, tips)
     highest = sigma * (sf - toothing.track.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
-    addendum = np.where(cusps.addendum <= highest * (1.0 + 1e-12), cusps.addendum, np.inf)
+    addendum = np.where(cusps.addendum <= highest * (1.0 + _AT_TIP), cusps.addendum, np.inf)
     lowest = np.full(2 * z, -toothing.cutter.reach)
     return Flanks(
         sf=sf,

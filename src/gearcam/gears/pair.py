@@ -28,6 +28,12 @@ Array = NDArray[np.float64]
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: finer ones would be lost in rounding."""
 
+_USUAL = 1e-3
+"""Default tolerance of an outline, mm: a micrometre is finer than any machine that cuts teeth."""
+
+_PARTS = 1000.0
+"""Parts of a module of which one is the default where that is finer."""
+
 COARSEST = 1.0 / 50.0
 """Coarsest tolerance of an outline, in modules: beyond it teeth are no longer teeth."""
 
@@ -90,7 +96,7 @@ class GearPair:
             If it is coarser than m/50 or too fine for double precision.
         """
         if asked is None:
-            return min(1e-3, self.module / 1000.0)
+            return min(_USUAL, self.module / _PARTS)
         low, high = FINEST * self.module, COARSEST * self.module
         if not low <= asked <= high:
             fine = asked < low

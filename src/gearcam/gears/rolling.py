@@ -164,7 +164,7 @@ class Centrode(Track):
         """
         phi = np.asarray(phi, dtype=float)
         law, w, size = self.rolling.law, self.rolling.mate, self.arc.size
-        turns, x = law.within(phi)
+        turns, x = self.arc.within(phi)
         i, *radius = _radii(law, w, x, 2 if curved else 1)
         r, dr, *more = (size * v for v in radius)
         speed = np.sqrt(r * r + dr * dr)

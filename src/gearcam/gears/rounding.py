@@ -1,7 +1,7 @@
-"""Rounded tips: arcs that touch flank and tip curve, or both flanks of a narrow tooth.
+"""Rounded tips: arcs that touch flank and addendum curve, or both flanks of a narrow tooth.
 
 The centre of such an arc lies on the flank moved into the tooth by the radius, which is the flank
-of another `sf`, and on the tip curve moved inwards, a parallel as well. So its end on the flank is
+of another `sf`, and on the addendum curve moved inwards, a parallel as well. So its end on the flank is
 known as exactly as the flank itself.
 
 Refused: radii for which an arc would leave nothing of a flank above the pitch curve.
@@ -151,7 +151,7 @@ def _touch(
     miss = np.full(phi.shape, np.inf, dtype=complex)
     for _ in range(_STEPS):
         roll, base = toothing.frames(phi), toothing.frames(foot)
-        height, way = _tip_curve(toothing, rows, joints, foot, base)
+        height, way = _addendum_curve(toothing, rows, joints, foot, base)
         along = way / np.abs(way)
         center = base.p + height * w * base.t - radius * w * along
         miss = toothing.flank_points(roll, sf, sigma) - center
@@ -228,7 +228,7 @@ def _put_in(
 
     frames = toothing.frames(phi)
     sides = joints.sigma * toothing.normals(frames, joints.sigma)
-    way = _tip_curve(toothing, rows, joints, foot, toothing.frames(foot))[1]
+    way = _addendum_curve(toothing, rows, joints, foot, toothing.frames(foot))[1]
     others = w * way / np.abs(way)
     others[pairs[0]] = sides[pairs[1]]
     own = tips.copy()
@@ -258,7 +258,7 @@ def _put_in(
     return made
 
 
-def _tip_curve(
+def _addendum_curve(
     toothing: Toothing, rows: Rows, joints: _Joints, foot: Array, base: Frames
 ) -> tuple[Array, Plane]:
     """Heights of tips over their feet, mm, with frames `base`, and how they move on, mm/rad."""

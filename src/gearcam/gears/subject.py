@@ -21,6 +21,9 @@ KIND = "gear-pair"
 CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 """Limit of the contact ratio, for all checks that ask for it."""
 
+ROUNDING = 1e-9
+"""Share of a limit that is rounding: what a finding names, typed in as printed, keeps the limit."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Subject:
@@ -43,7 +46,7 @@ class Subject:
     def with_teeth(self, factor: float) -> str:
         """Return in words with how many teeth, in the same ratio, all is `factor` times as wide."""
         common = math.gcd(*self.pair.teeth)
-        each = math.ceil(common * factor * (1.0 + 1e-9))
+        each = math.ceil(common * factor * (1.0 + ROUNDING))
         counts = ", ".join(str(count // common * each) for count in self.pair.teeth)
         return f"With pair.teeth = [{counts}] or more"
 
@@ -88,7 +91,7 @@ class Subject:
         return all(bool(pairs.stretches[2].all()) for pairs in self.sides)
 
     @property
-    def play(self) -> float:
+    def backlash(self) -> float:
         """What the spaces are wider than the teeth along the pitch curve, both wheels', mm."""
         one, two = (toothing.cutter for toothing in self.pair.toothings)
         return 2.0 * (one.half_space + two.half_space) - one.pitch

@@ -1,4 +1,4 @@
-"""Where flanks end at the top: at the tip curve, at the mate's reach, or at a cusp."""
+"""Where flanks end at the top: at the addendum curve, at the mate's reach, or at a cusp."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _MISS = 1e-12
-"""Distance at which flank and tip curve meet, in addenda."""
+"""Distance at which flank and addendum curve meet, in addenda."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -34,7 +34,7 @@ class TipEnds:
     height : (n,) array, mm
         Its distance from the centrode.
     full : (n,) bool array
-        Whether it reaches the tip curve.
+        Whether it reaches the addendum curve.
     """
 
     phi: Array
@@ -44,7 +44,7 @@ class TipEnds:
 
 
 def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> TipEnds:
-    """Find where flanks meet the tip curve, the parallel of the centrode at the addendum.
+    """Find where flanks meet the addendum curve, the parallel of the centrode at the addendum.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     sf, sigma : (n,) arrays
         Flanks.
     highest : (n,) array, mm
-        Largest reach allowed: the mate's joint, or a cusp.
+        Largest reach allowed: that of the mate's form point, or of a cusp.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
 
 
 def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, Array]:
-    """Driver angles of the crossings with the tip curve, and of their feet; height nan if none."""
+    """Driver angles of the crossings with the addendum curve, and of their feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
     phi, foot = toothing.track.angle(

@@ -84,7 +84,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     side = pairs.side
     step, pair = pairs.beside(phi1)
-    pose, touching = touch(pairs, phi1[step], pairs.play(pair))
+    pose, touching = touch(pairs, phi1[step], pairs.separation(pair))
     reach = [
         sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
         for wheel, sign, angle in zip(WHEELS, (side, -side), (pose.one, pose.two), strict=True)
@@ -94,7 +94,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
         touching = touching & (w >= low) & (w <= high)
     step, pair = step[touching], pair[touching]
     pose = pose.take(touching)
-    at = normals(pairs, pose, pairs.play(pair))
+    at = normals(pairs, pose, pairs.separation(pair))
     first, second = at.frames
     (one, two), sf = pairs.toothings, [pairs.place(wheel, pair) for wheel in WHEELS]
     normal = at.normal[0]

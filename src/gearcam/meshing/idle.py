@@ -49,7 +49,7 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
         In order.
     """
     start, end, carrying = pairs.stretches
-    lobe = pairs.track.arc.period if pairs.closed and pairs.even else pairs.way
+    lobe = pairs.track.arc.period if pairs.closed and pairs.even else pairs.travel
     at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - 1e-12)))
     phi1 = (start[at, None] + (end - start)[at, None] * _BETWEEN).ravel()
     if not phi1.size:
@@ -57,7 +57,7 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
     near = touches(pairs, phi1)
     lead = -pairs.side * foremost(pairs.side, len(phi1), near.step, near.turn)
     nearest = pairs.near(pairs.track.arc_length(phi1))[:, 0]
-    free = touch(pairs, phi1, pairs.play(nearest))[0].lead
+    free = touch(pairs, phi1, pairs.separation(nearest))[0].lead
     apart = np.abs((lead - free) * to_pitch_line(pairs, phi1)).reshape(len(at), -1).max(axis=1)
     return tuple(
         Idle(start=low, end=high, edges=bool(np.isfinite(most)), apart=most)

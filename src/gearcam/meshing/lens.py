@@ -241,7 +241,7 @@ def _overlapping(
     """
     side, ahead = pairs.side, phi1 + advance
     lead = lead + pairs.guide.nominal(phi1) - pairs.guide.nominal(ahead)
-    pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.play(pair))
+    pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.separation(pair))
     deep = -side * at.equations[1]
     missed = np.abs(at.equations[0]) + np.abs(at.equations[2]) / pairs.pitch
     some = np.flatnonzero((deep > 0.0) & (missed < _MISS))

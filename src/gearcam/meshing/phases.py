@@ -34,7 +34,7 @@ def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:
     """
     if spec.end is not None:
         return spec.start, spec.end
-    return spec.start, pairs.way + (spec.start if pairs.closed else 0.0)
+    return spec.start, pairs.travel + (spec.start if pairs.closed else 0.0)
 
 
 def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
@@ -66,7 +66,7 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
         )
     phi1 = np.linspace(first, last, spec.steps, endpoint=not pairs.closed)
     if not pairs.closed:
-        _demand_travel(first, last, pairs.way)
+        _demand_travel(first, last, pairs.travel)
     if spec.teeth is None:
         return phi1
     track = pairs.track

@@ -200,7 +200,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
     distance = _distance(pair, spec)
     pairs = {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
     side = DRIVE if spec.advance > 0.0 else COAST
-    grid = np.linspace(0.0, pairs[side].way, 20 * len(pairs[side].numbers))
+    grid = np.linspace(0.0, pairs[side].travel, 20 * len(pairs[side].numbers))
     levers = contacts(pairs[side], grid).lever[0]
     if not levers.size:
         levers = np.abs(pair.rolling.tracks[0].frames(np.zeros(1)).p.real)
