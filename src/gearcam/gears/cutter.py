@@ -64,7 +64,7 @@ class Cutter:
 
     @cached_property
     def reach(self) -> float:
-        """Roll from the pitch point of a flank to its form point, where the fillet begins, mm: |s - sf|.
+        """Roll from the pitch point of a flank to its form point, where its fillet begins, mm.
 
         Rack: ``(d/sin(alpha) + rho)/cos(alpha)``. Pinion: ``(t + rho)/cos(alpha)`` with
         ``t = R*sin(alphaR) - sin(alpha)/kc``, ``R = 1/kc + d``, ``cos(alphaR) =

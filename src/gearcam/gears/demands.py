@@ -1,4 +1,4 @@
-"""What a basic rack, a profile shift and a backlash must leave: teeth with lands, roots and addenda."""
+"""What basic rack, profile shift and backlash must leave: teeth with lands, roots and addenda."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ As designed the rolls are equal and the lead is 0. It is the same for all pairs 
 flanks: they touch together at any distance of the shafts.
 
 Positions are those of the mounted pair: O1 at 0, O2 at the distance of the shafts, as complex
-numbers. A rack has no O2; its lead is part of its travel, mm, in the direction in which it is driven.
+numbers. A rack has no O2; its lead is part of its travel, mm.
 """
 
 from __future__ import annotations

@@ -19,12 +19,12 @@ from gearcam.gears.spaces import (
     Crossing,
     entangled,
     join,
-    meet,
     regular_rows,
     select,
     untangle,
 )
-from gearcam.gears.tips import TipEnds, feet, find_tips
+from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
+from gearcam.gears.track import Plane
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
@@ -159,6 +159,31 @@ class Outline:
         return np.abs(ends[:z] - ends[z:])[self.toothing.whole]
 
     @property
+    def whole_flanks(self) -> Mask:
+        """Which flanks belong to whole teeth, (2z,)."""
+        whole = np.zeros(len(self.toothing.numbers), dtype=bool)
+        whole[self.toothing.whole] = True
+        return np.tile(whole, 2)
+
+    def flank_places(self, reach: Array) -> tuple[Plane, Plane]:
+        """Return points and outward unit normals of all flanks at some reaches.
+
+        Parameters
+        ----------
+        reach : (k, 2z) array, mm
+            Reach w of k places on each flank.
+
+        Returns
+        -------
+        points, normals : (k, 2z) complex arrays, mm and 1
+            In the wheel's frame.
+        """
+        sf, sigma = np.broadcast_arrays(self.flanks.sf, self.flanks.sigma, reach)[:2]
+        frames = self.toothing.frames(self.toothing.track.angle(sf - sigma * reach), curved=False)
+        normals = sigma * self.toothing.normals(frames, sigma)
+        return self.toothing.flank_points(frames, sf, sigma), normals
+
+    @property
     def tip_height(self) -> Array:
         """Distance of each whole tooth's lower flank end from the centrode, (z,), mm."""
         z, height = len(self.toothing.numbers), self.flanks.tips.height
@@ -189,8 +214,8 @@ def build_outline(
         The wheel.
     mate : Toothing or None
         The other wheel: flanks end where its flanks do, since beyond there is nothing to
-        touch but its fillet, and where their corners would meet its root. None: only the addendum curve
-        ends them, for comparison.
+        touch but its fillet, and where their corners would meet its root. None: only the addendum
+        curve ends them, for comparison.
     tolerance : float, mm
         Largest chord error.
     tolerances : Tolerances
@@ -265,25 +290,11 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
     if pointed.size == 0:
         return tips
     phi, foot, height = tips.phi.copy(), tips.foot.copy(), tips.height.copy()
-    full = tips.full.copy()
-    base = toothing.track.angle(sf)
-    zero = np.zeros(2 * z)
-    rows = Rows(
-        kind=np.full(2 * z, Curve.FLANK),
-        sf=sf,
-        sigma=sigma,
-        start=base,
-        end=tips.phi,
-        low=zero,
-        high=zero,
-        corner=zero.astype(bool),
-        tooth=np.tile(toothing.numbers, 2),
-    )
-    for tooth in pointed:
-        found = meet(toothing, rows, int(tooth), int(z + tooth))
-        if found is not None:
-            phi[tooth], phi[z + tooth] = found.leaves, found.enters
-            full[[tooth, z + tooth]] = False
+    full, base = tips.full.copy(), toothing.track.angle(sf)
+    both = np.stack([pointed, z + pointed])
+    crossing, met = flank_crossings(toothing, sf[both], sigma[both], phi[both])
+    met &= np.all((crossing - base[both]) * (phi[both] - crossing) >= 0.0, axis=0)
+    phi[both[:, met]], full[both[:, met]] = crossing[:, met], False
     frames = toothing.frames(phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
     low, high = base[z + pointed], base[pointed]
@@ -314,12 +325,8 @@ def _assemble(
     flanks = replace(flanks, lowest=lowest)
     if not toothing.rounding:
         return joined, flanks
-    joined, sf, sigma, reach = round_tips(toothing, joined)
-    highest = flanks.highest.copy()
-    tooth = np.rint((sf - sigma * toothing.half_tooth - toothing.tooth_places[0]) / toothing.pitch)
-    z = len(toothing.numbers)
-    highest[tooth.astype(np.int64) % z + np.where(sigma > 0, 0, z)] = reach
-    return joined, replace(flanks, highest=highest)
+    joined, highest = round_tips(toothing, joined, (flanks.sf, flanks.sigma), flanks.tips)
+    return joined, replace(flanks, highest=np.where(np.isfinite(highest), highest, flanks.highest))
 
 
 def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossing]) -> None:

@@ -202,38 +202,6 @@ def _cut(rows: Rows, space: int, crossings: list[Crossing]) -> Rows:
     return replace(select(rows, number), start=begin, end=end, corner=corner)
 
 
-def meet(toothing: Toothing, rows: Rows, one: int, other: int) -> Crossing | None:
-    """Return where two rows cross, or None if they do not.
-
-    Parameters
-    ----------
-    toothing : Toothing
-        The wheel.
-    rows : Rows
-        Its curves.
-    one, other : int
-        Numbers of the rows.
-
-    Returns
-    -------
-    Crossing or None
-        With driver angles, rad.
-    """
-    t = np.linspace(0.0, 1.0, 4 * _SAMPLES)
-    index = np.repeat([one, other], len(t))
-    span = (rows.end - rows.start)[index]
-    phi = rows.start[index] + span * np.tile(t, 2)
-    points, _ = trace(toothing, rows, index, phi)
-    i, j = _crossing_segments(points[: len(t)], points[len(t) :])
-    if i.size == 0:
-        return None
-    ends = [
-        _bracket(rows, index[None], phi[None], np.array([k + 0.5]))
-        for k in (int(i[0]), int(j[0]) + len(t))
-    ]
-    return _refine(toothing, rows, *ends)[0]
-
-
 def select(rows: Rows, index: Index) -> Rows:
     """Return some rows, in the order of `index`."""
     return Rows(**{name: getattr(rows, name)[index] for name in Rows.__dataclass_fields__})

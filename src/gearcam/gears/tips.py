@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +16,14 @@ from gearcam.numeric.roots import newton_in_bracket
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-_MISS = 1e-12
-"""Distance at which flank and addendum curve meet, in addenda."""
+MISS = 1e-12
+"""Distance at which curves meet, in addenda or pitches: rounding."""
+
+ROUGH = 1e3
+"""Times that distance within which curves meet that Newton's method has no better place of."""
+
+_STEPS = 25
+"""Steps of Newton's method; four or five serve where curves do cross."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -69,6 +77,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     phi, foot, height = _quick(toothing, sf, sigma)
     reach = sigma * (sf - toothing.track.arc_length(phi))
     full = np.isfinite(height) & (reach > 0.0) & (reach <= highest)
+    full &= np.abs(toothing.track.arc_length(foot) - sf) <= _around(toothing)
     rest = np.flatnonzero(~full)
     if rest.size:
         ends = _search(toothing, sf[rest], sigma[rest], highest[rest])
@@ -78,27 +87,93 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
 
 
 def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, Array]:
-    """Driver angles of the crossings with the addendum curve, and of their feet; height nan if none."""
+    """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
     phi, foot = toothing.track.angle(
         np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
     )
-    miss = np.full(sf.shape, np.inf, dtype=complex)
-    for _ in range(8):
-        both = toothing.frames(np.stack([phi, foot]))
-        roll, base = both.take(0), both.take(1)
-        miss = toothing.flank_points(roll, sf, sigma) - base.p - addendum * w * base.t
-        if float(np.abs(miss).max()) <= _MISS * addendum:
-            break
-        move = toothing.flank_motion(roll, sf, sigma)
-        slide = -base.speed * (1.0 + base.kappa * addendum) * base.t
-        with np.errstate(divide="ignore", invalid="ignore"):
-            phi = phi - np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)
-            foot = foot - np.imag(np.conj(move) * miss) / np.imag(np.conj(move) * slide)
-        bad = ~(np.isfinite(phi) & np.isfinite(foot))
-        phi[bad] = foot[bad] = 0.0
-    return phi, foot, np.where(np.abs(miss) <= _MISS * addendum, addendum, np.nan)
+
+    def curve(angle: Array) -> tuple[Plane, Plane]:
+        base = toothing.frames(angle)
+        slide = base.speed * (1.0 + base.kappa * addendum) * base.t
+        return base.p + addendum * w * base.t, slide
+
+    flank = partial(flank_at, toothing, sf, sigma)
+    phi, foot, miss = cross(flank, curve, phi, foot, MISS * addendum)
+    return phi, foot, np.where(miss <= MISS * addendum, addendum, np.nan)
+
+
+def flank_at(toothing: Toothing, sf: Array, sigma: Array, phi: Array) -> tuple[Plane, Plane]:
+    """Return points of flanks (`sf`, `sigma`) of a `toothing` at `phi`, and how they move on."""
+    frames = toothing.frames(phi)
+    return toothing.flank_points(frames, sf, sigma), toothing.flank_motion(frames, sf, sigma)
+
+
+def cross(
+    one: Callable[[Array], tuple[Plane, Plane]],
+    two: Callable[[Array], tuple[Plane, Plane]],
+    x: Array,
+    y: Array,
+    near: float,
+) -> tuple[Array, Array, Array]:
+    """Find where curves cross, n pairs at once, by Newton's method.
+
+    Parameters
+    ----------
+    one, two : callable
+        ``one(x)`` returns points, mm, and their derivatives.
+    x, y : (n,) arrays
+        Parameters to begin with.
+    near : float, mm
+        Distance at which a crossing is found.
+
+    Returns
+    -------
+    x, y : (n,) arrays
+        Parameters on both curves.
+    miss : (n,) array, mm
+        How far their points are apart, at most one step before.
+    """
+    miss = np.full(x.shape, np.inf, dtype=complex)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        for _ in range(_STEPS):
+            (p, move), (q, slide) = one(x), two(y)
+            miss = p - q
+            if not np.any(np.abs(miss) > near):
+                break
+            first = -np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)
+            second = np.imag(np.conj(move) * miss) / np.imag(np.conj(move) * slide)
+            good = np.isfinite(first) & np.isfinite(second)
+            x, y = x + np.where(good, first, 0.0), y + np.where(good, second, 0.0)
+    return x, y, np.abs(miss)
+
+
+def flank_crossings(
+    toothing: Toothing, sf: Array, sigma: Array, start: Array
+) -> tuple[Array, Mask]:
+    """Find where two flanks of teeth cross.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    sf, sigma : (2, n) arrays, mm and 1
+        The flanks, both of a tooth on one turn.
+    start : (2, n) array, rad
+        Driver angles to begin with.
+
+    Returns
+    -------
+    phi : (2, n) array, rad
+        Driver angles of the crossing on both.
+    met : (n,) bool array
+        Whether they cross.
+    """
+    one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
+    near = MISS * toothing.pitch
+    *phi, miss = cross(one, two, *start, near)
+    return np.stack(phi), miss <= ROUGH * near
 
 
 def _search(
@@ -106,7 +181,7 @@ def _search(
 ) -> tuple[Array, Array, Array, Mask]:
     """Search tip ends in their bracket: driver angles, feet, heights, whether they are full."""
     track, addendum, w = toothing.track, toothing.cutter.addendum, toothing.turn
-    around = 3.0 * toothing.cutter.half_space + addendum
+    around = _around(toothing)
     near = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
     start, end, low, high, guess = track.angle(
         np.stack([sf, sf - sigma * highest, sf - around, sf + around, near])
@@ -136,6 +211,11 @@ def _search(
         phi[at] = newton_in_bracket(over, start[at], end[at], first, tolerance)
         height[at], _, foot[at] = distance(phi[at], at)
     return phi, foot, height, full
+
+
+def _around(toothing: Toothing) -> float:
+    """How far the feet of flanks may be from them along the centrode, mm."""
+    return 3.0 * toothing.cutter.half_space + toothing.cutter.addendum
 
 
 def feet(toothing: Toothing, points: Plane, low: Array, high: Array, start: Array) -> Array:

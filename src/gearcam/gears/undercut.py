@@ -111,7 +111,8 @@ def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Arr
     columns = [np.broadcast_to(np.linspace(0.0, 1.0, _STEPS), (len(sf), _STEPS))]
     for nearest in np.moveaxis(toothing.track.knots_near(0.5 * (start + end)[:, 0]), -1, 0):
         columns += [
-            np.clip((nearest[:, None] - start) / span + side, 0.0, 1.0) for side in (-_BESIDE, _BESIDE)
+            np.clip((nearest[:, None] - start) / span + side, 0.0, 1.0)
+            for side in (-_BESIDE, _BESIDE)
         ]
     return start + span * np.sort(np.concatenate(columns, axis=1), axis=1)
 

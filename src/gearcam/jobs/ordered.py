@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.pair import Gear
-from gearcam.gears.track import Plane
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
@@ -100,43 +99,11 @@ def _uncut(job: GearPairJob, number: int, kerf: float) -> bool:
 
     gear = job.gears[number - 1]
     low, high = gear.profile.flanks.lowest, gear.profile.flanks.highest
-    kept = whole_flanks(gear) & (high > low)
+    kept = gear.profile.whole_flanks & (high > low)
     reach = low + np.linspace(0.0, 1.0, _PLACES)[:, None] * (high - low)
-    points, normals = flank_places(gear, np.where(kept, reach, 0.0))
+    points, normals = gear.profile.flank_places(np.where(kept, reach, 0.0))
     contour = job.parts[number - 1].contour
     return not touches(contour, points[:, kept].ravel(), normals[:, kept].ravel(), 0.5 * kerf).all()
-
-
-def whole_flanks(gear: Gear) -> NDArray[np.bool_]:
-    """Return which flanks of a `gear` belong to whole teeth, (2z,)."""
-    whole = np.zeros(len(gear.toothing.numbers), dtype=bool)
-    whole[gear.toothing.whole] = True
-    return np.tile(whole, 2)
-
-
-def flank_places(gear: Gear, reach: Array) -> tuple[Plane, Plane]:
-    """Return points and outward unit normals of all flanks at some reaches.
-
-    Parameters
-    ----------
-    gear : Gear
-        The wheel.
-    reach : (k, 2z) array, mm
-        Reach w of k places on each flank.
-
-    Returns
-    -------
-    points, normals : (k, 2z) complex arrays, mm and 1
-        In the wheel's frame.
-    """
-    flanks, toothing = gear.profile.flanks, gear.toothing
-    s = flanks.sf - flanks.sigma * reach
-    frames = toothing.frames(toothing.track.angle(s.ravel()))
-    sf, sigma = (np.tile(values, len(reach)) for values in (flanks.sf, flanks.sigma))
-    points = toothing.flank_points(frames, sf, sigma)
-    cosine, sine = math.cos(toothing.cutter.alpha), math.sin(toothing.cutter.alpha)
-    normals = frames.t * (sigma * cosine + sine * toothing.turn)
-    return points.reshape(reach.shape), normals.reshape(reach.shape)
 
 
 def inspection_rows(job: GearPairJob) -> dict[str, Array]:
@@ -160,9 +127,9 @@ def inspection_rows(job: GearPairJob) -> dict[str, Array]:
             flanks = gear.profile.flanks
             low, high = flanks.lowest, flanks.highest
             reach = low + share * (high - low)
-            kept = whole_flanks(gear) & (high > low)
+            kept = gear.profile.whole_flanks & (high > low)
             reach = np.where(kept, reach, 0.0)
-            points, normals = flank_places(gear, reach)
+            points, normals = gear.profile.flank_places(reach)
             points = points[:, kept].T.ravel()
             normals, count = normals[:, kept].T.ravel(), len(share)
             tooth = np.tile(np.array(gear.toothing.numbers), 2)[kept]
