@@ -94,7 +94,7 @@ class Assembly:
 
     def at(self, phi: float, lead: float = 0.0) -> tuple[Any, Any]:
         """Both wheels near the pitch point at phi1 = `phi`, the driven one ahead by `lead`."""
-        pitch = float(abs(self.rolling.frames(1, np.array([phi])).p[0]))
+        pitch = float(abs(self.rolling.tracks[0].frames(np.array([phi])).p[0]))
         zone = (pitch - self.reach, -4 * self.reach, pitch + self.reach, 4 * self.reach)
         turned = (
             self.one * np.exp(-1j * phi),

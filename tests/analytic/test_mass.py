@@ -163,7 +163,7 @@ def test_a_toothed_eccentric_circle_is_off_by_its_eccentricity() -> None:
     properties = mass_properties(
         Part(name="p", contours=(made.gear1.profile.contour,), width=5.0), STEEL
     )
-    centre = made.pair.rolling.frames(1, np.linspace(0, 2 * math.pi, 721)).p
+    centre = made.pair.rolling.tracks[0].frames(np.linspace(0, 2 * math.pi, 721)).p
     pitch = 0.5 * (centre.real.max() + centre.real.min())
     assert properties.centroid[0] == pytest.approx(pitch, abs=0.05 * abs(pitch))
     assert abs(properties.centroid[1]) < 0.05 * abs(pitch)

@@ -75,8 +75,8 @@ def test_clearance_and_play_are_taken_up() -> None:
     both = [leads(flank_pairs(made.gears, s), np.linspace(0.0, 6.2, 37)) for s in (DRIVE, COAST)]
     play = 0.02 + 2.0 * 0.08 / math.cos(math.radians(20.0))
     phi1 = np.linspace(0.0, 6.2, 37)
-    radius = np.abs(made.pair.rolling.frames(2, phi1).p)
-    tangent = made.pair.rolling.frames(1, phi1).t * np.exp(-1j * phi1)
+    radius = np.abs(made.pair.rolling.tracks[1].frames(phi1).p)
+    tangent = made.pair.rolling.tracks[0].frames(phi1).t * np.exp(-1j * phi1)
     found = (both[1] - both[0]) * radius * tangent.imag
     assert found == pytest.approx(play, rel=0.05)
     assert np.all(both[0] < 0.0)  # driven, the wheel is behind

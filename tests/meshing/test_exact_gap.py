@@ -37,7 +37,7 @@ def dense(gear: Gear, tooth: int, sigma: int, points: int) -> np.ndarray:
     number = tooth - 1 + (0 if sigma > 0 else toothing.teeth)
     reach = np.linspace(flanks.lowest[number], flanks.highest[number], points)
     sf = flanks.sf[number]
-    frames = toothing.frames(toothing.rolling.angle(sf - sigma * reach))
+    frames = toothing.frames(toothing.track.angle(sf - sigma * reach))
     return toothing.flank_points(frames, np.full(points, sf), np.full(points, float(sigma)))
 
 

@@ -107,7 +107,7 @@ def test_halves_and_body_make_up_an_open_wheel(name: str) -> None:
         union = shapely.union_all(parts.polygons)
         assert union.symmetric_difference(whole).area < 1e-9 * whole.area
         # halves -1, 0, 1, ... belong to the teeth at the middles of which they begin
-        middle = gear.toothing.rolling.angle(
+        middle = gear.toothing.track.angle(
             gear.toothing.tooth_places[parts.teeth - gear.toothing.numbers[0]]
         )
         off = np.abs(gear.toothing.frames(middle).p - parts.tips)
@@ -180,7 +180,7 @@ def flank(gear: Gear, place: int, sigma: int) -> NDArray[np.complex128]:
     number = place + (0 if sigma > 0 else len(toothing.numbers))
     reach = np.linspace(flanks.lowest[number], flanks.highest[number], 4001)
     sf = flanks.sf[number]
-    frames = toothing.frames(toothing.rolling.angle(sf - sigma * reach))
+    frames = toothing.frames(toothing.track.angle(sf - sigma * reach))
     return toothing.flank_points(frames, np.full(4001, sf), np.full(4001, float(sigma)))
 
 
@@ -247,7 +247,7 @@ def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(
     j = 4
     number = int(pairs._flank(1, np.array([j]))[0])
     sf = pairs.flanks[0].sf.copy()
-    phi = toothing.rolling.angle(sf[number : number + 1])
+    phi = toothing.track.angle(sf[number : number + 1])
     sf[number] += side * 0.02
     broken = replace(pairs, flanks=(replace(pairs.flanks[0], sf=sf), pairs.flanks[1]))
     exact, moved = contacts(pairs, phi), touches(broken, phi)

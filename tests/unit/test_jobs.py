@@ -13,7 +13,7 @@ import pytest
 
 from gearcam.designs import document_of
 from gearcam.errors import InfeasibleError
-from gearcam.gears.rolling import Rolling
+from gearcam.gears.rolling import Centrode
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
@@ -341,18 +341,18 @@ def test_a_straight_part_has_an_infinite_radius(
 ) -> None:
     made = small()
     _ = made.gears
-    frames = Rolling.frames
+    frames = Centrode.frames
     straight = slice(3, 9)
 
-    def flattened(self: Rolling, wheel: Any, phi: Any, **given: bool) -> Any:
-        found = frames(self, wheel, phi, **given)
+    def flattened(self: Centrode, phi: Any, **given: bool) -> Any:
+        found = frames(self, phi, **given)
         if not found.kappa.size:
             return found
         kappa = found.kappa.copy()
-        kappa[straight] = -0.0 if wheel == 2 else 0.0
+        kappa[straight] = -0.0 if self.wheel == 2 else 0.0
         return found._replace(kappa=kappa)
 
-    monkeypatch.setattr(Rolling, "frames", flattened)
+    monkeypatch.setattr(Centrode, "frames", flattened)
     path = made.write(tmp_path).directory / "centrodes.csv"
     with path.open(newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -370,7 +370,7 @@ def test_timing_marks_face_each_other_at_zero(bores: tuple[float, float] | None)
     one, two = (part.marks for part in made.parts)
     assert (len(one), len(two)) == (1, 1)
     distance = made.pair.center_distance
-    pitch = abs(made.pair.rolling.frames(1, np.zeros(1)).p[0])
+    pitch = abs(made.pair.rolling.tracks[0].frames(np.zeros(1)).p[0])
     first, second = one[0].center, two[0].center + np.array([distance, 0.0])
     assert (first[1], second[1]) == (0.0, pytest.approx(0.0, abs=1e-14))
     assert 0.0 < first[0] < pitch < second[0] < distance

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.flank import Kind, Rows, Toothing, trace
-from gearcam.gears.rolling import Plane
+from gearcam.gears.flank import Curve, Rows, Toothing, trace
 from gearcam.gears.tips import TipEnds
+from gearcam.gears.track import Plane
 from gearcam.gears.undercut import Undercut
 
 Array = NDArray[np.float64]
@@ -73,13 +73,13 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     following, count = np.append(np.arange(1, z), 0), z
     wrap, around = np.zeros(z), np.zeros(z)
     if toothing.closed:
-        wrap[-1] = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+        wrap[-1] = toothing.track.around
         around[-1] = toothing.length
     else:
         following, wrap, around, count = following[:-1], wrap[:-1], around[:-1], z - 1
     plus = places[:count] + half
     minus = places[following] + around - half
-    joints = toothing.rolling.angle(
+    joints = toothing.track.angle(
         np.stack(
             [
                 plus + cutter.reach,
@@ -96,7 +96,7 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     land = np.full(count, -cutter.dedendum)
     number = np.array(toothing.numbers)
     table = {
-        "kind": [Kind.FLANK, Kind.FILLET, Kind.LAND, Kind.FILLET, Kind.FLANK, Kind.TIP],
+        "kind": [Curve.FLANK, Curve.FILLET, Curve.LAND, Curve.FILLET, Curve.FLANK, Curve.TIP],
         "sf": [plus, plus, zero, minus, minus, zero],
         "sigma": [one, one, zero, -one, -one, zero],
         "start": [top_plus, joints[0], joints[1], joints[2], joints[3], tip_start],
@@ -134,7 +134,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
     undercut = np.isfinite(cusps.dedendum)
     loops = undercut[:z] | np.roll(undercut[z:], -1)
     loops = loops if toothing.closed else loops[:-1]
-    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    kappa = toothing.track.curvature_extremes[1]
     if kappa.max() * toothing.cutter.dedendum >= 0.9:
         start, end = rows.start[1::ROWS_PER_TOOTH], rows.end[3::ROWS_PER_TOOTH]
         steps = start + (end - start) * np.linspace(0.0, 1.0, 65)[:, None]
@@ -200,38 +200,6 @@ def _cut(rows: Rows, space: int, crossings: list[Crossing]) -> Rows:
     travel(last, float(rows.end[last]))
     number, begin, end, corner = (np.array(column) for column in zip(*pieces, strict=True))
     return replace(select(rows, number), start=begin, end=end, corner=corner)
-
-
-def meet(toothing: Toothing, rows: Rows, one: int, other: int) -> Crossing | None:
-    """Return where two rows cross, or None if they do not.
-
-    Parameters
-    ----------
-    toothing : Toothing
-        The wheel.
-    rows : Rows
-        Its curves.
-    one, other : int
-        Numbers of the rows.
-
-    Returns
-    -------
-    Crossing or None
-        With driver angles, rad.
-    """
-    t = np.linspace(0.0, 1.0, 4 * _SAMPLES)
-    index = np.repeat([one, other], len(t))
-    span = (rows.end - rows.start)[index]
-    phi = rows.start[index] + span * np.tile(t, 2)
-    points, _ = trace(toothing, rows, index, phi)
-    i, j = _crossing_segments(points[: len(t)], points[len(t) :])
-    if i.size == 0:
-        return None
-    ends = [
-        _bracket(rows, index[None], phi[None], np.array([k + 0.5]))
-        for k in (int(i[0]), int(j[0]) + len(t))
-    ]
-    return _refine(toothing, rows, *ends)[0]
 
 
 def select(rows: Rows, index: Index) -> Rows:

@@ -16,9 +16,9 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
-from gearcam.gears.rolling import Wheel
 from gearcam.gears.spec import Finish
 from gearcam.gears.steps import leads, stepped
+from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.base import RatioLaw
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
@@ -145,7 +145,7 @@ class GearPairResult(Result):
         """Bore diameters, mm, of circles that hold their keyways; a rack has none."""
         blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
         first, second = (2.0 * blank.bore_reach for blank in blanks)
-        return first or None, None if self.law.feeds else second or None
+        return first or None, None if self.pair.on_rack else second or None
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -210,7 +210,7 @@ class GearPairResult(Result):
     def centrode_angles(self) -> NDArray[np.float64]:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
         lobes = self.law.lobes
-        if self.law.feeds:
+        if self.pair.on_rack:
             end = self.pair.rolling.angle(np.array(self.gear2.toothing.length))
             return np.linspace(0.0, float(end), CENTRODE_POINTS + 1)
         if not lobes.closed:

@@ -50,9 +50,9 @@ def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
         "solids": measured.get("solids"),
         "meshing": _meshing(measured["meshing"]) if "meshing" in measured else None,
     }
-    size = "travel_per_turn_mm" if result.law.feeds else "center_distance_mm"
+    size = "travel_per_turn_mm" if result.pair.on_rack else "center_distance_mm"
     headline = [f"pair.{name}" for name in (size, "module_mm", "teeth")]
-    return Facts(tree, headline, "wheel and rack" if result.law.feeds else "")
+    return Facts(tree, headline, "wheel and rack" if result.pair.on_rack else "")
 
 
 def _pair(result: GearPairResult) -> Tree:
@@ -63,7 +63,7 @@ def _pair(result: GearPairResult) -> Tree:
         "center_distance_mm": Fact(size, "centre distance"),
         "ratio": Fact(extent(low, high), "ratio i21", shown=True),
     }
-    if pair.law.feeds:
+    if pair.on_rack:
         own = {
             "travel_per_turn_mm": Fact(size * pair.law.lobes.advance, "rack travel per turn"),
             "radius_mm": Fact(extent(low, high, size), "pitch radius", shown=True),
@@ -132,7 +132,7 @@ def _mesh(result: GearPairResult) -> Tree:
             shown=True,
         ),
         "rim_min_mm": _rim(result, limit_of(KIND, "thin-rim", limits) * module),
-        "backlash_mm": Fact(max(subject.play, 0.0), "backlash as made", shown=True),
+        "backlash_mm": Fact(max(subject.backlash, 0.0), "backlash as made", shown=True),
         "acceleration_max": Fact(
             abs(float(values[worst])),
             "largest acceleration d(i21)/dphi1",

@@ -46,9 +46,8 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
     from gearcam.export.table import outline_bytes, table_bytes
 
     phi1 = result.centrode_angles()
-    rolling = result.pair.rolling
     phi2, ratio = result.law.derivatives(phi1, 1)
-    one, two = rolling.frames(1, phi1), rolling.frames(2, phi1)
+    one, two = (track.frames(phi1) for track in result.pair.rolling.tracks)
     with np.errstate(divide="ignore"):
         rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa
     driven = {
@@ -57,7 +56,7 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
         "r1_mm": np.abs(one.p),
         "r2_mm": np.abs(two.p),
     }
-    if result.law.feeds:
+    if result.pair.on_rack:
         driven = {"travel_mm": two.p.imag, "r1_mm": np.abs(one.p)}
     centrodes = {
         "phi1_deg": np.degrees(phi1),
@@ -75,7 +74,7 @@ def _pair_drawing(result: GearPairResult) -> Drawing:
 
     lobes = result.law.lobes
     ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
-    if result.law.feeds:
+    if result.pair.on_rack:
         ends[1] = result.centrode_angles()[-1]
     centrodes = [
         gear.centrode(np.linspace(0.0, end, 721)[: -1 if gear.toothing.closed else None])
@@ -91,7 +90,7 @@ def poses(result: GearPairResult) -> tuple[Pose, Pose]:
     """Return how the wheels of a `result` stand when assembled: wheel 1 turned by -phi1."""
     phi1 = result.design.output.pose
     phi2 = float(result.law.phi2(np.array(phi1)))
-    if result.law.feeds:
+    if result.pair.on_rack:
         return (-phi1, (0.0, 0.0)), (0.0, (0.0, -result.pair.center_distance * phi2))
     return (-phi1, (0.0, 0.0)), (phi2, (result.pair.shift, 0.0))
 
@@ -154,7 +153,7 @@ def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
     from gearcam.sheets import pair_sheet, wheel_sheet
 
     facts, title, pose = result.facts, result.design.name, result.design.output.pose
-    radius = float(abs(result.pair.rolling.frames(1, np.array([pose])).p[0]))
+    radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
     sheets = []
     for number, part in enumerate(result.parts):
         own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]

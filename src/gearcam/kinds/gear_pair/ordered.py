@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.pair import Gear
-from gearcam.gears.rolling import Plane
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
@@ -51,7 +50,7 @@ def make_parts(result: GearPairResult) -> tuple[Part, Part]:
 def _part(result: GearPairResult, number: int) -> Part:
     gear = result.gears[number - 1]
     contours = [gears[number - 1].profile.contour for gears in result.steps]
-    rack = number == 2 and result.law.feeds
+    rack = gear.toothing.track.slides
     travel = None
     if not result.law.lobes.closed and not rack:
         travel = result.law.lobes.period if number == 1 else result.law.lobes.advance
@@ -71,7 +70,7 @@ def _part(result: GearPairResult, number: int) -> Part:
 
 
 def _mark(result: GearPairResult, gear: Gear) -> Mark:
-    frames = result.pair.rolling.frames(gear.wheel, np.zeros(1))
+    frames = gear.toothing.frames(np.zeros(1))
     radius = complex(frames.p[0])
     normal = complex(frames.t[0]) * gear.toothing.turn
     blank = result.design.blank.wheel(gear.wheel).widened
@@ -100,43 +99,11 @@ def _uncut(result: GearPairResult, number: int, kerf: float) -> bool:
 
     gear = result.gears[number - 1]
     low, high = gear.profile.flanks.lowest, gear.profile.flanks.highest
-    kept = whole_flanks(gear) & (high > low)
+    kept = gear.profile.whole_flanks & (high > low)
     reach = low + np.linspace(0.0, 1.0, _PLACES)[:, None] * (high - low)
-    points, normals = flank_places(gear, np.where(kept, reach, 0.0))
+    points, normals = gear.profile.flank_places(np.where(kept, reach, 0.0))
     contour = result.parts[number - 1].contour
     return not touches(contour, points[:, kept].ravel(), normals[:, kept].ravel(), 0.5 * kerf).all()
-
-
-def whole_flanks(gear: Gear) -> NDArray[np.bool_]:
-    """Return which flanks of a `gear` belong to whole teeth, (2z,)."""
-    whole = np.zeros(len(gear.toothing.numbers), dtype=bool)
-    whole[gear.toothing.whole] = True
-    return np.tile(whole, 2)
-
-
-def flank_places(gear: Gear, reach: Array) -> tuple[Plane, Plane]:
-    """Return points and outward unit normals of all flanks at some reaches.
-
-    Parameters
-    ----------
-    gear : Gear
-        The wheel.
-    reach : (k, 2z) array, mm
-        Reach w of k places on each flank.
-
-    Returns
-    -------
-    points, normals : (k, 2z) complex arrays, mm and 1
-        In the wheel's frame.
-    """
-    flanks, toothing = gear.profile.flanks, gear.toothing
-    s = flanks.sf - flanks.sigma * reach
-    frames = toothing.frames(toothing.rolling.angle(s.ravel()))
-    sf, sigma = (np.tile(values, len(reach)) for values in (flanks.sf, flanks.sigma))
-    points = toothing.flank_points(frames, sf, sigma)
-    cosine, sine = math.cos(toothing.cutter.alpha), math.sin(toothing.cutter.alpha)
-    normals = frames.t * (sigma * cosine + sine * toothing.turn)
-    return points.reshape(reach.shape), normals.reshape(reach.shape)
 
 
 def inspection_rows(result: GearPairResult) -> dict[str, Array]:
@@ -160,9 +127,9 @@ def inspection_rows(result: GearPairResult) -> dict[str, Array]:
             flanks = gear.profile.flanks
             low, high = flanks.lowest, flanks.highest
             reach = low + share * (high - low)
-            kept = whole_flanks(gear) & (high > low)
+            kept = gear.profile.whole_flanks & (high > low)
             reach = np.where(kept, reach, 0.0)
-            points, normals = flank_places(gear, reach)
+            points, normals = gear.profile.flank_places(reach)
             points = points[:, kept].T.ravel()
             normals, count = normals[:, kept].T.ravel(), len(share)
             tooth = np.tile(np.array(gear.toothing.numbers), 2)[kept]
