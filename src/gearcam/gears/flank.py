@@ -14,13 +14,10 @@ from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.cutter import Cutter
-from gearcam.gears.track import Frames, Plane, Track, Wheel
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from gearcam.gears.track import Frames, Track, Wheel
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 
 class Curve(IntEnum):
@@ -163,7 +160,7 @@ class Rows:
         Tooth number, from 1, that the row belongs to (for lands: the tooth before the space).
     """
 
-    kind: NDArray[np.int64]
+    kind: Ints
     sf: Array
     sigma: Array
     start: Array
@@ -171,12 +168,10 @@ class Rows:
     low: Array
     high: Array
     corner: Mask
-    tooth: NDArray[np.int64]
+    tooth: Ints
 
 
-def trace(
-    toothing: Toothing, rows: Rows, index: NDArray[np.int64], phi: Array
-) -> tuple[Plane, Plane]:
+def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plane, Plane]:
     """Return points and forward unit tangents of rows at driver angles.
 
     Parameters

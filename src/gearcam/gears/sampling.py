@@ -5,14 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.flank import Curve, Rows, Toothing, trace
-from gearcam.gears.track import Plane
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -46,7 +41,7 @@ class WheelCurves:
         return self.rows.corner
 
     @property
-    def breaks(self) -> tuple[Index, Array]:
+    def breaks(self) -> tuple[Ints, Array]:
         """Rows and driver angles, rad, of the law's knots inside rows."""
         rows = self.rows
         low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
@@ -55,6 +50,6 @@ class WheelCurves:
         row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]) & curved[:, None])
         return row, phi[row, knot]
 
-    def at(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
+    def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, mm, and forward unit tangents of rows at driver angles, rad."""
         return trace(self.toothing, self.rows, index, parameter)
