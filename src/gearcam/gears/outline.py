@@ -10,9 +10,8 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
-from gearcam.gears.flank import Curve, Rows, Toothing
+from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
-from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
     Crossing,
