@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Toothing
 from gearcam.gears.tips import find_tips
 from gearcam.gears.undercut import find_cusps
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 _FAR = 1.5
 """How far flanks are followed, over the reach of a rack's: in concave parts they go farther."""

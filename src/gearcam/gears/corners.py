@@ -11,15 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
-from gearcam.gears.track import Plane
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _WINDOW = 1.25
 _WIDE = 4.0
@@ -84,7 +79,7 @@ def highest_corners(
     body = shapely.Polygon(mate_outline()).buffer(-2.0 * tolerance)
     shapely.prepare(body)
 
-    def hits(some: Index, reach: Array) -> Mask:
+    def hits(some: Ints, reach: Array) -> Mask:
         window = _WIDE if tight else _WINDOW
         path = _in_mate(toothing, mate, (sf[some], sigma[some]), reach, window)
         return np.any(shapely.contains_xy(body, path.real, path.imag), axis=1)

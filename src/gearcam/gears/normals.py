@@ -18,15 +18,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
 from gearcam.gears.guide import Guide
-from gearcam.gears.track import Frames, Plane, Track, Wheel
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from gearcam.gears.track import Frames, Track, Wheel
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _STEPS = 40
 """Newton steps; five serve at a changed distance, one as designed."""

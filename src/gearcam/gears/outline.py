@@ -6,14 +6,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
-from gearcam.gears.flank import Curve, Rows, Toothing
+from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
-from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
     Crossing,
@@ -24,16 +22,12 @@ from gearcam.gears.spaces import (
     untangle,
 )
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
-from gearcam.gears.track import Plane
 from gearcam.gears.undercut import Undercut, find_cusps
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
 from gearcam.numeric.sampling import Sampler
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
 
 _NO_MATE = 3.0
 """Reach in pitches that no flank has."""
@@ -305,9 +299,7 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
     return replace(tips, phi=phi, foot=foot, height=height, full=full)
 
 
-def _assemble(
-    toothing: Toothing, rows: Rows, flanks: Flanks, spaces: NDArray[np.int64]
-) -> tuple[Rows, Flanks]:
+def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> tuple[Rows, Flanks]:
     """Replace entangled spaces by untangled ones and shorten the flanks they trim."""
     lowest = flanks.lowest.copy()
     parts, done = [], 0

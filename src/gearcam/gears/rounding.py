@@ -15,17 +15,13 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import MISS, ROUGH, TipEnds, cross, flank_at, flank_crossings
-from gearcam.gears.track import Plane
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.roots import largest_fitting
 
 _EDGE = 1e-12
 """Driver angle, rad, by which an arc may touch a tip beyond its end: rounding."""
@@ -85,12 +81,12 @@ def round_tips(
     tops = _tops(toothing, rows, tips)
     found = _arcs(toothing, rows, flanks, tips, tops, toothing.rounding)
     if found is None:
-        low, high = 0.0, toothing.rounding
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            fits = _arcs(toothing, rows, flanks, tips, tops, middle) is not None
-            low, high = (middle, high) if fits else (low, middle)
-        largest = float(f"{low * (1.0 - _INSIDE):.6g}")
+        largest = largest_fitting(
+            lambda radius: _arcs(toothing, rows, flanks, tips, tops, radius) is not None,
+            toothing.rounding,
+            _HALVINGS,
+        )
+        largest = float(f"{largest * (1.0 - _INSIDE):.6g}")
         raise InfeasibleError(
             "tips rounded so much leave nothing of a flank above the pitch curve",
             where=f"wheel {toothing.wheel}, blank.tip_rounding_mm",
@@ -116,9 +112,8 @@ def _tops(toothing: Toothing, rows: Rows, tips: TipEnds) -> _Tops:
         row_turn[z] = tip_turn[0] = toothing.track.around
     span, rise = (values[:z] - values[z:] for values in (tips.foot, tips.height))
     slope = rise / np.where(span == 0.0, 1.0, span)
-    both = (tip, tip_turn, tips.foot[z:], tips.height[z:], slope)
-    tip, tip_turn, start, height, slope = (np.tile(values, 2) for values in both)
-    return _Tops(row, tip, row_turn, tip_turn, start, height, slope)
+    of_teeth = (tip_turn, tips.foot[z:], tips.height[z:], slope)
+    return _Tops(row, np.tile(tip, 2), row_turn, *(np.tile(values, 2) for values in of_teeth))
 
 
 def _arcs(

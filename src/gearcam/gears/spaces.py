@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from gearcam.gears.flank import Curve, Rows, Toothing, trace
 from gearcam.gears.tips import TipEnds
-from gearcam.gears.track import Plane
 from gearcam.gears.undercut import Undercut
+from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

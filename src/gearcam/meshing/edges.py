@@ -12,8 +12,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from gearcam.gears.track import Plane
 from gearcam.meshing.staircase import Edges
+from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
 

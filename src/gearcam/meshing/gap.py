@@ -24,8 +24,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs, Ints
 from gearcam.gears.guide import Guide
-from gearcam.gears.track import Plane, Wheel
+from gearcam.gears.track import Wheel
 from gearcam.meshing.contact import Contacts
+from gearcam.numeric.arrays import Plane
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 Array = NDArray[np.float64]

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from gearcam.gears.contact import Ints
 from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
-from gearcam.gears.track import Plane
 from gearcam.meshing.edges import Edge, covered, joined, rising, thinned
 from gearcam.meshing.staircase import Edges
+from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
 

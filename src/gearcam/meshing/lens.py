@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import Normals, Pose, normals
-from gearcam.gears.track import WHEELS, Plane, Wheel
+from gearcam.gears.track import WHEELS, Wheel
+from gearcam.numeric.arrays import Plane
 from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]

@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from gearcam.gears.contact import Ints
 from gearcam.gears.guide import Guide
 from gearcam.gears.rolling import Rolling
-from gearcam.gears.track import Plane
 from gearcam.meshing.halves import Halves, as_polygons
 from gearcam.meshing.staircase import Facing, overlap
+from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
 
