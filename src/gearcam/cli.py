@@ -352,7 +352,9 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     design = load(file) if adapt is None else adapt(load(file))
     _demand_new_name(design, file, names)
     from gearcam.jobs import make_job  # a file that is refused needs none of it
+    from gearcam.numeric.memory import keep_freed_memory
 
+    keep_freed_memory()
     job = make_job(design)
     try:
         with progress_bar(file) as progress:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -41,14 +40,11 @@ def codes(meshing: Meshing) -> dict[str, str]:
 def moved(setup: Setup, tooth: int, by: float) -> Setup:
     """The pair with a tooth of the driver moved along the pitch curve, outline and flanks."""
     halves, count = setup.turning.driver, setup.turning.driver.count
-    parts: list[Any] = []
     angle = by / float(np.abs(setup.turning.rolling.frames(1, np.array([0.0])).p[0]))
-    for some in (halves, halves.edges):
-        points = some.points.copy()
-        for half in (2 * tooth - 2, (2 * tooth - 3) % count):
-            points[some.starts[half] : some.starts[half + 1]] *= np.exp(1j * angle)
-        parts.append(replace(some, points=points))
-    driver = replace(parts[0], edges=parts[1])
+    points = halves.points.copy()
+    for half in (2 * tooth - 2, (2 * tooth - 3) % count):
+        points[halves.starts[half] : halves.starts[half + 1]] *= np.exp(1j * angle)
+    driver = replace(halves, points=points)
     sf = setup.pairs[DRIVE].flanks[0].sf.copy()
     sf[[tooth - 1, count // 2 + tooth - 1]] += by
     pairs = {

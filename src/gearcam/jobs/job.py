@@ -18,7 +18,6 @@ from gearcam.design import KINDS, hash_of
 from gearcam.errors import DesignError, Problem
 from gearcam.findings import Finding
 from gearcam.jobs.written import Written, finish
-from gearcam.numeric.memory import keep_freed_memory
 from gearcam.tolerances import DEFAULT, Tolerances
 
 Progress = Callable[[str, int, int], None]
@@ -42,7 +41,6 @@ class Job(ABC):
         self.design = design
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
-        keep_freed_memory()
 
     @contextmanager
     def _stage(self, name: str) -> Iterator[None]:
