@@ -108,7 +108,7 @@ def test_pieces_are_those_of_every_two_halves(name: str, shift: float, lead: flo
         assert found.radius[:, mine] == pytest.approx(np.array(ends), rel=1e-4)
 
 
-def placed(halves: Halves, turn: complex, shift: complex) -> Any:
+def placed(halves: Halves, turn: Any, shift: Any) -> Any:
     """All halves of a closed wheel, turned and shifted."""
-    parts = np.split(halves.points * turn + shift, halves.starts[1:-1])
+    parts: Any = np.split(halves.points * turn + shift, halves.starts[1:-1])
     return np.array([shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in parts])

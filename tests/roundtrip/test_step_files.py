@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from gearcam.design import OutputSpec
-from gearcam.export.step import read_step
 from gearcam.jobs.files import export
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
+from helpers_step_read import read_step
 
 
 @pytest.fixture(scope="module")
