@@ -259,7 +259,7 @@ def growth() -> Result:
 
 def against_whole_outlines(tries: int = 7) -> Result:
     """(e) Overlap by pair of teeth against the intersection of the whole outlines."""
-    advance, rows, linear = math.radians(0.005), [], {}
+    overclosure, rows, linear = math.radians(0.005), [], {}
     designs = {"nail machine": gearcam.load(NAIL)} | {
         f"ellipse, z = {teeth}": load(ELLIPSE.format(teeth=teeth, tolerance="0.001"))
         for teeth in (40, 160, 640)
@@ -277,11 +277,11 @@ def against_whole_outlines(tries: int = 7) -> Result:
         )
         phases = {n: np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (360, 1440)}
         cases = {
-            f"gearcam, {name}, {n} steps": partial(_by_blocks, turning, p, advance)
+            f"gearcam, {name}, {n} steps": partial(_by_blocks, turning, p, overclosure)
             for n, p in phases.items()
         }
         cases[f"whole outlines, {name}, 360 steps"] = partial(
-            _whole, outlines, turning, phases[360], advance
+            _whole, outlines, turning, phases[360], overclosure
         )
         *mine, whole = in_turns(cases, tries)
         rows += [*mine, whole]
@@ -299,17 +299,19 @@ def against_whole_outlines(tries: int = 7) -> Result:
     )
 
 
-def _by_blocks(turning: Turning, phases: Any, advance: float) -> list[Any]:
+def _by_blocks(turning: Turning, phases: Any, overclosure: float) -> list[Any]:
     """Overlaps as the study asks for them."""
-    return [turning.overlaps(part, advance) for part in np.split(phases, len(phases) // BLOCK)]
+    return [turning.overlaps(part, overclosure) for part in np.split(phases, len(phases) // BLOCK)]
 
 
-def _whole(outlines: tuple[Any, Any], turning: Turning, phases: Any, advance: float) -> list[float]:
+def _whole(
+    outlines: tuple[Any, Any], turning: Turning, phases: Any, overclosure: float
+) -> list[float]:
     """Areas of the whole outlines' intersections."""
     areas = []
     for phi in phases:
         turned = (
-            outlines[0] * np.exp(-1j * (phi + advance)),
+            outlines[0] * np.exp(-1j * (phi + overclosure)),
             outlines[1] * np.exp(1j * turning.rolling.law.phi2(phi)) + turning.distance,
         )
         one, two = (shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in turned)

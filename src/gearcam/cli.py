@@ -197,7 +197,7 @@ def _check(files: list[str], output: str, debug: bool) -> None:
 
 
 def _mesh(files: list[str], output: str, debug: bool, **settings: Any) -> None:
-    """Turn the pair step by step: contact, interference, play; writes DIR/<name>/meshing.csv."""
+    """Turn the pair step by step: contact, interference, backlash; writes meshing.csv."""
     from gearcam.design import with_meshing
 
     given = {key: value for key, value in settings.items() if value is not None}

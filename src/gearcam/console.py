@@ -80,7 +80,7 @@ def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     found = summary.get("meshing")
     if found is None:
         return
-    ahead = "ahead" if found["advance_deg"] > 0 else "back"
+    ahead = "ahead" if found["overclosure_deg"] > 0 else "back"
     phases = (
         f"{found['steps_done']} phases"
         if found["complete"]
@@ -88,7 +88,7 @@ def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     )
     distance = found.get("center_distance_mm")
     mounted = "" if distance is None else f" at centre distance {distance:.6g} mm"
-    yield f"{phases}{mounted}, driver turned {ahead} by {abs(found['advance_deg']):.6g} deg"
+    yield f"{phases}{mounted}, driver turned {ahead} by {abs(found['overclosure_deg']):.6g} deg"
     rows = [
         ("contact ratio", found["contact_ratio"], ""),
         ("pairs in contact", found.get("pairs_in_contact"), ""),

@@ -99,10 +99,10 @@ def test_what_drives_where_no_flanks_touch(more: float, edges: bool) -> None:
 
 
 def test_stepwise_outlines_count_the_pairs_that_are_told_off_centre() -> None:
-    """Outlines with a small advance: as many overlap as have a common normal, but at changes."""
+    """A small overclosure: as many outlines overlap as have a common normal, but at changes."""
     made = profile("ellipse")
     spec = MeshingSpec(
-        steps=90, advance=math.radians(5e-4), center_distance=made.pair.center_distance + 0.2
+        steps=90, overclosure=math.radians(5e-4), center_distance=made.pair.center_distance + 0.2
     )
     found = study(made.gears, spec)
     assert found.summary["interference_steps"] == 0

@@ -19,7 +19,7 @@ from helpers_pairs import job, profile
 
 Array = NDArray[np.float64]
 
-ADVANCE = math.radians(0.005)
+OVERCLOSURE = math.radians(0.005)
 TURN = np.radians(np.arange(360.0))
 
 
@@ -39,7 +39,7 @@ def whole_areas(made: GearPairJob, distance: float, angles: Array, lead: float) 
     areas = []
     for phi in angles:
         turned = (
-            made.gear1.outline @ [1, 1j] * np.exp(-1j * (phi + ADVANCE)),
+            made.gear1.outline @ [1, 1j] * np.exp(-1j * (phi + OVERCLOSURE)),
             made.gear2.outline @ [1, 1j] * np.exp(1j * (made.law.phi2(phi) + lead)) + distance,
         )
         one, two = (shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in turned)
@@ -70,7 +70,7 @@ def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float) -> N
     turning = turning_of(made, shift * module)
     angles = np.radians(np.linspace(0.0, 360.0, 9) + 0.3)
     for lead in np.array([0.0, 0.01, -0.01, 0.2, -0.4]) * module / turning.distance:
-        found = turning.overlaps(angles, ADVANCE, lead)
+        found = turning.overlaps(angles, OVERCLOSURE, lead)
         areas = np.bincount(found.step, found.area, minlength=len(angles))
         expected = whole_areas(made, turning.distance, angles, lead)
         assert areas == pytest.approx(expected, rel=1e-9, abs=1e-12 * module**2)
@@ -86,10 +86,10 @@ def test_pieces_are_those_of_every_two_halves(name: str, shift: float, lead: flo
     turning = turning_of(made, shift * made.pair.module)
     angle = lead * made.pair.module / turning.distance
     angles = TURN[::40]
-    found = turning.overlaps(angles, ADVANCE, angle)
+    found = turning.overlaps(angles, OVERCLOSURE, angle)
     for step, phi in enumerate(angles):
         back = np.exp(-1j * (made.law.phi2(phi) + angle))
-        seen = np.exp(-1j * (phi + ADVANCE)) * back, -turning.distance * back
+        seen = np.exp(-1j * (phi + OVERCLOSURE)) * back, -turning.distance * back
         one = placed(turning.driver, *seen)
         tree = shapely.STRtree(placed(turning.driven, 1.0, 0.0))
         pairs = tree.query(one)

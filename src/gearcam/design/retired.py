@@ -172,5 +172,11 @@ RETIRED: Final = (
         "away, twice what the offset was)",
         turn=_offset,
     ),
+    Retired(
+        title="meshing",
+        key="advance_deg",
+        doc="overclosure_deg",
+        turn=lambda value: Instead(here={"overclosure_deg": value}),
+    ),
 )
 """All of them; a new one is one more entry."""

@@ -61,7 +61,7 @@ def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
     return spans(meshing.phi1[chosen], (end - start) / meshing.setup.spec.steps)
 
 
-@check("interference", kind=KIND, doc="overlap where none may be, or deeper than the advance")
+@check("interference", kind=KIND, doc="overlap where none may be, or deeper than the overclosure")
 def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
     """Report interference, as an error."""
     hit = meshing.every("interferes").astype(bool)

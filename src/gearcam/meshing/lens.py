@@ -178,7 +178,7 @@ class Graphs:
         return self.at(1, one)[1] - self.at(2, two)[1], one, two
 
 
-def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike = 0.0) -> Lenses:
+def lenses(pairs: FlankPairs, phi1: ArrayLike, overclosure: float, lead: ArrayLike = 0.0) -> Lenses:
     """Predict the overlaps of a side.
 
     Parameters
@@ -187,7 +187,7 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike =
         The side.
     phi1 : (n,) array, rad
         Phases.
-    advance : float, rad
+    overclosure : float, rad
         How far the driver is ahead of them.
     lead : (n,) array or float, rad
         How far the driven wheel is ahead of its nominal place; of a rack mm.
@@ -200,7 +200,7 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike =
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     step, pair = pairs.beside(phi1)
     lead = np.broadcast_to(lead, phi1.shape)[step]
-    some, deep, bend, graphs = _overlapping(pairs, pair, phi1[step], advance, lead)
+    some, deep, bend, graphs = _overlapping(pairs, pair, phi1[step], overclosure, lead)
     ends = graphs.ends(1), graphs.ends(2)
     places = graphs.places(ends)
     # past a cusp the normal is not where the flanks are deepest: that is at an end then
@@ -238,14 +238,14 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike =
 
 
 def _overlapping(
-    pairs: FlankPairs, pair: Ints, phi1: Array, advance: float, lead: Array
+    pairs: FlankPairs, pair: Ints, phi1: Array, overclosure: float, lead: Array
 ) -> tuple[Ints, Array, Array, Graphs]:
     """Find the normals that pairs share, and the pairs that overlap along them.
 
     Returns their places, penetrations, mm, relative curvatures, 1/mm, and graphs.
     """
     rolling, law, side = pairs.toothings[0].rolling, pairs.toothings[0].rolling.law, pairs.side
-    ahead, scale = phi1 + advance, rolling.center_distance if law.feeds else 1.0
+    ahead, scale = phi1 + overclosure, rolling.center_distance if law.feeds else 1.0
     lead = lead + scale * (law.phi2(phi1) - law.phi2(ahead))
     pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.play(pair))
     deep = -side * at.equations[1]

@@ -42,7 +42,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
         "complete": meshing.complete,
         "steps": meshing.asked,
         "steps_done": len(meshing.phi1),
-        "advance_deg": float(np.degrees(setup.spec.advance)),
+        "overclosure_deg": float(np.degrees(setup.spec.overclosure)),
         "penetration_mm": setup.penetration,
         "chord_error_mm": max(turning.driver.chord_error, turning.driven.chord_error),
         "contact_ratio": extent(pairs.contact_ratios),
@@ -84,7 +84,7 @@ def motion(meshing: Meshing) -> dict[str, Any]:
     -------
     dict
         ``lag_mm``, by which the driven wheel is behind its nominal place, along the pitch curve,
-        when the play is taken up; ``transmission_error``: its deviation from that on the mean.
+        when the backlash is taken up; ``transmission_error``: its deviation from that on the mean.
     """
     lead, along = meshing.every("lead"), meshing.every("along")
     touching = np.isfinite(lead)
@@ -218,7 +218,7 @@ def agreement(meshing: Meshing, stepwise: NDArray[np.int64]) -> dict[str, Any]:
     dict
         ``inside``: largest relative difference of the area from the closed form where that holds;
         ``clipped_mm2``: largest difference from the integrated gap elsewhere; ``steps_apart``:
-        phases at which outlines and exact flanks, both with the advance, count different pairs.
+        phases at which outlines and exact flanks, both with the overclosure, count different pairs.
     """
     inside, clipped, predicted = [0.0], [0.0], []
     for block in meshing.blocks:

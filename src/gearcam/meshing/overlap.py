@@ -123,14 +123,16 @@ class Turning:
         near = near % count if driven.closed else np.clip(near, 0, count - 1)
         return np.maximum.reduceat(heights, begin)[near].max(axis=1)
 
-    def pose(self, phi1: Array, advance: float, lead: Array | float = 0.0) -> tuple[Plane, Plane]:
+    def pose(
+        self, phi1: Array, overclosure: float, lead: Array | float = 0.0
+    ) -> tuple[Plane, Plane]:
         """Return the turn and shift that take the driver's points into the driven wheel's frame.
 
         Parameters
         ----------
         phi1 : (n,) array, rad
             Phases.
-        advance : float, rad
+        overclosure : float, rad
             How far the driver is ahead of them.
         lead : (n,) array or float, rad, of a rack mm
             How far the driven wheel is.
@@ -141,11 +143,11 @@ class Turning:
         """
         turn, shift = self.guide.stand(phi1, lead)
         back = np.conj(turn)
-        return np.exp(-1j * (phi1 + advance)) * back, back * (-self.distance - shift)
+        return np.exp(-1j * (phi1 + overclosure)) * back, back * (-self.distance - shift)
 
-    def overlaps(self, phi1: Array, advance: float, lead: Array | float = 0.0) -> Overlaps:
+    def overlaps(self, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Overlaps:
         """Return all pieces of overlap at phases (see `pose`)."""
-        turn, shift = self.pose(phi1, advance, lead)
+        turn, shift = self.pose(phi1, overclosure, lead)
         step, one, two = self._near(phi1, turn, shift)
         if not self.driven.closed:
             others = self._astray(turn, shift, step, one)
@@ -212,14 +214,14 @@ class Turning:
         turns = np.rint((at - 0.5 - half) / self.driver.count).astype(np.int64)
         return half + turns * self.driver.count
 
-    def gaps(self, side: int, phi1: Array, advance: float, lead: Array | float = 0.0) -> Array:
+    def gaps(self, side: int, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Array:
         """Return the least distance of facing halves of a side at phases.
 
         Parameters
         ----------
         side : {-1, +1}
             sigma of the driver's flanks.
-        phi1, advance, lead
+        phi1, overclosure, lead
             See `pose`.
 
         Returns
@@ -227,7 +229,7 @@ class Turning:
         (n,) array, mm
             0 where they overlap; infinite where none face each other.
         """
-        turn, shift = self.pose(phi1, advance, lead)
+        turn, shift = self.pose(phi1, overclosure, lead)
         s, pitch = self.rolling.arc_length(phi1), self.driver.pitch
         pair = np.rint(s / pitch - 0.25 * side).astype(np.int64)
         least = np.full(len(phi1), np.inf)

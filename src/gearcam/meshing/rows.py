@@ -27,28 +27,26 @@ class Block:
     phi1, phi2 : (n,) arrays, rad
         Driver and nominal driven angles.
     side : {-1, +1}
-        sigma of the driver's flanks that the advance presses together.
+        sigma of the driver's flanks that the overclosure presses together.
     lead : (n,) array, rad
         The driven wheel's turn from its nominal place at first touch on that side (of a rack its
         way, mm); not finite where nothing touches.
     along : (n,) array, mm/rad
         What such turns are along the pitch curve.
-    play : (n,) array, rad
-        What the driven wheel can turn between both touches.
     backlash : (n,) array, mm
-        The same along the pitch curve.
+        What the driven wheel can turn between both touches, along the pitch curve.
     edge : (n,) bool array
         Whether an edge decides the first touch.
     held_back : (n,) array, mm
-        Distance of the flanks when the driver is held back by the advance.
+        Distance of the flanks when the driver is held back by the overclosure.
     overlaps : Overlaps
         Of the outlines, with the driver ahead.
     contacts : Contacts
-        Exact ones, without advance.
+        Exact ones, without overclosure.
     lenses : Lenses
         Predicted overlaps.
     interferes : (n,) bool array
-        Whether flanks overlap that should not, or deeper than the advance explains.
+        Whether flanks overlap that should not, or deeper than the overclosure explains.
     """
 
     first: int
@@ -57,7 +55,6 @@ class Block:
     side: int
     lead: Array
     along: Array
-    play: Array
     backlash: Array
     edge: Mask
     held_back: Array
