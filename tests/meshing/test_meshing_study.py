@@ -17,7 +17,7 @@ from gearcam.gears.subject import Subject
 from gearcam.jobs.gear_pair import GearPairJob
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
-from gearcam.meshing.numbers import pairs_in_contact
+from gearcam.meshing.numbers import numbers, pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, Setup, mount, run, study
 from gearcam.tolerances import DEFAULT
@@ -59,7 +59,7 @@ def moved(setup: Setup, tooth: int, by: float) -> Setup:
 @pytest.mark.parametrize("overclosure", [OVERCLOSURE, -OVERCLOSURE])
 def test_a_full_turn_runs_clean(name: str, overclosure: float) -> None:
     meshing = full_turn(name, overclosure)
-    found = meshing.summary
+    found = numbers(meshing)
     assert found["complete"]
     assert found["steps_done"] == 360
     assert found["interference_steps"] == 0
@@ -74,7 +74,7 @@ def test_a_full_turn_runs_clean(name: str, overclosure: float) -> None:
 @pytest.mark.parametrize("name", NAILS)
 @pytest.mark.parametrize("overclosure", [OVERCLOSURE, -OVERCLOSURE])
 def test_outlines_and_exact_flanks_agree(name: str, overclosure: float) -> None:
-    agreement = full_turn(name, overclosure).summary["agreement"]
+    agreement = numbers(full_turn(name, overclosure))["agreement"]
     assert agreement["inside"] < 0.02
     assert agreement["steps_apart"] <= 1
     assert agreement["clipped_mm2"] < 3e-3
@@ -104,7 +104,7 @@ def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(name: s
 @pytest.mark.parametrize("name", NAILS)
 def test_held_back_the_flanks_come_apart_by_the_overclosure(name: str) -> None:
     meshing = full_turn(name, OVERCLOSURE)
-    held, setup = meshing.summary["held_back_gap_mm"], meshing.setup
+    held, setup = numbers(meshing)["held_back_gap_mm"], meshing.setup
     assert held["min"] == pytest.approx(setup.penetration, rel=0.02)
     assert held["max"] <= OVERCLOSURE * setup.lever * 1.01
 
@@ -126,7 +126,7 @@ def test_a_tooth_moved_by_20_um_is_found(by: float) -> None:
         # where it is alone the driven wheel lags until it touches; where not, the others carry
         assert broken.every("lead").min() == pytest.approx(-shift, rel=0.05)
         assert broken.every("lead").max() == pytest.approx(0.0, abs=1e-9)
-        assert broken.summary["pairs_in_contact"] == whole.summary["pairs_in_contact"]
+        assert numbers(broken)["pairs_in_contact"] == numbers(whole)["pairs_in_contact"]
 
 
 def test_a_tooth_that_only_the_outline_moves_is_found_by_its_depth() -> None:
@@ -154,10 +154,10 @@ def test_half_a_pitch_off_phase_is_found() -> None:
 def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
     made = profile(name)
     close = study(made.gears, MeshingSpec(steps=72, center_distance=179.9))
-    assert close.summary["interference_steps"] == 72
+    assert numbers(close)["interference_steps"] == 72
     assert codes(close)["interference"] == "error"
     wide = study(made.gears, MeshingSpec(steps=72, center_distance=180.1))
-    assert wide.summary["interference_steps"] == 0
+    assert numbers(wide)["interference_steps"] == 0
     turns = wide.every("backlash") / wide.every("along")
     phi = wide.phi1
     tangent = made.pair.rolling.frames(1, phi).t * np.exp(-1j * phi)
@@ -193,7 +193,7 @@ def test_an_interruption_keeps_the_steps_done() -> None:
             raise KeyboardInterrupt
 
     meshing = study(profile(NAILS[0]).gears, MeshingSpec(steps=300), stop)
-    found = meshing.summary
+    found = numbers(meshing)
     assert not found["complete"]
     assert 0 < found["steps_done"] < found["steps"] == 300
     assert meshing.columns["phi1_deg"].max() < 180.0

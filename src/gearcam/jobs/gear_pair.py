@@ -251,6 +251,7 @@ class GearPairJob(Job):
         """
         from gearcam.export.table import table_bytes
         from gearcam.meshing.checks import KIND as MESHING_KIND
+        from gearcam.meshing.numbers import numbers
         from gearcam.meshing.study import study
 
         gears = self.steps[self.design.meshing.helix_step - 1]
@@ -265,7 +266,7 @@ class GearPairJob(Job):
         findings = in_order((*told, *extra))
         folder = Path(directory) / self.design.name
         contents = {MESHING: table_bytes(meshing.columns)}
-        summary = self.summary(self._beside(folder, MESHING), {"meshing": meshing.summary})
+        summary = self.summary(self._beside(folder, MESHING), {"meshing": numbers(meshing)})
         summary["findings"] = [finding.as_dict() for finding in findings]
         written = finish(folder, contents, summary, findings, keep=True)
         return replace(written, complete=meshing.complete)

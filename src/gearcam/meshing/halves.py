@@ -79,6 +79,10 @@ class Halves:
         index = half - self.first
         return np.where((index >= 0) & (index < self.count), index, -1)
 
+    def of_pair(self, pair: Ints, side: int) -> Ints:
+        """Return the halves h, within the first turns, of pairs j of a driver's `side`: `pair`."""
+        return self.index(2 * pair - (side < 0)) + self.first
+
     def tooth(self, half: Ints) -> Any:
         """Return the numbers of the teeth of halves h, masked where it is the body, (n,)."""
         index = half - self.first

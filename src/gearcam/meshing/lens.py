@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import Normals, Pose, normals
 from gearcam.gears.rolling import WHEELS, Plane, Wheel
+from gearcam.numeric.newton import damped_newton
 from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -26,9 +27,6 @@ Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
-
-_STEPS = 30
-"""Newton steps towards a common normal; as designed three serve."""
 
 _SMALL = 1e-9
 """Step, in pitches, at which they end."""
@@ -279,20 +277,18 @@ def _overlapping(
 
 def _shared(pairs: FlankPairs, pose: Pose, play: Array) -> tuple[Pose, Normals]:
     """Find the rolls at which two flanks of a given pose have one normal, at any distance."""
-    at = normals(pairs, pose, play)
-    for _ in range(_STEPS):
-        (a, b), (c, d) = at.slopes[0, 1:3], at.slopes[2, 1:3]
-        turn, across = at.equations[0], at.equations[2]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            steps = np.stack([b * across - d * turn, c * turn - a * across]) / (a * d - b * c)
-            size = np.abs(steps).max(axis=0) * at.frames[0].speed
-            steps = steps * np.minimum(1.0, 0.5 * pairs.pitch / size)
-        steps = np.where(np.isfinite(steps), steps, 0.0)
-        pose = pose._replace(one=pose.one + steps[0], two=pose.two + steps[1])
-        at = normals(pairs, pose, play)
-        if not np.any(size > _SMALL * pairs.pitch):
-            break
-    return pose, at
+    # the third unknown is the distance along it
+    by_distance = np.stack([np.zeros_like(play), -np.ones_like(play), np.zeros_like(play)])
+
+    def evaluate(x: Array) -> tuple[Normals, Array, Array]:
+        at = normals(pairs, pose._replace(one=x[0], two=x[1]), play)
+        slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by_distance], axis=1)
+        return at, at.equations + x[2] * by_distance, slopes
+
+    scale = pairs.toothings[0].frames(pose.one, curved=False).speed / pairs.pitch
+    x = np.stack([pose.one, pose.two, np.zeros_like(play)])
+    x, at = damped_newton(evaluate, x, scale, _SMALL)
+    return pose._replace(one=x[0], two=x[1]), at
 
 
 def _end(

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -117,17 +118,16 @@ class Meshing:
         """Whether every phase was studied."""
         return len(self.phi1) == self.asked
 
-    @property
-    def columns(self) -> dict[str, Array]:
+    @cached_property
+    def columns(self) -> dict[str, Any]:
         """The rows of ``meshing.csv``: one a phase and pair of halves that touch or should."""
         return columns_of(self.blocks, self.setup.turning)
 
     @property
-    def summary(self) -> dict[str, Any]:
-        """The numbers of the study, for JSON."""
-        from gearcam.meshing.numbers import numbers
-
-        return numbers(self)
+    def on_side(self) -> NDArray[np.bool_]:
+        """Which rows are of facing halves of the side that is pressed together."""
+        rows = self.columns
+        return (rows["facing"].data > 0.0) & (rows["side"].data == self.setup.side)
 
     def every(self, name: str) -> Array:
         """Return a field of all blocks, end to end, by its `name`."""
