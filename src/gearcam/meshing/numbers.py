@@ -207,12 +207,12 @@ def agreement(meshing: Meshing, stepwise: Ints) -> dict[str, Any]:
     area, predicted, closed = (
         meshing.columns[name] for name in ("area_mm2", "predicted_mm2", "closed_mm2")
     )
+    noise = meshing.setup.noise
     clipped = np.abs(area - predicted)[np.ma.getmaskarray(closed)]
-    noise, lenses = (
-        meshing.setup.noise,
-        [(block.lenses, len(block.phi1)) for block in meshing.blocks],
-    )
-    found = [np.bincount(each.step[each.depth > noise], minlength=size) for each, size in lenses]
+    found = [
+        np.bincount(block.lenses.step, block.lenses.depth > noise, minlength=len(block.phi1))
+        for block in meshing.blocks
+    ]
     return {
         "inside": float(np.abs(area / closed - 1.0).filled(0.0).max(initial=0.0)),
         "clipped_mm2": float(clipped.filled(0.0).max(initial=0.0)),

@@ -25,9 +25,6 @@ from gearcam.meshing.halves import Halves, as_polygons
 
 Array = NDArray[np.float64]
 
-_GROUP = 16
-"""Halves of the driver that are first looked at together."""
-
 _BESIDE = 4
 """Halves on both sides of the facing one whose tips are taken for the driven wheel's reach."""
 
@@ -105,15 +102,6 @@ class Turning:
         return np.maximum(width, width[other])
 
     @cached_property
-    def _groups(self) -> tuple[Plane, Array]:
-        """Centres and radii of circles about the tips of groups of the driver's halves."""
-        tips, starts = self.driver.tips, np.arange(0, self.driver.count, _GROUP)
-        sizes = np.diff(np.append(starts, len(tips)))
-        center: Plane = np.asarray(np.add.reduceat(tips, starts) / sizes, dtype=complex)
-        apart = np.abs(tips - np.repeat(center, sizes)) + self._land
-        return center, np.maximum.reduceat(apart, starts)
-
-    @cached_property
     def _reach(self) -> Array:
         """Largest height of the driven wheel near the half that faces each of the driver's."""
         driven, count = self.driven, self.driven.count
@@ -159,10 +147,6 @@ class Turning:
         index, owner = self.driver.gather(one)
         points = self.driver.points[index] * turn[owner] + shift[owner]
         sizes = np.bincount(owner)
-        # what lies beside the end of an open wheel may reach any root
-        if self.driven.closed:
-            inside = self.guide.height(points) <= self._reach[two][owner]
-            points, sizes = _within(points, sizes, inside)
         polygons = as_polygons(points, sizes)
         own, mate = self._tree.query(polygons)
         mates = self.driven.polygons[mate]
@@ -246,17 +230,11 @@ class Turning:
 
     def _near(self, phi1: Array, turn: Plane, shift: Plane) -> tuple[Ints, Ints, Ints]:
         """Phases, and the driver's halves within the driven wheel's tips with their mates."""
-        center, radius = self._groups
-        far = self.guide.height(center * turn[:, None] + shift[:, None])
-        step, group = np.nonzero(far <= radius + self._reach.max())
-        step = np.repeat(step, _GROUP)
-        half = (group[:, None] * _GROUP + np.arange(_GROUP)).ravel()
-        real = half < self.driver.count
-        step, half = step[real], half[real]
+        height = self.guide.height(self.driver.tips * turn[:, None] + shift[:, None])
+        step, half = np.nonzero(height <= self._reach.max() + self._land)
         past = self._halves_past(phi1)[step]
         mate = self.driven.index(self._unroll(past, half + self.driver.first))
-        tips = self.driver.tips[half] * turn[step] + shift[step]
-        near = (self.guide.height(tips) <= self._reach[mate] + self._land[half]) & (mate >= 0)
+        near = (height[step, half] <= self._reach[mate] + self._land[half]) & (mate >= 0)
         return step[near], half[near], mate[near]
 
     def _astray(self, turn: Plane, shift: Plane, step: Ints, facing: Ints) -> tuple[Ints, Ints]:
@@ -289,18 +267,3 @@ class Turning:
         points = self.driver.points[last[0] : last[1]] * turn[:, None] + shift[:, None]
         bodies = as_polygons(points.ravel(), np.full(len(turn), points.shape[1]))
         return np.flatnonzero(near | shapely.intersects(self.driven.polygons[-1], bodies))
-
-
-def _within(points: Plane, sizes: Ints, inside: NDArray[np.bool_]) -> tuple[Plane, Ints]:
-    """Leave out what the mate cannot reach: roots beyond the first vertex that is not `inside`.
-
-    The tip and the point below it always stay: what is left is the rest of the same half.
-    """
-    keep = inside.copy()
-    keep[1:] |= inside[:-1]
-    keep[:-1] |= inside[1:]
-    ends = np.cumsum(sizes)
-    keep[ends - 2] = keep[ends - 3]
-    for kept in (ends - 1, ends - sizes, ends - sizes + 1):
-        keep[kept] = True
-    return points[keep], np.add.reduceat(keep.astype(np.int64), ends - sizes)
