@@ -356,6 +356,9 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     start = time.perf_counter()
     design = load(file) if adapt is None else adapt(load(file))
     _demand_new_name(design, file, names)
+    from gearcam.numeric.memory import keep_freed_memory
+
+    keep_freed_memory()
     result = build(design)
     try:
         with progress_bar(file) as progress:

@@ -9,7 +9,7 @@ between them is what it may turn until these points meet; of a rack, the way tha
 extreme over the common range of heights is the touch of the pair, where the flanks share a tangent
 or at the end of one of them (an edge). The driven wheel lies between the largest of these turns on
 the driving side and the smallest on the other: the first is its transmission error, the difference
-its play. Negative play means that the pair cannot be assembled.
+its backlash. Negative backlash means that the pair cannot be assembled.
 
 Flanks only: that an edge meets the mate's fillet is seen by the stepwise overlap.
 """

@@ -4,7 +4,6 @@ Each wheel is divided into *halves* of teeth, from the middle of a tip to the mi
 a little below; h counts them from tooth 1's +s half as 0, wheel 2 from the half that faces it.
 Half h of the driver faces half h of the driven wheel. Closed wheels count on over their turns; an
 open one has the halves -1 to 2z, from one end of its blank to the other, and a *body* below them.
-The edge of a half is the part of it that belongs to the outline; for a first look it is thinned.
 """
 
 from __future__ import annotations
@@ -22,8 +21,6 @@ from numpy.typing import NDArray
 from gearcam.gears.contact import Ints
 from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
-from gearcam.meshing.edges import Edge, covered, joined, rising, thinned
-from gearcam.meshing.staircase import Edges
 from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
@@ -46,8 +43,6 @@ class Halves:
         Where each half begins, and the end.
     chord_error : float, mm
         Largest distance of the curve from its chords.
-    edges : Edges
-        What the halves have of the outline.
     tips : (n,) complex array, mm
         Middle of the tip of each half's tooth.
     width : (n,) array, mm
@@ -65,7 +60,6 @@ class Halves:
     points: Plane
     starts: Ints
     chord_error: float
-    edges: Edges
     tips: Plane
     width: Array
     teeth: Ints
@@ -84,6 +78,10 @@ class Halves:
             return half % self.count
         index = half - self.first
         return np.where((index >= 0) & (index < self.count), index, -1)
+
+    def of_pair(self, pair: Ints, side: int) -> Ints:
+        """Return the halves h, within the first turns, of pairs j of a driver's `side`: `pair`."""
+        return self.index(2 * pair - (side < 0)) + self.first
 
     def tooth(self, half: Ints) -> Any:
         """Return the numbers of the teeth of halves h, masked where it is the body, (n,)."""
@@ -107,11 +105,6 @@ class Halves:
         """Return the distances of points from the halves, mm; 0 inside."""
         union = shapely.MultiPolygon(self.polygons.tolist())
         return np.asarray(shapely.distance(union, shapely.points(points.real, points.imag)))
-
-    @cached_property
-    def thinned(self) -> Edges:
-        """The edges with fewer vertices."""
-        return thinned(self.edges, self.chord_error)
 
     @cached_property
     def circles(self) -> tuple[Plane, Array]:
@@ -148,28 +141,22 @@ def halve(outline: Outline) -> Halves:
     points, lands = _lands(outline)
     inner = _inner(outline, len(lands))
     halves: list[Plane] = []
-    edges: list[Edge] = []
     tips: list[tuple[complex, float]] = []
     for k, pair in enumerate(pairwise(lands)):
         # on from a tip or back from it
         step = 1 if pair[0].tip else -1
         tip, root = pair[::step]
-        chain = _chain(tip, root, step, len(outline.sampler.chords[1]))
-        own, (under, low) = points[chain[1]], inner[k : k + 2][::step]
+        land, chain = _chain(tip, root, step, len(outline.sampler.chords[1]))
+        own, (under, low) = points[chain], inner[k : k + 2][::step]
         halves.append(np.concatenate([own, [low, under]]))
-        edges.append(rising(toothing.wheel, [points[part] for part in chain], under, low))
-        tips.append((own[0], np.abs(points[chain[0]] - own[0]).max(initial=0.0)))
+        tips.append((own[0], np.abs(points[land] - own[0]).max(initial=0.0)))
     if toothing.closed and toothing.wheel == 2:
         halves, tips = halves[-1:] + halves[:-1], tips[-1:] + tips[:-1]
-        edges = edges[-1:] + edges[:-1]
-    if toothing.wheel == 2:
-        edges = [covered(k, edges, toothing.closed) for k in range(len(edges))]
     bodies = [] if toothing.closed else [_body(outline, inner)]
     return Halves(
         points=np.concatenate(halves + bodies),
         starts=_starts(halves + bodies),
         chord_error=outline.sampler.chords[2],
-        edges=joined(edges),
         tips=np.array([tip for tip, _ in tips]),
         width=np.array([width for _, width in tips]),
         teeth=_teeth(toothing),
@@ -244,17 +231,13 @@ def _lands(outline: Outline) -> tuple[Plane, list[_Land]]:
     return np.concatenate([points, middles]), lands
 
 
-def _chain(tip: _Land, root: _Land, step: int, size: int) -> tuple[Ints, Ints, Ints]:
-    """Vertices of a half from tip to root, `step` by step: its own, between those of the lands."""
+def _chain(tip: _Land, root: _Land, step: int, size: int) -> tuple[Ints, Ints]:
+    """Vertices of the tip before a half, and of the half from tip to root, `step` by step."""
     if step > 0:
-        before = np.arange(tip.begin, tip.high)
-        own = np.arange(tip.low + 1, root.high)
-        after = np.arange(root.low + 1, root.end + 1)
+        before, own = np.arange(tip.begin, tip.high), np.arange(tip.low + 1, root.high)
     else:
-        before = np.arange(tip.end, tip.low, -1)
-        own = np.arange(tip.high - 1, root.low, -1)
-        after = np.arange(root.high - 1, root.begin - 1, -1)
-    return before % size, np.concatenate([[tip.middle], own % size, [root.middle]]), after % size
+        before, own = np.arange(tip.end, tip.low, -1), np.arange(tip.high - 1, root.low, -1)
+    return before % size, np.concatenate([[tip.middle], own % size, [root.middle]])
 
 
 def _flanks(outline: Outline) -> Ints:
