@@ -17,7 +17,8 @@ import numpy as np
 
 from gearcam.cams.curve import Array, Strokes
 from gearcam.cams.measures import over_the_end
-from gearcam.cams.trim import Corner, Place, between, cut_out
+from gearcam.cams.trim import Corner, cut_out
+from gearcam.numeric.crossings import Place, Span, rows_between
 from gearcam.numeric.roots import bracketed_root
 
 SMALL = 1e-4
@@ -72,7 +73,8 @@ def without_small_loops(
             closed.append(found)
     if not closed:
         return strokes, (), left
-    kept, corners = cut_out(strokes, closed)
+    pairs = zip(closed, [*closed[1:], closed[0]], strict=True)
+    kept, corners = cut_out(strokes, [Span(one[1], two[0]) for one, two in pairs])
     return kept, corners, left
 
 
@@ -97,16 +99,16 @@ def _span(strokes: Strokes, low: float, high: float) -> tuple[Place, Place]:
     if low == high:
         theta = strokes.curve.program.knots[strokes.piece]
         k = int(np.flatnonzero(back & (theta == low))[0])
-        return (k, float(strokes.start[k])), (k, float(strokes.end[k]))
+        return Place(k, float(strokes.start[k])), Place(k, float(strokes.end[k]))
     sweep = ~strokes.jump
     first = int(np.flatnonzero(sweep & (strokes.start <= low) & (low < strokes.end))[0])
     last = int(np.flatnonzero(sweep & (strokes.start < high) & (high <= strokes.end))[0])
-    begin, end = (first, low), (last, high)
+    begin, end = Place(first, low), Place(last, high)
     if low == strokes.start[first] and back[first - 1]:
-        begin = ((first - 1) % count, float(strokes.start[first - 1]))
+        begin = Place((first - 1) % count, float(strokes.start[first - 1]))
     after = (last + 1) % count
     if high == strokes.end[last] and back[after]:
-        end = (after, float(strokes.end[after]))
+        end = Place(after, float(strokes.end[after]))
     return begin, end
 
 
@@ -117,7 +119,7 @@ def _beside(strokes: Strokes, place: Place, side: int) -> list[Place]:
     found = [place] if not strokes.jump[k] and place[1] != far[k] else []
     for step in (1, 2)[: 2 - len(found)]:
         other = (k + side * step) % count
-        found.append((other, float(near[other])))
+        found.append(Place(other, float(near[other])))
     return found
 
 
@@ -128,8 +130,8 @@ def _searched(
     ways = (_ahead(strokes, begin, -1, 0.5 * back), _ahead(strokes, end, 1, 0.5 * back))
     if ways[0] is None or ways[1] is None:
         return None
-    room = begin[1], end[1]
-    found = _close(strokes, (begin[0], ways[0]), (end[0], ways[1]), room)
+    room = begin.parameter, end.parameter
+    found = _close(strokes, Place(begin.curve, ways[0]), Place(end.curve, ways[1]), room)
     if found is None:
         return None
     fits = abs(_way(strokes, *found)) <= _CLOSED * back + _NOISE * size
@@ -138,15 +140,16 @@ def _searched(
 
 def _ahead(strokes: Strokes, place: Place, side: int, length: float) -> float | None:
     """Return where a sweep is a length of way before (-1) or behind (+1) a place."""
-    k, start = place
+    k = place.curve
     limit = float(strokes.end[k] if side > 0 else strokes.start[k])
 
     def miss(parameter: Array) -> Array:
-        return np.array([abs(_part(strokes, k, start, float(p))) - length for p in parameter])
+        ends = [(place, Place(k, float(p)))[::side] for p in parameter]
+        return np.array([abs(_way(strokes, *pair)) - length for pair in ends])
 
     if miss(np.array([limit]))[0] < 0.0:
         return None
-    return float(bracketed_root(miss, [start], [limit], _WIDTH)[0])
+    return float(bracketed_root(miss, [place.parameter], [limit], _WIDTH)[0])
 
 
 def _close(
@@ -155,7 +158,7 @@ def _close(
     """Move two places, one before and one behind a stretch, until the way between them closes."""
     (first, a), (last, b) = one, two
     for _ in range(_STEPS):
-        way = _way(strokes, (first, a), (last, b))
+        way = _way(strokes, Place(first, a), Place(last, b))
         index, places = np.array([first, last]), np.array([a, b])
         slopes = strokes.moving(index, places)[1]
         # way - slopes[0]*da + slopes[1]*db = 0
@@ -169,16 +172,14 @@ def _close(
             return None
         if abs(da) + abs(db) <= _WIDTH:
             break
-    return (first, a), (last, b)
+    return Place(first, a), Place(last, b)
 
 
 def _way(strokes: Strokes, begin: Place, end: Place) -> complex:
     """Return the way from one place of the curve to another, along its strokes."""
-    return sum(_part(strokes, k, low, high) for k, low, high, _ in between(strokes, begin, end))
-
-
-def _part(strokes: Strokes, k: int, low: float, high: float) -> complex:
+    k, low, high, _ = rows_between(strokes, [Span(begin, end)])
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    places = 0.5 * (low + high) + 0.5 * (high - low) * nodes
-    index = np.full(_GAUSS, k)
-    return complex(0.5 * (high - low) * (weights @ strokes.moving(index, places)[1]))
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    places = (middle[:, None] + half[:, None] * nodes).ravel()
+    slopes = strokes.moving(np.repeat(k, _GAUSS), places)[1].reshape(-1, _GAUSS)
+    return complex((half * (slopes @ weights)).sum())

@@ -16,7 +16,6 @@ from gearcam.gears.rounding import round_tips
 from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
-    Crossing,
     entangled,
     join,
     meet,
@@ -28,6 +27,7 @@ from gearcam.gears.tips import TipEnds, feet, find_tips
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
+from gearcam.numeric.crossings import Place
 from gearcam.numeric.sampling import Sampler
 from gearcam.tolerances import Tolerances
 
@@ -279,7 +279,7 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
     for tooth in pointed:
         found = meet(toothing, rows, int(tooth), int(z + tooth))
         if found is not None:
-            phi[tooth], phi[z + tooth] = found.leaves, found.enters
+            phi[tooth], phi[z + tooth] = found
             full[[tooth, z + tooth]] = False
     frames = toothing.frames(phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
@@ -297,11 +297,11 @@ def _assemble(
     """Replace entangled spaces by untangled ones and shorten the flanks they trim."""
     lowest = flanks.lowest.copy()
     parts, done = [], 0
-    for space, (part, crossings) in zip(spaces, untangle(toothing, rows, spaces), strict=True):
+    for space, (part, places) in zip(spaces, untangle(toothing, rows, spaces), strict=True):
         first = ROWS_PER_TOOTH * int(space)
         parts += [select(rows, np.arange(done, first)), part]
         done = first + ROWS_PER_TOOTH
-        _trim(toothing, rows, lowest, crossings)
+        _trim(toothing, rows, lowest, places)
     parts.append(select(rows, np.arange(done, len(rows.kind))))
     joined = join(parts)
     if not toothing.closed:
@@ -319,17 +319,16 @@ def _assemble(
     return joined, replace(flanks, highest=highest)
 
 
-def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossing]) -> None:
+def _trim(toothing: Toothing, rows: Rows, lowest: Array, places: list[Place]) -> None:
     """Write down how far the flanks of an untangled space still reach."""
     z, first = len(toothing.numbers), toothing.numbers[0]
-    for crossing in crossings:
-        for number, phi in ((crossing.before, crossing.leaves), (crossing.after, crossing.enters)):
-            if rows.kind[number] == Kind.FLANK:
-                sf, sigma = rows.sf[number], rows.sigma[number]
-                flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
-                reach = sigma * (sf - float(toothing.rolling.arc_length(phi)))
-                # A flank that crosses itself counts down to its first loop only.
-                lowest[flank] = max(lowest[flank], reach)
+    for number, phi in places:
+        if rows.kind[number] == Kind.FLANK:
+            sf, sigma = rows.sf[number], rows.sigma[number]
+            flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
+            reach = sigma * (sf - float(toothing.rolling.arc_length(phi)))
+            # A flank that crosses itself counts down to its first loop only.
+            lowest[flank] = max(lowest[flank], reach)
 
 
 def _demand_simple(outline: Outline) -> None:
