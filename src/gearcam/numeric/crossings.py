@@ -138,8 +138,7 @@ class Ring:
     crossed : bool
         Whether there are crossings.
     polygon : (n,) complex array
-        Its chords, but for the pieces beside crossings: counter-clockwise around what is left,
-        clockwise around a hole.
+        Its chords: counter-clockwise around what is left, clockwise around a hole.
     gap : float
         Largest distance of the curves at its crossings.
     """
@@ -318,16 +317,20 @@ def _ring(
             return ends[side]
         return Place(int(curve[event]), float(parameter.ravel()[event]))
 
-    polygon, total = [], len(chain.points)
+    total, ways = len(chain.points), []
     for begin, end in spans:
-        first = int(at[begin]) + 1 if begin >= 0 else 0
-        last = int(at[end]) if end >= 0 else len(chain.curve) - 1
-        polygon.append(np.arange(first, last + 1 + (total if last + 1 < first else 0)) % total)
+        first = float(at[begin]) if begin >= 0 else 0.0
+        last = float(at[end]) if end >= 0 else float(len(chain.curve))
+        last += total if last < first else 0
+        ways.append(np.append(first, np.arange(int(first) + 1, last)))
+    way = np.concatenate(ways)
+    number = way.astype(np.int64)
+    low, high = (chain.points[(number + k) % total] for k in (0, 1))
     crossings = [end % count for _, end in spans if end >= 0]
     return Ring(
         spans=tuple(Span(place(begin, 0), place(end, 1)) for begin, end in spans),
         crossed=bool(crossings),
-        polygon=chain.points[np.concatenate(polygon)],
+        polygon=low + (way - number) * (high - low),
         gap=float(gap[crossings].max()) if gap is not None and crossings else 0.0,
     )
 
