@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.bulges import Complex, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.cubics import on_cubics
+from gearcam.numeric.hermite import on_cubics
 from gearcam.parts.rolled import Touched, arc_run, roll, too_far
 
 Array = NDArray[np.float64]

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -26,7 +25,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.numeric.bulges import Complex, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.crossings import Chain, remaining, rows_between
-from gearcam.numeric.cubics import on_cubics
+from gearcam.numeric.hermite import on_cubics
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -144,7 +143,7 @@ def roll(contour: Contour, radius: float) -> Rolled:
         If the disc is too large to go around.
     """
     pieces, closing = _pieces(contour, radius)
-    middles = _Middles(pieces)
+    middles = _Middles.of(pieces)
     chain = middles.chain(closing)
     # slivers that rounding leaves between parallels that all but coincide
     least = _SMOOTH * contour.tolerance * float(np.abs(np.diff(chain.points)).sum())
@@ -184,70 +183,62 @@ def _pieces(contour: Contour, radius: float) -> tuple[list[Touched], dict[int, c
     return made, closing
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class _Middles:
-    """Where the disc's middle is, as `gearcam.numeric.sampling.Curves` over places on `pieces`."""
+    """Where the disc's middle is, as `gearcam.numeric.sampling.Curves` over places on pieces.
 
-    pieces: list[Touched]
+    `first` are the numbers of the pieces' first points; `points`, `tangents` and `by` of all.
+    """
 
-    @cached_property
-    def first(self) -> Ints:
-        """Number of each piece's first point among all points."""
-        return np.cumsum([0] + [len(piece.run.points) for piece in self.pieces[:-1]])
+    start: Array
+    end: Array
+    corner: NDArray[np.bool_]
+    first: Ints
+    points: Complex
+    tangents: Complex
+    by: Array
 
-    @cached_property
-    def start(self) -> Array:
-        """Place at which each piece begins."""
-        return np.zeros(len(self.pieces))
-
-    @cached_property
-    def end(self) -> Array:
-        """Place at which each piece ends."""
-        return np.array([piece.high for piece in self.pieces])
-
-    @cached_property
-    def corner(self) -> NDArray[np.bool_]:
-        """Nothing is known of corners here."""
-        return np.zeros(len(self.pieces), dtype=bool)
+    @classmethod
+    def of(cls, pieces: list[Touched]) -> _Middles:
+        """Return the middle's way along all of some pieces."""
+        size = np.array([len(piece.run.points) for piece in pieces])
+        return cls(
+            start=np.zeros(len(pieces)),
+            end=size - 1.0,
+            corner=np.zeros(len(pieces), dtype=bool),  # smooth as far as anybody asks here
+            first=np.cumsum(size) - size,
+            points=as_complex(np.concatenate([piece.run.points for piece in pieces])),
+            tangents=as_complex(np.concatenate([piece.run.tangents for piece in pieces])),
+            by=np.repeat([piece.by for piece in pieces], size),
+        )
 
     @property
     def breaks(self) -> tuple[Ints, Array]:
-        """Nor of breaks."""
+        """None that matter here."""
         return np.zeros(0, dtype=np.int64), np.zeros(0)
-
-    @cached_property
-    def _dense(self) -> tuple[Complex, Complex, Array]:
-        """Points, tangents and distances of the middle, of all pieces."""
-        runs = [piece.run for piece in self.pieces]
-        return (
-            as_complex(np.concatenate([run.points for run in runs])),
-            as_complex(np.concatenate([run.tangents for run in runs])),
-            np.repeat([piece.by for piece in self.pieces], [len(run.points) for run in runs]),
-        )
 
     def at(self, index: Ints, parameter: Array) -> tuple[Complex, Complex]:
         """Return points, mm, and unit tangents of pieces at places."""
-        p, t, by = self._dense
-        step = np.clip(parameter.astype(np.int64), 0, self.end[index].astype(np.int64) - 1)
-        points, tangents = on_cubics(p, t, self.first[index] + step, parameter - step)
-        return points - 1j * by[self.first[index]] * tangents, tangents
+        first = self.first[index]
+        step = np.clip(parameter, 0.0, self.end[index] - 1.0).astype(np.int64)
+        points, tangents = on_cubics(self.points, self.tangents, first + step, parameter - step)
+        return points - 1j * self.by[first] * tangents, tangents
 
     def chain(self, closing: dict[int, complex]) -> Chain:
-        """Return the chain through all dense points and closing corners, by the piece before."""
-        p, t, by = self._dense
-        last = self.end.astype(np.int64)
-        curve = np.repeat(np.arange(len(last)), last + 1)
-        low = np.arange(len(p)) - self.first[curve].astype(np.float64)
+        """Return the chain through all dense points and the corners behind some pieces."""
+        curve = np.repeat(np.arange(len(self.end)), self.end.astype(np.int64) + 1)
+        low = np.arange(len(curve)) - self.first[curve].astype(np.float64)
         high = np.minimum(low + 1.0, self.end[curve])
-        behind = np.array(list(closing), dtype=np.int64)
-        at = (self.first + last)[behind] + 1
         # through a corner the way leads from the end of one run to the start of the next
-        following = (behind + 1) % len(last)
+        behind = np.array(list(closing), dtype=np.int64)
+        at = np.append(self.first, len(curve))[behind + 1]
         return Chain(
-            curve=np.insert(curve, at, following),
+            curve=np.insert(curve, at, (behind + 1) % len(self.end)),
             low=np.insert(low, at, 0.0),
             high=np.insert(high, at, 0.0),
-            points=np.insert(p - 1j * by * t, at, list(closing.values())),
+            points=np.insert(
+                self.points - 1j * self.by * self.tangents, at, list(closing.values())
+            ),
         )
 
 

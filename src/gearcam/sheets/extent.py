@@ -11,7 +11,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.hermite import on_cubics
 
 Array = NDArray[np.float64]
 
@@ -45,8 +47,6 @@ def true_points(contours: Iterable[Contour]) -> Array:
 
 def _cubic(ends: Array, tangents: Array) -> Array:
     """Points between two points with unit tangents."""
-    u = np.linspace(0.0, 1.0, _BETWEEN)[:, None]
-    length = float(np.hypot(*(ends[1] - ends[0])))
-    bend = u * (1.0 - u) * ((1.0 - u) * tangents[0] - u * tangents[1]) * length
-    rise = u * u * (3.0 - 2.0 * u)
-    return ends[0] + rise * (ends[1] - ends[0]) + bend
+    share = np.linspace(0.0, 1.0, _BETWEEN)
+    step = np.zeros(_BETWEEN, dtype=np.int64)
+    return as_pairs(on_cubics(as_complex(ends), as_complex(tangents), step, share)[0])
