@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from gearcam.gears.cutter import choose_cutter
-from gearcam.gears.flank import Kind, Toothing, trace
+from gearcam.gears.flank import Curve, Toothing, trace
 from gearcam.gears.outline import Outline, build_outline
-from gearcam.gears.rolling import Wheel, roll
+from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
+from gearcam.gears.track import Wheel
 from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.phases import Phases
@@ -64,12 +65,13 @@ def toothings(name: str) -> tuple[Toothing, Toothing]:
         module=case.module,
         tolerances=DEFAULT,
     )
-    module = rolling.length(1) / (np.pi * case.teeth)
+    module = rolling.tracks[0].length / (np.pi * case.teeth)
 
     def toothing(wheel: Wheel) -> Toothing:
-        concave = -float(rolling.curvature_extremes(wheel)[1].min())
+        track = rolling.tracks[wheel - 1]
+        concave = -float(track.curvature_extremes[1].min())
         cutter = choose_cutter(BasicRack(), module, concave)
-        return Toothing(rolling=rolling, wheel=wheel, teeth=case.teeth, cutter=cutter)
+        return Toothing(track=track, wheel=wheel, teeth=case.teeth, cutter=cutter)
 
     return toothing(1), toothing(2)
 
@@ -104,7 +106,7 @@ def kinematics(name: str) -> tuple[Rolling, Basic]:
 def cut_points(name: str, wheel: Wheel, per_row: int = 64) -> np.ndarray:
     """Points on flanks, fillets and root lands, what the cutter leaves, (n, 2), mm."""
     made = outline(name, wheel)
-    rows = np.flatnonzero(made.rows.kind != Kind.TIP)
+    rows = np.flatnonzero(made.rows.kind != Curve.TIP)
     start, end = made.rows.start[rows], made.rows.end[rows]
     phi = start + np.linspace(0.0, 1.0, per_row)[:, None] * (end - start)
     index = np.broadcast_to(rows, phi.shape).ravel()

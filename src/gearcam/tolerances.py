@@ -18,10 +18,6 @@ class Tolerances:
         Largest miss of the driven angle over a lobe that is built at all, rad: 1e-6 rad is 0.2
         micrometres at 200 mm. Ratios typed with seven digits pass, with a finding (see the check
         ``closure``).
-    root : float
-        Width at which a bracketed root search stops, relative to the bracket's scale.
-    crossing : float
-        Distance at which the crossing of two curves counts as found, in modules.
     oversampling : int
         Dense points per final chord of an outline; 8 makes the error of the dense polygon about
         1/64 of the chord error.
@@ -29,8 +25,6 @@ class Tolerances:
 
     expansion: float = 1e-15
     refusal: float = 1e-6
-    root: float = 1e-15
-    crossing: float = 1e-10
     oversampling: int = 8
 
 

@@ -13,7 +13,7 @@ import pytest
 import shapely
 
 from gearcam.errors import InfeasibleError
-from gearcam.gears.flank import Kind
+from gearcam.gears.flank import Curve
 from gearcam.gears.pair import Gear, make_gear, make_pair
 from gearcam.gears.spec import Finish
 from gearcam.parts.parallel import moved, rounded
@@ -58,7 +58,7 @@ def test_teeth_are_the_parallels_of_plain_teeth(
 def test_arcs_are_tangent_and_of_the_radius_asked_for(number: int) -> None:
     gear = wheel("ellipse", number, 0.02, 0.2)
     rows, sampler = gear.profile.rows, gear.profile.sampler
-    arcs = np.flatnonzero(rows.kind == Kind.ROUND)
+    arcs = np.flatnonzero(rows.kind == Curve.ROUND)
     assert len(arcs) == 2 * gear.toothing.teeth
     share = np.linspace(0.0, 1.0, 7)
     for row in arcs[::5]:

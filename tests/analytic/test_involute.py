@@ -27,7 +27,7 @@ def wheel(number: Any) -> Toothing:
         law, teeth=(TEETH, TEETH), center_distance=None, module=MODULE, tolerances=DEFAULT
     )
     return Toothing(
-        rolling=rolling,
+        track=rolling.tracks[number - 1],
         wheel=number,
         teeth=TEETH,
         cutter=choose_cutter(BasicRack(), MODULE, 0.0),
@@ -44,7 +44,7 @@ def test_flanks_are_involutes(number: int, side: int, tooth: int) -> None:
     place = toothing.tooth_places[tooth - 1]
     sf = np.full_like(reach, place + side * np.pi * MODULE / 4)
     sigma = np.full_like(reach, side)
-    frames = toothing.frames(toothing.rolling.angle(sf - side * reach))
+    frames = toothing.frames(toothing.track.angle(sf - side * reach))
     points = toothing.flank_points(frames, sf, sigma)
 
     exact = [oracle.circular_flank(TEETH, mp.mpf(float(h)), ALPHA) for h in heights]

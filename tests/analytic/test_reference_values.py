@@ -41,7 +41,7 @@ def nail(phases: int) -> Rolling:
 
 
 def curvatures(rolling: Rolling, wheel: Any) -> np.ndarray:
-    return rolling.curvature_extremes(wheel)[1]
+    return rolling.tracks[wheel - 1].curvature_extremes[1]
 
 
 # A value of 59.7386 circulates for the driver in three phases: a sample beside the minimum. The
@@ -56,9 +56,9 @@ NAIL = {
 def test_nail_machine(phases: int) -> None:
     length, module, convex, concave, driven, limit = NAIL[phases]
     rolling = nail(phases)
-    assert printed(rolling.length(1), length)
-    assert printed(rolling.length(2), length)
-    assert printed(rolling.length(1) / (36 * math.pi), module)
+    assert printed(rolling.tracks[0].length, length)
+    assert printed(rolling.tracks[1].length, length)
+    assert printed(rolling.tracks[0].length / (36 * math.pi), module)
     assert printed(1 / curvatures(rolling, 1).max(), convex)
     assert printed(-1 / curvatures(rolling, 1).min(), concave)
     assert printed(1 / curvatures(rolling, 2).max(), driven)
@@ -86,7 +86,9 @@ def test_ellipse(e: float, text: str) -> None:
 @pytest.mark.parametrize(("e", "text"), [(0.0, "17.097"), (0.3, "18.358"), (0.5, "21.297")])
 def test_fewest_teeth_of_an_ellipse(e: float, text: str) -> None:
     rolling = pair(Ellipse(eccentricity=e), 41, distance=2.0)
-    assert printed(rolling.length(1) * curvatures(rolling, 1).max() / (math.pi * UNDERCUT), text)
+    assert printed(
+        rolling.tracks[0].length * curvatures(rolling, 1).max() / (math.pi * UNDERCUT), text
+    )
 
 
 def test_two_lobes() -> None:
@@ -102,7 +104,7 @@ def test_eccentric_circle(offset: float, over_radius: str, distance: str | None)
     shape = f"{offset}*cos(phi1) + sqrt(1 - ({offset}*sin(phi1))**2)"
     rolling = pair(Formula(r1=shape), 24, module=1.0)
     # its centrode is a circle of radius R: A/R from the length
-    radius = rolling.length(1) / (2 * math.pi)
+    radius = rolling.tracks[0].length / (2 * math.pi)
     assert printed(rolling.center_distance / radius, over_radius)
     if distance is not None:
         assert printed(rolling.center_distance, distance)

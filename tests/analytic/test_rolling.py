@@ -8,7 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from gearcam.gears.rolling import Rolling, Wheel, roll
+from gearcam.gears.rolling import Rolling, roll
+from gearcam.gears.track import Wheel
 from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -44,14 +45,14 @@ PHI = np.linspace(-4.0, 15.0, 901)
 
 def test_euler_and_savary(rolling: Rolling) -> None:
     """kappa1 + kappa2 = (1 + i)/v: the sum of the curvatures follows from the ratio alone."""
-    one, two = rolling.frames(1, PHI), rolling.frames(2, PHI)
-    (ratio,) = rolling.law.derivatives(PHI, 0)
+    one, two = rolling.tracks[0].frames(PHI), rolling.tracks[1].frames(PHI)
+    _, ratio = rolling.law.derivatives(PHI, 1)
     expected = (1.0 + ratio) / one.speed
     np.testing.assert_allclose(one.kappa + two.kappa, expected, rtol=1e-9)
 
 
 def test_the_centrodes_touch_and_share_their_tangent(rolling: Rolling) -> None:
-    one, two = rolling.frames(1, PHI), rolling.frames(2, PHI)
+    one, two = rolling.tracks[0].frames(PHI), rolling.tracks[1].frames(PHI)
     turn1 = np.exp(-1j * PHI)
     turn2 = np.exp(1j * rolling.law.phi2(PHI))
     np.testing.assert_allclose(one.p * turn1, two.p * turn2 + rolling.center_distance, atol=1e-11)
@@ -62,8 +63,8 @@ def test_the_centrodes_touch_and_share_their_tangent(rolling: Rolling) -> None:
 @pytest.mark.parametrize("wheel", [1, 2])
 def test_points_move_along_the_tangent_by_the_arc_length(rolling: Rolling, wheel: Wheel) -> None:
     h = 1e-5
-    low, high = rolling.frames(wheel, PHI - h), rolling.frames(wheel, PHI + h)
-    here = rolling.frames(wheel, PHI)
+    track = rolling.tracks[wheel - 1]
+    low, high, here = track.frames(PHI - h), track.frames(PHI + h), track.frames(PHI)
     away = np.abs(np.mod(PHI[:, None] - rolling.law.knots + 1.0, rolling.law.lobes.period) - 1.0)
     smooth = away.min(axis=1) > 1e-3
     step = (high.p - low.p) / (high.s - low.s)
@@ -75,16 +76,16 @@ def test_points_move_along_the_tangent_by_the_arc_length(rolling: Rolling, wheel
 
 def test_the_curves_close(rolling: Rolling) -> None:
     for wheel in (1, 2):
-        turns = rolling.lobe_count(wheel) * rolling.law.lobes.period
-        ends = rolling.frames(wheel, np.array([0.0, turns]))
+        turns = rolling.tracks[wheel - 1].around
+        ends = rolling.tracks[wheel - 1].frames(np.array([0.0, turns]))
         assert abs(ends.p[1] - ends.p[0]) < 1e-10
-        assert ends.s[1] - ends.s[0] == pytest.approx(rolling.length(wheel), rel=1e-14)
+        assert ends.s[1] - ends.s[0] == pytest.approx(rolling.tracks[wheel - 1].length, rel=1e-14)
 
 
 def test_arc_length_both_ways(rolling: Rolling) -> None:
-    s = np.linspace(-1.3, 2.7, 4001) * rolling.lobe_length
+    s = np.linspace(-1.3, 2.7, 4001) * rolling.arc.length
     back = rolling.arc_length(rolling.angle(s))
-    assert np.abs(back - s).max() < 2e-12 * rolling.length(1)
+    assert np.abs(back - s).max() < 2e-12 * rolling.tracks[0].length
 
 
 @pytest.mark.parametrize("eccentricity", [0.3, 0.9, 0.99])
@@ -92,9 +93,9 @@ def test_an_ellipse_has_the_perimeter_and_curvature_of_an_ellipse(eccentricity: 
     e = eccentricity
     law = Ellipse(eccentricity=e).build(Lobes(1, 1), DEFAULT)
     made = roll(law, teeth=(41, 41), center_distance=2.0, module=None, tolerances=DEFAULT)
-    assert made.length(1) == pytest.approx(4 * float(mpmath.ellipe(e * e)), rel=1e-14)
-    for wheel in (1, 2):
-        kappa = made.curvature_extremes(wheel)[1]
+    assert made.tracks[0].length == pytest.approx(4 * float(mpmath.ellipe(e * e)), rel=1e-14)
+    for track in made.tracks:
+        kappa = track.curvature_extremes[1]
         assert 1 / kappa.max() == pytest.approx(1 - e * e, rel=1e-11)
         assert 1 / kappa.min() == pytest.approx(1 / math.sqrt(1 - e * e), rel=1e-11)
 

@@ -28,8 +28,7 @@ def cut_and_points(name: str, k: int) -> tuple[Any, np.ndarray]:
 
 @pytest.mark.parametrize("name", ["two phases", "three phases"])
 def test_the_cutter_is_a_pinion_that_fits_the_concave_part(name: str) -> None:
-    rolling = toothings(name)[0].rolling
-    concave = -float(rolling.curvature_extremes(1)[1].min())
+    concave = -float(toothings(name)[0].track.curvature_extremes[1].min())
     assert toothings(name)[0].cutter.kind == "pinion"
     assert toothings(name)[0].cutter.kc > concave
     assert toothings(name)[1].cutter.kind == "rack"

@@ -16,7 +16,7 @@ import pytest
 from shapely import LinearRing
 
 from gearcam.gears.outline import Outline
-from gearcam.gears.rolling import Wheel
+from gearcam.gears.track import Wheel
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula

@@ -14,8 +14,9 @@ import pytest
 
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Wheel, roll
+from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
+from gearcam.gears.track import Wheel
 from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -94,7 +95,8 @@ def wheels(name: str) -> tuple[Toothing, Toothing]:
     )
     cutter = choose_cutter(BasicRack(), case.module, 0.0)
     first, second = (
-        Toothing(rolling=rolling, wheel=number, teeth=36, cutter=cutter) for number in (1, 2)
+        Toothing(track=rolling.tracks[number - 1], wheel=number, teeth=36, cutter=cutter)
+        for number in (1, 2)
     )
     return first, second
 

@@ -15,7 +15,7 @@ from gearcam.findings import run_checks
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.outline import build_outline
 from gearcam.gears.subject import Subject
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import pairs_in_contact
@@ -42,7 +42,7 @@ def moved(setup: Setup, tooth: int, by: float) -> Setup:
     """The pair with a tooth of the driver moved along the pitch curve, outline and flanks."""
     halves, count = setup.turning.driver, setup.turning.driver.count
     parts: list[Any] = []
-    angle = by / float(np.abs(setup.turning.rolling.frames(1, np.array([0.0])).p[0]))
+    angle = by / float(np.abs(setup.turning.rolling.tracks[0].frames(np.array([0.0])).p[0]))
     for some in (halves, halves.edges):
         points = some.points.copy()
         for half in (2 * tooth - 2, (2 * tooth - 3) % count):
@@ -147,7 +147,7 @@ def test_a_tooth_that_only_the_outline_moves_is_found_by_its_depth() -> None:
 def test_half_a_pitch_off_phase_is_found() -> None:
     made = profile(NAILS[0])
     setup = mount(made.gears, MeshingSpec())
-    radius = np.abs(made.pair.rolling.frames(2, TURN[::10]).p)
+    radius = np.abs(made.pair.rolling.tracks[1].frames(TURN[::10]).p)
     lead = 0.5 * math.pi * made.pair.module / radius
     found = setup.turning.overlaps(TURN[::10], ADVANCE, lead)
     areas = np.bincount(found.step, found.area, minlength=36)
@@ -164,10 +164,10 @@ def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
     assert wide.summary["interference_steps"] == 0
     play = wide.every("play")
     phi = wide.phi1
-    tangent = made.pair.rolling.frames(1, phi).t * np.exp(-1j * phi)
+    tangent = made.pair.rolling.tracks[0].frames(phi).t * np.exp(-1j * phi)
     tilt = np.arctan2(tangent.real, tangent.imag)
     alpha = made.pair.rack.pressure_angle
-    radius = np.abs(made.pair.rolling.frames(2, phi).p)
+    radius = np.abs(made.pair.rolling.tracks[1].frames(phi).p)
     # to first order: the force lines of both sides cut the line of centres at alpha +- tilt
     expected = 0.1 * (np.tan(alpha + tilt) + np.tan(alpha - tilt)) / radius
     assert np.all(np.abs(play / expected - 1.0) < 0.01)
@@ -207,7 +207,7 @@ def test_teeth_choose_the_phases() -> None:
     meshing = study(profile(NAILS[0]).gears, MeshingSpec(teeth=(1, 27)))
     assert 25 < len(meshing.phi1) < 50
     pairs = flank_pairs(profile(NAILS[0]).gears, DRIVE)
-    middle = pairs.toothings[0].rolling.angle(pairs.toothings[0].tooth_places[[0, 26]])
+    middle = pairs.toothings[0].track.angle(pairs.toothings[0].tooth_places[[0, 26]])
     beside = np.abs(np.angle(np.exp(1j * (meshing.phi1[:, None] - middle)))).min(axis=1)
     assert beside.max() < math.radians(20.0)
     assert {1.0, 27.0} <= set(meshing.columns["tooth1"].tolist())
@@ -234,7 +234,7 @@ def test_the_pair_s_own_check_names_the_sides_alike() -> None:
     assert worse[0].value == pytest.approx(ratios[DRIVE], rel=1e-12)
 
 
-def subject_of(made: GearPairJob) -> Subject:
+def subject_of(made: GearPairResult) -> Subject:
     return Subject(pair=made.pair, gears=made.gears, bores=made.bores)
 
 

@@ -18,8 +18,8 @@ from gearcam.cli import main
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
-from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.laws.rack import Rack
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.laws.rack import RackLaw
 from gearcam.laws.spiral import LogSpiral
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
@@ -42,13 +42,13 @@ PAIRS = {
         LogSpiral(ratios=(0.8, 2.36), driven_travel=math.radians(61)), (16, 16), module=2.0
     ),
     "feeder": lambda: profile("feeder"),
-    "pinion": lambda: job(Rack(r1="1"), (20, 30), module=2.0),
-    "short rack": lambda: job(Rack(r1="1 + 0.1*cos(phi1)"), (20, 6), module=2.0),
+    "pinion": lambda: job(RackLaw(r1="1"), (20, 30), module=2.0),
+    "short rack": lambda: job(RackLaw(r1="1 + 0.1*cos(phi1)"), (20, 6), module=2.0),
 }
 
 
 @cache
-def made(name: str) -> GearPairJob:
+def made(name: str) -> GearPairResult:
     return PAIRS[name]()
 
 
@@ -107,7 +107,7 @@ def test_halves_and_body_make_up_an_open_wheel(name: str) -> None:
         union = shapely.union_all(parts.polygons)
         assert union.symmetric_difference(whole).area < 1e-9 * whole.area
         # halves -1, 0, 1, ... belong to the teeth at the middles of which they begin
-        middle = gear.toothing.rolling.angle(
+        middle = gear.toothing.track.angle(
             gear.toothing.tooth_places[parts.teeth - gear.toothing.numbers[0]]
         )
         off = np.abs(gear.toothing.frames(middle).p - parts.tips)
@@ -180,7 +180,7 @@ def flank(gear: Gear, place: int, sigma: int) -> NDArray[np.complex128]:
     number = place + (0 if sigma > 0 else len(toothing.numbers))
     reach = np.linspace(flanks.lowest[number], flanks.highest[number], 4001)
     sf = flanks.sf[number]
-    frames = toothing.frames(toothing.rolling.angle(sf - sigma * reach))
+    frames = toothing.frames(toothing.track.angle(sf - sigma * reach))
     return toothing.flank_points(frames, np.full(4001, sf), np.full(4001, float(sigma)))
 
 
@@ -247,7 +247,7 @@ def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(
     j = 4
     number = int(pairs._flank(1, np.array([j]))[0])
     sf = pairs.flanks[0].sf.copy()
-    phi = toothing.rolling.angle(sf[number : number + 1])
+    phi = toothing.track.angle(sf[number : number + 1])
     sf[number] += side * 0.02
     broken = replace(pairs, flanks=(replace(pairs.flanks[0], sf=sf), pairs.flanks[1]))
     exact, moved = contacts(pairs, phi), touches(broken, phi)
@@ -306,7 +306,7 @@ def test_the_command_studies_the_travel_with_both_stops(name: str, tmp_path: Pat
 
 
 def test_the_backlash_of_a_rack_is_the_way_that_it_may_move() -> None:
-    gears = job(Rack(r1="1"), (20, 12), module=2.0, backlash=0.06).gears
+    gears = job(RackLaw(r1="1"), (20, 12), module=2.0, backlash=0.06).gears
     found = study(gears, MeshingSpec(steps=5))
     assert found.every("play") == pytest.approx(0.06, rel=1e-9)
     assert found.every("backlash") == pytest.approx(0.06, rel=1e-9)

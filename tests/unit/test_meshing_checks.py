@@ -40,7 +40,7 @@ def test_all_checks_are_here() -> None:
         "nothing-drives",
         "interference",
         "edge-contact",
-        "contact-off-flank",
+        "fillet-interference",
         "tip-clearance",
     }
 
@@ -132,8 +132,8 @@ def test_contact_off_the_flanks() -> None:
         set(found(study(gears, MeshingSpec(steps=60, center_distance=180.0 - less))))
         for less in (1.1, 0.3)
     ]
-    assert "contact-off-flank" in codes[0]
-    assert "contact-off-flank" not in codes[1]
+    assert "fillet-interference" in codes[0]
+    assert "fillet-interference" not in codes[1]
 
 
 def test_a_tooth_that_lags_leaves_arcs_without_contact_but_no_interference() -> None:

@@ -17,12 +17,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.cams.curve import Array, Plane, Strokes
+from gearcam.cams.curve import Array, Plane, ProfileSegments
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.crossings import Chain, Ring, Span, remaining, rows_between
+from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
 
 _PROBES = 33
-"""Places on each stroke at which its chords are counted."""
+"""Places on each segment at which its chords are counted."""
 
 _AROUND = 97
 """Places in and beside every undercut stretch: its loop is seen at its own size."""
@@ -70,13 +70,13 @@ def star_shaped(points: Plane, tangents: Plane) -> bool:
 
 
 def trimmed(
-    strokes: Strokes, undercut: Sequence[tuple[float, float]], tolerance: float
-) -> tuple[Strokes, tuple[Corner, ...]]:
+    segments: ProfileSegments, undercut: Sequence[tuple[float, float]], tolerance: float
+) -> tuple[ProfileSegments, tuple[Corner, ...]]:
     """Return what is left of a profile, with its corners.
 
     Parameters
     ----------
-    strokes : Strokes
+    segments : ProfileSegments
         The whole profile.
     undercut : sequence of (float, float)
         Cam angles between which it runs backwards, rad.
@@ -85,7 +85,7 @@ def trimmed(
 
     Returns
     -------
-    strokes : Strokes
+    segments : ProfileSegments
         Those that are left, beginning at a corner if there is one.
     corners : tuple of Corner
         In the order of drawing.
@@ -96,11 +96,11 @@ def trimmed(
         If the crossings cannot be told apart.
     """
     for number in range(_ROUNDS):
-        chain = _chain(strokes, undercut, tolerance * 0.25**number)
-        rings = [ring for ring in remaining(strokes, [chain])[0] if _about_axis(ring)]
+        chain = _chain(segments, undercut, tolerance * 0.25**number)
+        rings = [ring for ring in remaining(segments, [chain])[0] if _about_axis(ring)]
         # chords that are too long may have missed a loop
         if len(rings) == 1 and rings[0].gap <= _MISS * np.abs(chain.points).max():
-            made = cut_out(strokes, rings[0].spans) if rings[0].crossed else (strokes, ())
+            made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
             if not _backwards(made[0], undercut):
                 return made
     raise InfeasibleError(
@@ -110,11 +110,11 @@ def trimmed(
     )
 
 
-def _backwards(strokes: Strokes, undercut: Sequence[tuple[float, float]]) -> bool:
+def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]]) -> bool:
     """Return whether anything is left that runs backwards."""
-    if np.any(strokes.jump & (strokes.end < strokes.start)):
+    if np.any(segments.jump & (segments.end < segments.start)):
         return True
-    start, end = strokes.start[~strokes.jump], strokes.end[~strokes.jump]
+    start, end = segments.start[~segments.jump], segments.end[~segments.jump]
     return any(
         bool(np.any(np.minimum(end, high) - np.maximum(start, low) > _OVERLAP))
         for low, high in undercut
@@ -127,15 +127,17 @@ def _about_axis(ring: Ring) -> bool:
     return float(np.angle(np.roll(p, -1) * np.conj(p)).sum()) > math.pi
 
 
-def _chain(strokes: Strokes, undercut: Sequence[tuple[float, float]], tolerance: float) -> Chain:
-    """Cut every stroke into chords, finely around undercut stretches; counter-clockwise."""
+def _chain(
+    segments: ProfileSegments, undercut: Sequence[tuple[float, float]], tolerance: float
+) -> Chain:
+    """Cut every segment into chords, finely around undercut stretches; counter-clockwise."""
     number, low, high = [], [], []
-    for k in range(len(strokes.start)):
-        start, end = float(strokes.start[k]), float(strokes.end[k])
+    for k in range(len(segments.start)):
+        start, end = float(segments.start[k]), float(segments.end[k])
         probes = np.linspace(start, end, _PROBES)
-        if not strokes.jump[k]:
-            probes = np.union1d(probes, strokes.curve.program.cuts_between(start, end))
-        points, tangents = strokes.at(np.full(len(probes), k), probes)
+        if not segments.jump[k]:
+            probes = np.union1d(probes, segments.curve.program.cuts_between(start, end))
+        points, tangents = segments.at(np.full(len(probes), k), probes)
         turning = np.abs(np.angle(tangents[1:] * np.conj(tangents[:-1])))
         # the square root of a chord's error adds up along the curve
         effort = np.sqrt(turning * np.abs(np.diff(points)) / (8.0 * tolerance)) + 1e-6
@@ -143,14 +145,14 @@ def _chain(strokes: Strokes, undercut: Sequence[tuple[float, float]], tolerance:
         count = max(8, math.ceil(float(total[-1])))
         places = np.interp(np.linspace(0.0, float(total[-1]), count + 1), total, probes)
         places[-1] = end
-        if not strokes.jump[k]:
+        if not segments.jump[k]:
             extra = [_beside(pair, start, end) for pair in undercut]
             places = np.unique(np.concatenate([places, *extra]))
         number.append(np.full(len(places) - 1, k))
         low.append(places[:-1])
         high.append(places[1:])
     curve, lows = np.concatenate(number), np.concatenate(low)
-    points = np.conj(strokes.at(curve, lows)[0])  # a cam is drawn clockwise
+    points = np.conj(segments.at(curve, lows)[0])  # a cam is drawn clockwise
     return Chain(curve=curve, low=lows, high=np.concatenate(high), points=points)
 
 
@@ -164,36 +166,38 @@ def _beside(stretch: tuple[float, float], start: float, end: float) -> Array:
     return shifted[(shifted > start) & (shifted < end)]
 
 
-def cut_out(strokes: Strokes, spans: Sequence[Span]) -> tuple[Strokes, tuple[Corner, ...]]:
+def cut_out(
+    segments: ProfileSegments, branches: Sequence[Branch]
+) -> tuple[ProfileSegments, tuple[Corner, ...]]:
     """Return what is left of a curve.
 
     Parameters
     ----------
-    strokes : Strokes
+    segments : ProfileSegments
         The whole curve.
-    spans : sequence of Span
+    branches : sequence of Branch
         What is left of it, in the order of drawing; each ends where the next one begins.
 
     Returns
     -------
-    strokes : Strokes
+    segments : ProfileSegments
         What is left, beginning at a corner.
     corners : tuple of Corner
-        At the ends of the spans.
+        At the ends of the branches.
     """
     corners = []
-    for one, two in zip(spans, [*spans[1:], spans[0]], strict=True):
+    for one, two in zip(branches, [*branches[1:], branches[0]], strict=True):
         index, places = (np.array(values) for values in zip(one.end, two.begin, strict=True))
-        before, after = strokes.states(index, places)[0].tolist()
-        point = complex(strokes.at(index, places)[0][0])
+        before, after = segments.states(index, places)[0].tolist()
+        point = complex(segments.at(index, places)[0][0])
         corners.append(Corner(point=point, before=before, after=after))
-    index, start, end, corner = rows_between(strokes, spans)
+    index, start, end, corner = rows_between(segments, branches)
     kept = replace(
-        strokes,
-        piece=strokes.piece[index],
+        segments,
+        piece=segments.piece[index],
         start=start,
         end=end,
-        jump=strokes.jump[index],
+        jump=segments.jump[index],
         corner=corner,
     )
     return kept, tuple(corners)

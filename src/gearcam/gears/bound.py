@@ -29,7 +29,7 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
     Returns
     -------
     float
-        Smallest of any flank: from tip curve to tip curve, cusps taken off.
+        Smallest of any flank: from addendum curve to addendum curve, cusps taken off.
     """
     half, places = first.half_tooth, first.tooth_places[first.whole]
     sf, sigma = np.concatenate([places + half, places - half]), np.repeat([1.0, -1.0], len(places))
@@ -38,11 +38,11 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
 
 
 def _reach(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array]:
-    """Reach of flanks from their cusps, or without end, to the tip curve, mm."""
+    """Reach of flanks from their cusps, or without end, to the addendum curve, mm."""
     far = _FAR * replace(toothing.cutter, kc=0.0).reach
     cusps = find_cusps(toothing, sf, sigma, -far, far)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, far))
-    return cusps.dedendum, sigma * (sf - toothing.rolling.arc_length(tips.phi))
+    return cusps.dedendum, sigma * (sf - toothing.track.arc_length(tips.phi))
 
 
 def demand_cutters(first: Toothing, second: Toothing) -> None:
@@ -62,7 +62,7 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
         cutter = toothing.cutter
         if cutter.fits:
             continue
-        radius = -1.0 / float(toothing.rolling.curvature_extremes(toothing.wheel)[1].min())
+        radius = -1.0 / float(toothing.track.curvature_extremes[1].min())
         least, bound = cutter.least_concave_radius, contact_bound(first, second)
         drives = bound >= 1.0
         raise InfeasibleError(

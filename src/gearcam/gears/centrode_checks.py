@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearcam.findings import Finding, check
-from gearcam.gears.subject import KIND, Subject
+from gearcam.gears.subject import KIND, ROUNDING, Subject
 from gearcam.laws.span import angle_text
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
@@ -50,9 +50,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large."""
     law = subject.pair.law
     (low_place, low), (high_place, high) = law.ratio_range
-    if law.feeds:  # over the mean radius
-        mean = law.lobes.advance / law.lobes.period
-        low, high = low / mean, high / mean
+    mean = subject.pair.rolling.mean_radius
+    low, high = low / mean, high / mean
     for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
         if swing > limit:
             yield Finding(
@@ -75,7 +74,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
 def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn at knots where a derivative jumps that the limit wants continuous."""
     law = subject.pair.law
-    for number, order in law.continuity:
+    for jump in law.jumps:
+        order = jump.order - 2  # of the ratio, which is a derivative itself
         if order < limit:
             yield Finding(
                 code="ratio-continuity",
@@ -83,7 +83,7 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
                 message=f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
                 value=float(order),
                 limit=limit,
-                where=angle_text(float(law.ratio.knots[number])),
+                where=angle_text(jump.theta or law.period),
             )
 
 
@@ -126,7 +126,7 @@ def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn where a centrode bends so sharply that teeth have hardly a root."""
     for gear in subject.gears:
         radius = gear.convex_radius / subject.pair.module
-        if radius < limit * (1.0 - 1e-9):
+        if radius < limit * (1.0 - ROUNDING):
             place = float(gear.curvature_places[np.argmax(gear.curvatures)])
             yield Finding(
                 code="sharp",
@@ -179,27 +179,21 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
     ),
 )
 def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Warn where the tooth force pushes the shafts apart rather than turn the wheel.
-
-    The rack's angle and the slope of the centrode add up: on the flanks that drive forward it is
-    ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
-    """
-    places, slopes = subject.slopes
-    for side, sign in (("forward", -1.0), ("backward", 1.0)):
-        angles = subject.pair.rack.pressure_angle + sign * slopes
-        worst = int(np.argmax(angles))
-        if angles[worst] > limit:
-            yield Finding(
-                code="pressure-angle",
-                severity="warning",
-                message="The tooth force stands so steep that it mostly loads the bearings: the "
-                f"rack's {math.degrees(subject.pair.rack.pressure_angle):.6g} deg and the slope of "
-                "the centrode add up.",
-                value=math.degrees(float(angles[worst])),
-                limit=math.degrees(limit),
-                unit="deg",
-                where=f"driving {side}, {angle_text(float(places[worst]))}",
-            )
+    """Warn where the tooth force pushes the shafts apart rather than turn the wheel."""
+    found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
+    if found:
+        where = (f"driving {way}, {angle_text(place)}" for way, (place, _) in found.items())
+        yield Finding(
+            code="pressure-angle",
+            severity="warning",
+            message="The tooth force stands so steep that it mostly loads the bearings: the "
+            f"rack's {math.degrees(subject.pair.rack.pressure_angle):.6g} deg and the slope of "
+            "the centrode add up.",
+            value=math.degrees(max(angle for _, angle in found.values())),
+            limit=math.degrees(limit),
+            unit="deg",
+            where="; ".join(where),
+        )
 
 
 @check(
@@ -217,13 +211,11 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Finding]:
 
     A centrode given by its radius over a rising angle crosses itself only beyond a full turn.
     """
-    rolling = subject.pair.rolling
     for gear in subject.gears:
-        if gear.toothing.closed or rolling.law.feeds:
+        track = gear.toothing.track
+        if track.closed or track.slides:
             continue
-        ends = rolling.angle(gear.toothing.ends)
-        turned = ends if gear.wheel == 1 else rolling.law.phi2(ends)
-        gap = 2.0 * math.pi - float(turned[1] - turned[0])
+        gap = 2.0 * math.pi - float(np.ptp(track.rotation(track.angle(gear.toothing.ends))))
         if gap < limit:
             yield Finding(
                 code="self-crossing",
@@ -273,9 +265,9 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa:
         cutter = gear.toothing.cutter
         if cutter.kind != "pinion" or not gear.toothing.closed:
             continue
-        length, count = gear.pair.rolling.length(gear.wheel), 180
+        length, count = gear.toothing.track.length, 180
         s = length * np.arange(count) / count
-        frames = gear.toothing.frames(gear.pair.rolling.angle(s))
+        frames = gear.toothing.frames(gear.toothing.track.angle(s))
         center = frames.p + gear.toothing.turn * frames.t / cutter.kc
         steps = np.arange(count)
         ahead = frames.p[(steps[:, None] + steps) % count]

@@ -15,10 +15,14 @@ from gearcam.findings import Finding, Severity, check
 from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
-from gearcam.gears.subject import CONTACT_RATIO, KIND, Subject
-from gearcam.quantities import LENGTH, NUMBER, Param, rounded_down
+from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject
+from gearcam.numerals import rounded_down
+from gearcam.quantities import LENGTH, NUMBER, Param
 
 __all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
+
+_POINTED = 1e-9
+"""Thickness of a tip, in modules, that is rounding: the tooth is pointed."""
 
 
 def tooth_ranges(numbers: tuple[int, ...] | list[int]) -> str:
@@ -88,7 +92,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
         below = np.isfinite(flanks.cusps.dedendum)
         message = f"Flanks end at a cusp above the pitch curve; {left}."
         factor = subject.pair.module / best
-        fewest = math.ceil(gear.toothing.teeth * factor * (1.0 - 1e-12))
+        fewest = math.ceil(gear.toothing.teeth * factor * (1.0 - ROUNDING))
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
@@ -118,7 +122,7 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Finding]:
         thickness = gear.profile.tip_thickness / subject.pair.module
         thin = np.flatnonzero(thickness < limit)
         if thin.size:
-            state = "pointed" if thickness.min() < 1e-9 else "thin"
+            state = "pointed" if thickness.min() < _POINTED else "thin"
             yield Finding(
                 code="thin-tip",
                 severity="warning",
@@ -133,11 +137,11 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Finding]:
 @check(
     "short-flank",
     kind=KIND,
-    doc="flanks that end before the tip curve",
+    doc="flanks that end before the addendum curve",
     limit=("tip_height", Param(NUMBER, ge=0, le=1, doc="least tip height, in addenda"), 0.9),
 )
 def short_flank(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Note flanks that stop well below the tip curve."""
+    """Note flanks that stop well below the addendum curve."""
     for gear in subject.gears:
         height = gear.profile.tip_height / gear.toothing.cutter.addendum
         short = np.flatnonzero(height < limit)
@@ -145,7 +149,7 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="short-flank",
                 severity="note",
-                message="Flanks end below the tip curve: at the end of the mate's flank, at a "
+                message="Flanks end below the addendum curve: at the end of the mate's flank, at a "
                 "cusp, or where the tooth comes to a point.",
                 value=float(height.min()),
                 limit=limit,
@@ -166,7 +170,7 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
         if bore is None:
             continue
         rim = gear.least_radius - 0.5 * bore
-        if rim < limit * subject.pair.module * (1.0 - 1e-9):  # the bore named keeps it
+        if rim < limit * subject.pair.module * (1.0 - ROUNDING):  # the bore named keeps it
             largest = 2.0 * (gear.least_radius - limit * subject.pair.module)
             hint = (
                 f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the limit"
@@ -187,18 +191,18 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
 @check(
     "no-backlash",
     kind=KIND,
-    doc="play between the flanks",
+    doc="backlash between the flanks",
     limit=("backlash", Param(LENGTH, ge=0, doc="least backlash that is not reported"), 0.01),
 )
 def no_backlash(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Note that the wheels are made without play."""
-    if subject.play < limit:
+    """Note that the wheels are made without backlash."""
+    if subject.backlash < limit:
         yield Finding(
             code="no-backlash",
             severity="note",
             message="The wheels are made without backlash: printed ones want some, and so do "
             "shafts whose distance is not exact.",
-            value=max(subject.play, 0.0),
+            value=max(subject.backlash, 0.0),
             limit=limit,
             unit="mm",
             where="pair",

@@ -5,7 +5,7 @@ back. The pairs of flanks of a side are numbered without end by j, the driver's 
 0 over all turns; an open pair has as many as lie in both blanks. How two flanks touch is told in
 `gearcam.gears.normals`.
 
-Refused: nothing. Where flanks cannot touch there is no pair. Depends on flanks and rolling.
+Refused: nothing. Where flanks cannot touch there is no pair. Depends on flanks and tracks.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.normals import Mounting, touch
-from gearcam.gears.rolling import WHEELS, Wheel
+from gearcam.gears.track import WHEELS, Wheel
 
 if TYPE_CHECKING:  # what cuts wheels needs more than numpy
     from gearcam.gears.outline import Flanks
@@ -34,6 +34,9 @@ DRIVE, COAST = -1, 1
 
 _EVEN = 1e-12
 """Difference of the places of flanks, in pitches, that is rounding."""
+
+_ONE = 1e-12
+"""Difference of the ends of arcs, in travels, that is rounding: they are one."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -54,12 +57,11 @@ class FlankPairs(Mounting):
         return all(toothing.closed for toothing in self.toothings)
 
     @cached_property
-    def way(self) -> float:
+    def travel(self) -> float:
         """Driver angle of a turn, of an open pair's travel, or along a rack, rad."""
-        rolling, lobes = self.toothings[0].rolling, self.toothings[0].rolling.law.lobes
-        if rolling.law.feeds:
-            return float(rolling.angle(self.toothings[1].length))
-        return lobes.period * lobes.n1
+        if self.toothings[0].closed == self.closed:
+            return self.track.around
+        return float(self.track.angle(self.toothings[1].length))
 
     def tooth(self, wheel: Wheel, j: Ints) -> Ints:
         """Return tooth numbers of a wheel in pairs `j` (see `FlankPairs`)."""
@@ -72,10 +74,10 @@ class FlankPairs(Mounting):
 
     def _flank(self, wheel: Wheel, j: Ints) -> Ints:
         """Return the places of flanks in the wheel's arrays; of those it has not, the nearest."""
-        toothing, sigma = self.toothings[wheel - 1], self.side if wheel == 1 else -self.side
+        toothing = self.toothings[wheel - 1]
         size, tooth = len(toothing.numbers), self._count(wheel, j)
         index = tooth % size if toothing.closed else tooth + 1 - toothing.numbers[0]
-        return np.clip(index, 0, size - 1) + (0 if sigma > 0 else size)
+        return np.clip(index, 0, size - 1) + (0 if self.sigma(wheel) > 0 else size)
 
     def real(self, j: Ints) -> Mask:
         """Return whether both wheels have the flanks of pairs `j` (see `FlankPairs`)."""
@@ -101,19 +103,19 @@ class FlankPairs(Mounting):
         flanks, number = self.flanks[wheel - 1], self._flank(wheel, j)
         return flanks.lowest[number], flanks.highest[number]
 
-    def play(self, j: Ints) -> Array:
+    def separation(self, j: Ints) -> Array:
         """Return how far the driven flanks of pairs `j` lie behind the driver's, mm: sf2 - sf1."""
         return self.place(2, j) - self.place(1, j)
 
     @cached_property
     def even(self) -> bool:
         """Whether all pairs of the side touch together."""
-        plays = self.play(self.numbers)
-        return plays.size == 0 or bool(np.ptp(plays) <= _EVEN * self.pitch)
+        found = self.separation(self.numbers)
+        return found.size == 0 or bool(np.ptp(found) <= _EVEN * self.pitch)
 
     @cached_property
     def numbers(self) -> Ints:
-        """Numbers j of the pairs of a turn of the driver, or of the way of an open pair."""
+        """Numbers j of the pairs of a turn of the driver, or of the travel of an open pair."""
         if self.closed:
             return np.arange(self.toothings[0].teeth)
         open_one = next(toothing for toothing in self.toothings if not toothing.closed)
@@ -132,7 +134,7 @@ class FlankPairs(Mounting):
 
     def beside(self, phi1: Array) -> tuple[Ints, Ints]:
         """Return the pairs that may touch at phases `phi1`, rad: indices of the phases, and j."""
-        candidates = self.near(self.toothings[0].rolling.arc_length(phi1))
+        candidates = self.near(self.track.arc_length(phi1))
         step, column = np.nonzero(self.real(candidates))
         return step, candidates[step, column]
 
@@ -145,26 +147,25 @@ class FlankPairs(Mounting):
     @cached_property
     def arcs(self) -> tuple[Array, Array]:
         """Driver angles, rad, between which the pairs `numbers` touch; start >= end for none."""
-        j, rolling = self.numbers[: self._lobe], self.toothings[0].rolling
+        j, track = self.numbers[: self._lobe], self.track
         if j.size == 0:
             return np.empty(0), np.empty(0)
         known, places = [], []
         for wheel in WHEELS:
-            sigma = self.side if wheel == 1 else -self.side
             for reach in self.reach(wheel, j):
-                places.append(rolling.angle(self.place(wheel, j) - sigma * reach))
+                places.append(track.angle(self.place(wheel, j) - self.sigma(wheel) * reach))
                 known.append(np.full(j.shape, wheel))
         start = np.concatenate(places)
-        ends, found = touch(self, start, np.tile(self.play(j), 4), np.concatenate(known))
+        ends, found = touch(self, start, np.tile(self.separation(j), 4), np.concatenate(known))
         low1, high1, low2, high2 = ends.phi1.reshape(4, -1)
         first, last = np.maximum(low1, high2), np.minimum(high1, low2)
         if self.side == COAST:
             first, last = np.maximum(high1, low2), np.minimum(low1, high2)
         # where an end is not found these teeth do not mesh at all
         lost = ~found.reshape(4, -1).all(axis=0)
-        first[lost] = last[lost] = rolling.angle(self.place(1, j[lost]))
+        first[lost] = last[lost] = track.angle(self.place(1, j[lost]))
         again: Array = np.arange(len(self.numbers) // self._lobe, dtype=float)[:, None]
-        lobes = rolling.law.lobes.period * again
+        lobes = track.arc.period * again
         return (first + lobes).ravel(), (last + lobes).ravel()
 
     @cached_property
@@ -173,24 +174,23 @@ class FlankPairs(Mounting):
 
         The driver's arc between the ends of tangency, along its pitch curve.
         """
-        rolling = self.toothings[0].rolling
-        start, end = (rolling.arc_length(edge) for edge in self.arcs)
+        start, end = (self.track.arc_length(edge) for edge in self.arcs)
         return np.maximum(end - start, 0.0) / self.pitch
 
     @cached_property
     def stretches(self) -> tuple[Array, Array, Ints]:
-        """Stretches of a turn of the driver, or of an open pair's way, by the pairs that carry.
+        """Stretches of a turn of the driver, or of an open pair's travel, by the pairs that carry.
 
         Driver angles of start and end, rad, and how many pairs carry there: 1 on single-pair arcs,
         2 on double-pair arcs, 0 where no flanks touch.
         """
-        turn = self.way
+        turn = self.travel
         start, end = (edge[self.arcs[1] > self.arcs[0]] for edge in self.arcs)
         turns = np.arange(-1, 2)[:, None] if self.closed else np.zeros((1, 1))
         start, end = ((edge + turn * turns).ravel() for edge in (start, end))
         edges = np.clip(np.concatenate([start, end]), 0.0, turn)
         edges = np.unique(np.concatenate([[0.0], edges, [turn]]))
-        edges = edges[np.append(np.diff(edges) > 1e-12 * turn, True)]
+        edges = edges[np.append(np.diff(edges) > _ONE * turn, True)]
         edges[0] = 0.0
         carrying = self._carrying(0.5 * (edges[:-1] + edges[1:]), start, end)
         first = np.flatnonzero(np.append(True, np.diff(carrying) != 0))
@@ -227,6 +227,7 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
     first, second = gears
     return FlankPairs(
         toothings=(first.toothing, second.toothing),
+        guide=first.pair.rolling.guide,
         flanks=(first.profile.flanks, second.profile.flanks),
         side=side,
         distance=first.pair.shift if distance is None else distance,

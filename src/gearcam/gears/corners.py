@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Plane
+from gearcam.gears.track import Plane
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -70,7 +70,7 @@ def highest_corners(
         `highest` where it does no harm.
     """
     result = highest.copy()
-    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    kappa = toothing.track.curvature_extremes[1]
     if kappa.min() >= 0.0 and mate.cutter.kc == 0.0:
         return result
     sf, sigma = flanks
@@ -105,7 +105,7 @@ def _corners(
     """Return the ends of flanks at a reach, (n, 1), and the rolls over which to follow them."""
     sf, sigma = flanks
     corner = toothing.flank_points(
-        toothing.frames(toothing.rolling.angle(sf - sigma * reach), curved=False), sf, sigma
+        toothing.frames(toothing.track.angle(sf - sigma * reach), curved=False), sf, sigma
     )
     steps = np.arange(-window, window + 0.5 / _ROLLS, 1.0 / _ROLLS)
     rolls = sf[:, None] + toothing.pitch * steps
@@ -121,7 +121,7 @@ def _in_mate(
 ) -> Plane:
     """Return the paths of corners in the mate's frame, (n, rolls)."""
     corner, rolls = _corners(toothing, flanks, reach, window)
-    phi = toothing.rolling.angle(rolls)
+    phi = toothing.track.angle(rolls)
     own, other = toothing.frames(phi, curved=False), mate.frames(phi, curved=False)
     # both tangents are one, and the outward normals opposite
     along = np.conj(own.t) * (corner - own.p)
@@ -131,7 +131,7 @@ def _in_mate(
 def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:
     """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll."""
     corner, rolls = _corners(toothing, flanks, reach, _WINDOW)
-    frames = toothing.frames(toothing.rolling.angle(rolls), curved=False)
+    frames = toothing.frames(toothing.track.angle(rolls), curved=False)
     down = np.real(np.conj(toothing.turn * frames.t) * (corner - frames.p))
     clearance = cutter.dedendum - toothing.cutter.addendum
     return np.any(down > cutter.dedendum - _CAUTION * clearance, axis=1)

@@ -20,6 +20,9 @@ _CONCAVE_MARGIN = 1.15
 _FLAT = 1e-9
 """Curvature times module below which a centrode counts as straight, not concave (rounding)."""
 
+_LAND = 1e-9
+"""Share of half a space by which a cutter's tooth may be pointed: rounding of the search for it."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Cutter:
@@ -36,7 +39,7 @@ class Cutter:
         Curvature of the cutter's pitch circle; 0 for the rack.
     half_space : float, mm
         Half the width of a space on the pitch curve: pi*m/4, less what the profile shift adds to
-        the teeth, more what the play takes from them.
+        the teeth, more what the backlash takes from them.
     pitch : float, mm
         pi*m.
     """
@@ -61,7 +64,7 @@ class Cutter:
 
     @cached_property
     def reach(self) -> float:
-        """Roll from the pitch point of a flank to its joint with the fillet, mm: |s - sf|.
+        """Roll from the pitch point of a flank to its form point, where its fillet begins, mm.
 
         Rack: ``(d/sin(alpha) + rho)/cos(alpha)``. Pinion: ``(t + rho)/cos(alpha)`` with
         ``t = R*sin(alphaR) - sin(alpha)/kc``, ``R = 1/kc + d``, ``cos(alphaR) =
@@ -91,7 +94,7 @@ class Cutter:
     @property
     def fits(self) -> bool:
         """Whether a tooth of it is as deep as the dedendum before it is pointed."""
-        return self.offset <= self.half_space * (1.0 + 1e-9)
+        return self.offset <= self.half_space * (1.0 + _LAND)
 
     @cached_property
     def least_concave_radius(self) -> float:
@@ -102,11 +105,6 @@ class Cutter:
             fits = replace(self, kc=middle).offset <= self.half_space
             low, high = (middle, high) if fits else (low, middle)
         return _CONCAVE_MARGIN / low if low > 0.0 else math.inf
-
-    @property
-    def joint_height(self) -> float:
-        """Rack height of the joint of flank and fillet, mm, negative: below the pitch curve."""
-        return -self.reach * math.sin(self.alpha) * math.cos(self.alpha)
 
 
 def choose_cutter(
@@ -131,7 +129,7 @@ def choose_cutter(
     shift : float
         Profile shift of this wheel, in modules.
     backlash : float, mm
-        Play along the pitch curve; each wheel gives half of it.
+        Along the pitch curve; each wheel gives half of it.
     clearance : float, mm
         What is taken off the toothed edge, along its normal: a cutter larger all around by it.
 

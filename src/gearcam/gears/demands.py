@@ -1,4 +1,4 @@
-"""What a basic rack, a profile shift and a play must leave: teeth with lands, roots and addenda."""
+"""What basic rack, profile shift and backlash must leave: teeth with lands, roots and addenda."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ whole fillet at one instant."""
 _LEAST_ADDENDUM = 0.1
 """Smallest addendum that a profile shift may leave, in modules."""
 
-_MOST_PLAY = 2.0
+_MOST_BACKLASH = 2.0
 """Largest backlash over half the thickness of the thinner teeth: half of them is left."""
 
 _SHARE = 0.98
@@ -25,6 +25,7 @@ _SHALLOW = 0.8
 """Addendum over dedendum of the common rack, where one of them follows the other."""
 
 _ROUNDING = 1e-12
+"""What is rounding of a limit: in modules, and as a share of it."""
 
 
 def settle_rack(asked: Rack, x: float) -> BasicRack:
@@ -121,7 +122,7 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
                 Way(near={"rack.addendum": 0.7 * deepest}),
             ),
         )
-    if rack.tip_radius > largest * (1.0 + 1e-12):
+    if rack.tip_radius > largest * (1.0 + _ROUNDING):
         raise InfeasibleError(
             "the rack's tip radius leaves its tooth no land",
             where="rack.tip_radius",
@@ -133,14 +134,14 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
 
 
 def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
-    """Refuse a profile shift or a play that leaves a wheel without teeth or roots.
+    """Refuse a profile shift or a backlash that leaves a wheel without teeth or roots.
 
     Parameters
     ----------
     rack : BasicRack
         Basic rack.
     spec : PairSpec
-        Shift and play.
+        Shift and backlash.
     module : float, mm
         Module.
 
@@ -160,7 +161,7 @@ def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
             ways=(Way(near={"pair.x": math.copysign(largest, spec.x)}, far={"pair.x": 0.0}),),
         )
     thinnest = 0.25 * math.pi - abs(spec.x) * math.tan(rack.pressure_angle)
-    most = _MOST_PLAY * thinnest * module
+    most = _MOST_BACKLASH * thinnest * module
     if spec.backlash > most:
         raise InfeasibleError(
             "so much backlash leaves no teeth",
@@ -183,7 +184,7 @@ def demand_clearance(
     rack : BasicRack
         Basic rack.
     spec : PairSpec
-        Shift and play.
+        Shift and backlash.
     module : float, mm
         Module.
     finish : (Finish, Finish)

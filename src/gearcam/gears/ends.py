@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.gears.flank import Kind, Rows, Toothing
+from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import TipEnds
 from gearcam.numeric.bulges import as_pairs
@@ -30,7 +30,7 @@ _GAP = 0.1
 """Angle, rad, that the ends of a wheel leave free between them."""
 
 _WHOLE = 350.0
-"""Way of a wheel, deg, beyond which no tooth count helps."""
+"""Travel of a wheel, deg, beyond which no tooth count helps."""
 
 _HUB = 0.6
 """Radius of the hub over the smallest radius that the body has room for."""
@@ -53,7 +53,7 @@ def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
     Rows
         From half a pitch before the centrode to half a pitch behind it.
     """
-    start, end = toothing.rolling.angle(toothing.ends)
+    start, end = toothing.track.angle(toothing.ends)
     if toothing.wheel == 1:
         first, last = toothing.numbers[0], toothing.numbers[-1]
         outside = ((rows.tooth == first) & (rows.sigma > 0.0)) | (rows.tooth == last)
@@ -87,7 +87,7 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
     corner[0] = True
     for row, place, cut, height in ((0, start, begin, low), (-1, end, finish, high)):
         span = rows.end[row] - rows.start[row]
-        if rows.kind[row] >= Kind.LAND and span > 0.0:
+        if rows.kind[row] >= Curve.LAND and span > 0.0:
             share = min(max((place - rows.start[row]) / span, 0.0), 1.0)
             cut[row] = rows.start[row] + share * span
             height[row] = rows.low[row] + share * (rows.high[row] - rows.low[row])
@@ -120,12 +120,12 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         If the ends meet: the wheel would turn by a full turn or more.
     """
     points = toothed @ [1.0, 1j]
-    frames = toothing.frames(toothing.rolling.angle(toothing.ends))
+    frames = toothing.frames(toothing.track.angle(toothing.ends))
     depth = toothing.cutter.dedendum + _BELOW * toothing.pitch / math.pi
     inner = frames.p - depth * toothing.turn * frames.t
     inner = inner if toothing.wheel == 1 else inner[::-1]
     first, last = complex(points[0]), complex(points[-1])
-    if toothing.wheel == 2 and toothing.rolling.law.feeds:
+    if toothing.track.slides:
         back = points.real.max() + depth
         corners = [complex(back, point.imag) for point in (inner[1], inner[0])]
         chain = [last, inner[1], *corners, inner[0], first]
@@ -135,8 +135,8 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
     span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))
     if span >= 2.0 * math.pi - _GAP:
         name = ("driver", "driven wheel")[toothing.wheel - 1]
-        lobes = toothing.rolling.law.lobes
-        travel = math.degrees(lobes.period if toothing.wheel == 1 else lobes.advance)
+        ways = toothing.track.rotation(np.array([0.0, toothing.track.around]))
+        travel = math.degrees(ways[1] - ways[0])
         limit = travel * (2.0 * math.pi - _GAP) / span
         raise InfeasibleError(
             f"the ends of the {name} meet behind its shaft",

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.cutter import Cutter
-from gearcam.gears.rolling import TURN, Frames, Plane, Rolling, Wheel
+from gearcam.gears.track import Frames, Plane, Track, Wheel
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-class Kind(IntEnum):
+class Curve(IntEnum):
     """The kinds of curve that an outline is made of."""
 
     FLANK = 0
@@ -35,38 +35,40 @@ class Kind(IntEnum):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Toothing:
-    """A wheel's centrode with its cutter and tooth places.
+    """A track with its cutter and tooth places.
 
     Parameters
     ----------
-    rolling : Rolling
-        The pair of centrodes.
+    track : Track
+        Its centrode.
     wheel : {1, 2}
-        Which wheel.
+        Which wheel of a pair: at s = 0 wheel 1 has the middle of a tooth, wheel 2 of a space.
     teeth : int
         Its number of teeth: pitches along its centrode.
     cutter : Cutter
         Its cutter.
-    closed : bool
-        Whether its teeth go all around; else its blank ends half a pitch beyond them.
     moved : float, mm
         How far its teeth are moved on along its centrode.
     rounding : float, mm
         Radius of the rounded edges of its tips.
     """
 
-    rolling: Rolling
+    track: Track
     wheel: Wheel
     teeth: int
     cutter: Cutter
-    closed: bool = True
     moved: float = 0.0
     rounding: float = 0.0
 
     @property
+    def closed(self) -> bool:
+        """Whether its teeth go all around; else its blank ends half a pitch beyond them."""
+        return self.track.closed
+
+    @property
     def turn(self) -> complex:
         """``N = turn*T``."""
-        return TURN[self.wheel]
+        return self.track.turn
 
     @property
     def pitch(self) -> float:
@@ -112,26 +114,30 @@ class Toothing:
         return self.moved + self.pitch * np.arange(first, first + len(self.numbers))
 
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
-        """Return the frames of this wheel at driver angles, rad (see `Rolling.frames`)."""
-        return self.rolling.frames(self.wheel, phi, curved=curved)
+        """Return the frames of its track at driver angles, rad (see `Track.frames`)."""
+        return self.track.frames(phi, curved=curved)
 
-    def flank_points(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
-        """Return points of flanks (`sf`, `sigma`) at `frames`: feet from the pitch point."""
-        cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)
-        normal = frames.t * (cosine + sigma * sine * self.turn)
-        return frames.p + (sf - frames.s) * cosine * normal
+    def normals(self, frames: Frames, sigma: Array | float) -> Plane:
+        """Return unit normals of flanks `sigma` at `frames`, towards rising s on both sides."""
+        alpha = self.cutter.alpha
+        return frames.t * (np.cos(alpha) + sigma * np.sin(alpha) * self.turn)
 
-    def flank_motion(self, frames: Frames, sf: Array, sigma: Array) -> Plane:
+    def ahead(self, frames: Frames, sf: Array) -> Array:
+        """Return how far flanks `sf` are from the points of `frames`, along the normals, mm."""
+        return (sf - frames.s) * np.cos(self.cutter.alpha)
+
+    def flank_points(self, frames: Frames, sf: Array, sigma: Array | float) -> Plane:
+        """Return points of flanks (`sf`, `sigma`) at `frames`."""
+        return frames.p + self.ahead(frames, sf) * self.normals(frames, sigma)
+
+    def flank_motion(self, frames: Frames, sf: Array, sigma: Array | float) -> Plane:
         """Return how points of flanks (`sf`, `sigma`) move with the driver angle at `frames`."""
         g = sigma * self.regularity(frames, sf, sigma)
-        return (
-            -g * frames.speed * self.turn * frames.t * np.exp(self.turn * sigma * self.cutter.alpha)
-        )
+        return -g * frames.speed * self.turn * self.normals(frames, sigma)
 
-    def regularity(self, frames: Frames, sf: Array, sigma: Array) -> Array:
+    def regularity(self, frames: Frames, sf: Array, sigma: Array | float) -> Array:
         """Return sigma*g of flanks (`sf`, `sigma`) at `frames`: not positive where undercut."""
-        cosine, sine = np.cos(self.cutter.alpha), np.sin(self.cutter.alpha)
-        return sine + sigma * (sf - frames.s) * frames.kappa * cosine
+        return np.sin(self.cutter.alpha) + sigma * self.ahead(frames, sf) * frames.kappa
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -141,7 +147,7 @@ class Rows:
     Parameters
     ----------
     kind : (n,) int array
-        `Kind`.
+        `Curve`.
     sf, sigma : (n,) arrays
         Flank that a flank or fillet belongs to; of a rounded edge the flank on which its centre
         lies; unused for land and tip.
@@ -193,15 +199,14 @@ def trace(
     kind = rows.kind[index]
     points, tangents = np.empty((2, len(phi)), dtype=np.complex128)
 
-    flank = np.flatnonzero(kind == Kind.FLANK)
+    flank = np.flatnonzero(kind == Curve.FLANK)
     if flank.size:
         frames = toothing.frames(phi[flank], curved=False)
         sf, sigma = rows.sf[index[flank]], rows.sigma[index[flank]]
-        normal = frames.t * (np.cos(cutter.alpha) + sigma * np.sin(cutter.alpha) * w)
-        points[flank] = frames.p + (sf - frames.s) * np.cos(cutter.alpha) * normal
-        tangents[flank] = -sigma * w * normal
+        points[flank] = toothing.flank_points(frames, sf, sigma)
+        tangents[flank] = -sigma * w * toothing.normals(frames, sigma)
 
-    fillet = np.flatnonzero(kind == Kind.FILLET)
+    fillet = np.flatnonzero(kind == Curve.FILLET)
     if fillet.size:
         frames = toothing.frames(phi[fillet], curved=False)
         sf, sigma = rows.sf[index[fillet]], rows.sigma[index[fillet]]
@@ -211,7 +216,7 @@ def trace(
         points[fillet] = frames.p + arm + cutter.tip_radius * unit
         tangents[fillet] = w * unit
 
-    rounded = np.flatnonzero(kind == Kind.ROUND)
+    rounded = np.flatnonzero(kind == Curve.ROUND)
     if rounded.size:
         row = index[rounded]
         start, end, sigma = rows.start[row], rows.end[row], rows.sigma[row]
@@ -222,7 +227,7 @@ def trace(
         points[rounded] = center + toothing.rounding * normal
         tangents[rounded] = normal / w
 
-    parallel = np.flatnonzero((kind == Kind.LAND) | (kind == Kind.TIP))
+    parallel = np.flatnonzero((kind == Curve.LAND) | (kind == Curve.TIP))
     if parallel.size:
         frames, row = toothing.frames(phi[parallel]), index[parallel]
         span = rows.end[row] - rows.start[row]

@@ -8,7 +8,7 @@ As designed the rolls are equal and the lead is 0. It is the same for all pairs 
 flanks: they touch together at any distance of the shafts.
 
 Positions are those of the mounted pair: O1 at 0, O2 at the distance of the shafts, as complex
-numbers. A rack has no O2; its lead is a way, mm, in the direction in which it is driven.
+numbers. A rack has no O2; its lead is part of its travel, mm.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Frames, Plane
+from gearcam.gears.guide import Guide
+from gearcam.gears.track import Frames, Plane, Track, Wheel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -51,6 +52,8 @@ class Mounting:
     ----------
     toothings : (Toothing, Toothing)
         Driver and driven wheel.
+    guide : Guide
+        What guides the driven one.
     side : {-1, +1}
         sigma of the driver's flanks.
     distance : float, mm
@@ -58,13 +61,23 @@ class Mounting:
     """
 
     toothings: tuple[Toothing, Toothing]
+    guide: Guide
     side: int
     distance: float
+
+    @property
+    def track(self) -> Track:
+        """The driver's track; the driven one shares its parameter and arc length."""
+        return self.toothings[0].track
 
     @property
     def pitch(self) -> float:
         """Pitch, mm."""
         return self.toothings[0].pitch
+
+    def sigma(self, wheel: Wheel) -> int:
+        """Return sigma of a wheel's flanks."""
+        return self.side if wheel == 1 else -self.side
 
 
 class Pose(NamedTuple):
@@ -77,7 +90,7 @@ class Pose(NamedTuple):
     one, two : arrays, rad
         Driver angles that name the rolls of driver and driven wheel.
     lead : array, rad
-        How far the driven wheel is ahead of its nominal place; of a rack its way, mm.
+        How far the driven wheel is ahead of its nominal place; of a rack in its travel, mm.
     """
 
     phi1: Array
@@ -121,7 +134,7 @@ class Normals:
         return -_solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
 
 
-def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
+def normals(mounting: Mounting, pose: Pose, separation: Array) -> Normals:
     """Return normals of both wheels' flanks, and what they miss of being one.
 
     Parameters
@@ -130,7 +143,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
         The wheels and the side.
     pose : Pose
         Of n pairs.
-    play : (n,) array, mm
+    separation : (n,) array, mm
         sf2 - sf1.
 
     Returns
@@ -148,25 +161,20 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
         toothing.frames(angle)
         for toothing, angle in zip(mounting.toothings, (one, two), strict=True)
     )
-    rolling, alpha = mounting.toothings[0].rolling, mounting.toothings[0].cutter.alpha
-    law, size = rolling.law, rolling.center_distance
-    cosine, tilt = math.cos(alpha), complex(math.cos(alpha), -mounting.side * math.sin(alpha))
-    turned = np.exp(-1j * phi1)
-    foot1, n1 = first.p * turned, first.t * (tilt * turned)
-    nominal, ratio = law.phi2(phi1), law.derivatives(phi1, 0)[0]
-    if law.feeds:
-        foot2 = second.p - 1j * (size * nominal + lead) + mounting.distance
-        tangent2, carried, turns = second.t, np.full(phi1.shape, -1j), 0.0
-        ratio = size * ratio
-    else:
-        back = np.exp(1j * (nominal + lead))
-        foot2, tangent2, turns = second.p * back, second.t * back, 1.0
-        carried = 1j * foot2
-        foot2 = foot2 + mounting.distance
-    n2 = tangent2 * tilt
+    guide, alpha = mounting.guide, mounting.toothings[0].cutter.alpha
+    cosine, turned = math.cos(alpha), np.exp(-1j * phi1)
+    n1, n2 = (
+        toothing.normals(frames, mounting.sigma(toothing.wheel))
+        for toothing, frames in zip(mounting.toothings, (first, second), strict=True)
+    )
+    back, shift = guide.stand(phi1, lead)
+    foot1, n1 = first.p * turned, n1 * turned
+    foot2, n2, tangent2 = second.p * back + shift, n2 * back, second.t * back
+    carried, turns, ratio = guide.carried(foot2), guide.turns, guide.rate(phi1)
+    foot2 = foot2 + mounting.distance
     across = np.conj(n1) * (foot2 - foot1)
     aligned = np.conj(n2) * n1
-    distance = across.real + (first.s - second.s + play) * cosine
+    distance = across.real + (first.s - second.s + separation) * cosine
     by_lead = np.conj(n1) * carried
     by_one = -1j * (first.kappa * across + mounting.side * math.sin(alpha))
     by_two = np.conj(n1) * tangent2 - cosine
@@ -189,7 +197,7 @@ def normals(mounting: Mounting, pose: Pose, play: Array) -> Normals:
 
 
 def touch(
-    mounting: Mounting, start: Array, play: Array, known: Ints | int = 0
+    mounting: Mounting, start: Array, separation: Array, known: Ints | int = 0
 ) -> tuple[Pose, Mask]:
     """Find where flanks touch.
 
@@ -200,7 +208,7 @@ def touch(
     start : (n,) array, rad
         What is known: the phase, or the driver angle that names the roll of a wheel. As designed
         all three are equal, so that the search begins there.
-    play : (n,) array, mm
+    separation : (n,) array, mm
         sf2 - sf1.
     known : int or (n,) int array
         Which it is: 0 the phase, 1 the driver's roll, 2 the driven wheel's.
@@ -215,16 +223,16 @@ def touch(
     x = np.stack([start, start, start, np.zeros(start.shape)])
     free = _FREE[np.broadcast_to(known, start.shape)].T
     rows = np.arange(start.size)
-    speed = np.maximum(mounting.toothings[0].frames(start, curved=False).speed, 1e-300)
+    speed = mounting.track.frames(start, curved=False).speed
     longest = 0.5 * mounting.pitch
-    at = normals(mounting, Pose(*x), play)
+    at = normals(mounting, Pose(*x), separation)
     for _ in range(_STEPS):
         step = -_solve(at.slopes[:, free, rows], at.equations)
         size = np.abs(step[:2]).max(axis=0) * speed
         with np.errstate(invalid="ignore", divide="ignore"):
             step = step * np.minimum(1.0, longest / size)
         x[free, rows] += np.where(np.isfinite(step), step, 0.0)
-        at = normals(mounting, Pose(*x), play)
+        at = normals(mounting, Pose(*x), separation)
         if not np.any(size > _SMALL * mounting.pitch):
             break
     found = np.abs(at.equations[0]) <= _MISS

@@ -11,23 +11,23 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
-from gearcam.gears.flank import Kind, Rows, Toothing
+from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.rounding import round_tips
 from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
     entangled,
     join,
-    meet,
     regular_rows,
     select,
     untangle,
 )
-from gearcam.gears.tips import TipEnds, feet, find_tips
+from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
+from gearcam.gears.track import Plane
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
-from gearcam.numeric.crossings import Place
+from gearcam.numeric.crossings import CurvePoint
 from gearcam.numeric.sampling import Sampler
 from gearcam.tolerances import Tolerances
 
@@ -38,6 +38,9 @@ Mask = NDArray[np.bool_]
 _NO_MATE = 3.0
 """Reach in pitches that no flank has."""
 
+_AT_TIP = 1e-12
+"""Share of a flank's reach within which a cusp is at its tip: rounding."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Flanks:
@@ -46,7 +49,7 @@ class Flanks:
     Parameters
     ----------
     sf, sigma : (2z,) arrays, mm and 1
-        Place on the pitch curve and side.
+        CurvePoint on the pitch curve and side.
     cusps : Undercut
         Cusps.
     tips : TipEnds
@@ -64,7 +67,7 @@ class Flanks:
 
     @property
     def undercut(self) -> Mask:
-        """Whether a flank turns back on itself between its joint and its tip, (2z,)."""
+        """Whether a flank turns back on itself between its form point and its tip, (2z,)."""
         return np.isfinite(self.cusps.dedendum) | np.isfinite(self.cusps.addendum)
 
 
@@ -104,7 +107,7 @@ class Outline:
     @property
     def _reversed(self) -> bool:
         """Whether rising s runs clockwise."""
-        return self.toothing.wheel == 2
+        return self.toothing.track.clockwise
 
     @cached_property
     def toothed(self) -> Array:
@@ -156,6 +159,31 @@ class Outline:
         return np.abs(ends[:z] - ends[z:])[self.toothing.whole]
 
     @property
+    def whole_flanks(self) -> Mask:
+        """Which flanks belong to whole teeth, (2z,)."""
+        whole = np.zeros(len(self.toothing.numbers), dtype=bool)
+        whole[self.toothing.whole] = True
+        return np.tile(whole, 2)
+
+    def flank_places(self, reach: Array) -> tuple[Plane, Plane]:
+        """Return points and outward unit normals of all flanks at some reaches.
+
+        Parameters
+        ----------
+        reach : (k, 2z) array, mm
+            Reach w of k places on each flank.
+
+        Returns
+        -------
+        points, normals : (k, 2z) complex arrays, mm and 1
+            In the wheel's frame.
+        """
+        sf, sigma = np.broadcast_arrays(self.flanks.sf, self.flanks.sigma, reach)[:2]
+        frames = self.toothing.frames(self.toothing.track.angle(sf - sigma * reach), curved=False)
+        normals = sigma * self.toothing.normals(frames, sigma)
+        return self.toothing.flank_points(frames, sf, sigma), normals
+
+    @property
     def tip_height(self) -> Array:
         """Distance of each whole tooth's lower flank end from the centrode, (z,), mm."""
         z, height = len(self.toothing.numbers), self.flanks.tips.height
@@ -186,8 +214,8 @@ def build_outline(
         The wheel.
     mate : Toothing or None
         The other wheel: flanks end where its flanks do, since beyond there is nothing to
-        touch but its fillet, and where their corners would meet its root. None: only the tip curve
-        ends them, for comparison.
+        touch but its fillet, and where their corners would meet its root. None: only the addendum
+        curve ends them, for comparison.
     tolerance : float, mm
         Largest chord error.
     tolerances : Tolerances
@@ -231,7 +259,7 @@ def _find_flanks(
     cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
     if mate is not None and tolerance is not None:
-        reach = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+        reach = sigma * (sf - toothing.track.arc_length(tips.phi))
 
         def mate_outline() -> Array:
             return build_outline(mate, toothing, tolerance, tolerances, follow=False).points
@@ -241,9 +269,9 @@ def _find_flanks(
             limit = np.where(allowed < reach, allowed, np.minimum(cusps.addendum, mate_reach))
             tips = find_tips(toothing, sf, sigma, limit)
     tips = _sharpen(toothing, sf, sigma, tips)
-    highest = sigma * (sf - toothing.rolling.arc_length(tips.phi))
+    highest = sigma * (sf - toothing.track.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
-    addendum = np.where(cusps.addendum <= highest * (1.0 + 1e-12), cusps.addendum, np.inf)
+    addendum = np.where(cusps.addendum <= highest * (1.0 + _AT_TIP), cusps.addendum, np.inf)
     lowest = np.full(2 * z, -toothing.cutter.reach)
     return Flanks(
         sf=sf,
@@ -262,25 +290,11 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
     if pointed.size == 0:
         return tips
     phi, foot, height = tips.phi.copy(), tips.foot.copy(), tips.height.copy()
-    full = tips.full.copy()
-    base = toothing.rolling.angle(sf)
-    zero = np.zeros(2 * z)
-    rows = Rows(
-        kind=np.full(2 * z, Kind.FLANK),
-        sf=sf,
-        sigma=sigma,
-        start=base,
-        end=tips.phi,
-        low=zero,
-        high=zero,
-        corner=zero.astype(bool),
-        tooth=np.tile(toothing.numbers, 2),
-    )
-    for tooth in pointed:
-        found = meet(toothing, rows, int(tooth), int(z + tooth))
-        if found is not None:
-            phi[tooth], phi[z + tooth] = found
-            full[[tooth, z + tooth]] = False
+    full, base = tips.full.copy(), toothing.track.angle(sf)
+    both = np.stack([pointed, z + pointed])
+    crossing, met = flank_crossings(toothing, sf[both], sigma[both], phi[both])
+    met &= np.all((crossing - base[both]) * (phi[both] - crossing) >= 0.0, axis=0)
+    phi[both[:, met]], full[both[:, met]] = crossing[:, met], False
     frames = toothing.frames(phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
     low, high = base[z + pointed], base[pointed]
@@ -306,27 +320,23 @@ def _assemble(
     joined = join(parts)
     if not toothing.closed:
         joined = cut_ends(toothing, joined, flanks.tips)
-    pointed = (joined.kind == Kind.TIP) & (joined.start == joined.end)
+    pointed = (joined.kind == Curve.TIP) & (joined.start == joined.end)
     joined = select(joined, np.flatnonzero(~pointed))
     flanks = replace(flanks, lowest=lowest)
     if not toothing.rounding:
         return joined, flanks
-    joined, sf, sigma, reach = round_tips(toothing, joined)
-    highest = flanks.highest.copy()
-    tooth = np.rint((sf - sigma * toothing.half_tooth - toothing.tooth_places[0]) / toothing.pitch)
-    z = len(toothing.numbers)
-    highest[tooth.astype(np.int64) % z + np.where(sigma > 0, 0, z)] = reach
-    return joined, replace(flanks, highest=highest)
+    joined, highest = round_tips(toothing, joined, (flanks.sf, flanks.sigma), flanks.tips)
+    return joined, replace(flanks, highest=np.where(np.isfinite(highest), highest, flanks.highest))
 
 
-def _trim(toothing: Toothing, rows: Rows, lowest: Array, places: list[Place]) -> None:
+def _trim(toothing: Toothing, rows: Rows, lowest: Array, places: list[CurvePoint]) -> None:
     """Write down how far the flanks of an untangled space still reach."""
     z, first = len(toothing.numbers), toothing.numbers[0]
     for number, phi in places:
-        if rows.kind[number] == Kind.FLANK:
+        if rows.kind[number] == Curve.FLANK:
             sf, sigma = rows.sf[number], rows.sigma[number]
             flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
-            reach = sigma * (sf - float(toothing.rolling.arc_length(phi)))
+            reach = sigma * (sf - float(toothing.track.arc_length(phi)))
             # A flank that crosses itself counts down to its first loop only.
             lowest[flank] = max(lowest[flank], reach)
 
@@ -339,7 +349,7 @@ def _demand_simple(outline: Outline) -> None:
     if LinearRing(outline.points).is_simple and not repeats:
         return
     toothing = outline.toothing
-    kappa = float(toothing.rolling.curvature_extremes(toothing.wheel)[1].max())
+    kappa = float(toothing.track.curvature_extremes[1].max())
     largest = np.sin(toothing.cutter.alpha) ** 2 / kappa if kappa > 0.0 else 0.0
     raise InfeasibleError(
         f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
@@ -360,7 +370,7 @@ def _demand_shaft(outline: Outline) -> None:
     if abs(float(np.angle(points[1:] * np.conj(points[:-1])).sum())) > np.pi:
         return
     toothing = outline.toothing
-    turn = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+    turn = toothing.track.around
     radius = float(np.abs(toothing.frames(np.linspace(0.0, turn, 1441)).p).min())
     module = toothing.pitch / np.pi
     largest = module * radius / toothing.cutter.dedendum

@@ -15,8 +15,9 @@ from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
-from gearcam.gears.rolling import Rolling, Wheel, roll
+from gearcam.gears.rolling import RACK, Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
+from gearcam.gears.track import Wheel
 from gearcam.laws.base import RatioLaw
 from gearcam.laws.span import Lobes
 from gearcam.numeric.bulges import as_pairs
@@ -26,6 +27,12 @@ Array = NDArray[np.float64]
 
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: finer ones would be lost in rounding."""
+
+_USUAL = 1e-3
+"""Default tolerance of an outline, mm: a micrometre is finer than any machine that cuts teeth."""
+
+_PARTS = 1000.0
+"""Parts of a module of which one is the default where that is finer."""
 
 COARSEST = 1.0 / 50.0
 """Coarsest tolerance of an outline, in modules: beyond it teeth are no longer teeth."""
@@ -68,7 +75,12 @@ class GearPair:
     @property
     def shift(self) -> float:
         """Place of wheel 2's frame in that of wheel 1 at phi1 = 0, mm along x."""
-        return self.rolling.shift
+        return self.rolling.guide.place
+
+    @property
+    def on_rack(self) -> bool:
+        """Whether the driven element is a rack."""
+        return self.rolling.mate == RACK
 
     @property
     def closed(self) -> bool:
@@ -84,7 +96,7 @@ class GearPair:
             If it is coarser than m/50 or too fine for double precision.
         """
         if asked is None:
-            return min(1e-3, self.module / 1000.0)
+            return min(_USUAL, self.module / _PARTS)
         low, high = FINEST * self.module, COARSEST * self.module
         if not low <= asked <= high:
             fine = asked < low
@@ -160,12 +172,12 @@ class Gear:
     @property
     def curvatures(self) -> Array:
         """All extremes of the centrode's curvature, 1/mm."""
-        return self.pair.rolling.curvature_extremes(self.wheel)[1]
+        return self.toothing.track.curvature_extremes[1]
 
     @property
     def curvature_places(self) -> Array:
         """Driver angles of `curvatures`, rad."""
-        return self.pair.rolling.curvature_extremes(self.wheel)[0]
+        return self.toothing.track.curvature_extremes[0]
 
     def centrode(self, phi: Array) -> Array:
         """Return points of the centrode at driver angles, rad: (n, 2), mm, in the wheel's frame."""
@@ -204,14 +216,6 @@ def make_pair(
     InfeasibleError
         If the rack cannot be made, or a concave part is too tight for the teeth.
     """
-    if law.feeds and spec.center_distance is not None:
-        raise InfeasibleError(
-            "a rack has no shaft",
-            where="pair.center_distance_mm",
-            value=spec.center_distance,
-            unit="mm",
-            nearest="module_mm is given instead: with the tooth count it is the size of the wheel",
-        )
     rolling = roll(
         law,
         teeth=spec.teeth,
@@ -219,13 +223,22 @@ def make_pair(
         module=spec.module,
         tolerances=tolerances,
     )
-    module = spec.module or rolling.length(1) / (math.pi * spec.teeth[0])
+    if rolling.mate == RACK and spec.center_distance is not None:
+        raise InfeasibleError(
+            "a rack has no shaft",
+            where="pair.center_distance_mm",
+            value=spec.center_distance,
+            unit="mm",
+            nearest="module_mm is given instead: with the tooth count it is the size of the wheel",
+        )
+    module = spec.module or rolling.tracks[0].length / (math.pi * spec.teeth[0])
     rack = settle_rack(asked, spec.x)
     demand_shift(rack, spec, module)
     demand_clearance(rack, spec, module, finish)
 
     def toothing(wheel: Wheel) -> Toothing:
-        concave = -float(rolling.curvature_extremes(wheel)[1].min())
+        track = rolling.tracks[wheel - 1]
+        concave = -float(track.curvature_extremes[1].min())
         cutter = choose_cutter(
             rack,
             module,
@@ -235,11 +248,10 @@ def make_pair(
             clearance=finish[wheel - 1].clearance,
         )
         return Toothing(
-            rolling=rolling,
+            track=track,
             wheel=wheel,
             teeth=spec.teeth[wheel - 1],
             cutter=cutter,
-            closed=law.lobes.closed and not (law.feeds and wheel == 2),
             rounding=finish[wheel - 1].tip_rounding,
         )
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.flank import Kind, Rows, Toothing, trace
-from gearcam.gears.rolling import Plane
+from gearcam.gears.flank import Curve, Rows, Toothing, trace
+from gearcam.gears.track import Plane
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -48,10 +48,10 @@ class WheelCurves:
     @property
     def breaks(self) -> tuple[Index, Array]:
         """Rows and driver angles, rad, of the law's knots inside rows."""
-        law, rows = self.toothing.rolling.law, self.rows
+        rows = self.rows
         low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
-        phi = law.knots_near(0.5 * (low + high))
-        curved = rows.kind != Kind.ROUND  # an arc knows nothing of the law
+        phi = self.toothing.track.knots_near(0.5 * (low + high))
+        curved = rows.kind != Curve.ROUND  # an arc knows nothing of the law
         row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]) & curved[:, None])
         return row, phi[row, knot]
 

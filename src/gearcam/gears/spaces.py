@@ -15,12 +15,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.flank import Kind, Rows, Toothing
-from gearcam.gears.rolling import Plane
+from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.tips import TipEnds
+from gearcam.gears.track import Plane
 from gearcam.gears.undercut import Undercut
-from gearcam.numeric.crossings import Chain, Place, Span, remaining, rows_between
+from gearcam.numeric.crossings import Branch, Chain, CurvePoint, remaining, rows_between
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -53,13 +53,13 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     following, count = np.append(np.arange(1, z), 0), z
     wrap, around = np.zeros(z), np.zeros(z)
     if toothing.closed:
-        wrap[-1] = toothing.rolling.law.lobes.period * toothing.rolling.lobe_count(toothing.wheel)
+        wrap[-1] = toothing.track.around
         around[-1] = toothing.length
     else:
         following, wrap, around, count = following[:-1], wrap[:-1], around[:-1], z - 1
     plus = places[:count] + half
     minus = places[following] + around - half
-    joints = toothing.rolling.angle(
+    joints = toothing.track.angle(
         np.stack(
             [
                 plus + cutter.reach,
@@ -76,7 +76,7 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     land = np.full(count, -cutter.dedendum)
     number = np.array(toothing.numbers)
     table = {
-        "kind": [Kind.FLANK, Kind.FILLET, Kind.LAND, Kind.FILLET, Kind.FLANK, Kind.TIP],
+        "kind": [Curve.FLANK, Curve.FILLET, Curve.LAND, Curve.FILLET, Curve.FLANK, Curve.TIP],
         "sf": [plus, plus, zero, minus, minus, zero],
         "sigma": [one, one, zero, -one, -one, zero],
         "start": [top_plus, joints[0], joints[1], joints[2], joints[3], tip_start],
@@ -114,7 +114,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
     undercut = np.isfinite(cusps.dedendum)
     loops = undercut[:z] | np.roll(undercut[z:], -1)
     loops = loops if toothing.closed else loops[:-1]
-    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    kappa = toothing.track.curvature_extremes[1]
     if kappa.max() * toothing.cutter.dedendum >= 0.9:
         start, end = rows.start[1::ROWS_PER_TOOTH], rows.end[3::ROWS_PER_TOOTH]
         steps = start + (end - start) * np.linspace(0.0, 1.0, 65)[:, None]
@@ -123,7 +123,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
     return np.flatnonzero(loops)
 
 
-def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, list[Place]]]:
+def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, list[CurvePoint]]]:
     """Take the loops out of spaces.
 
     Parameters
@@ -137,7 +137,7 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, 
 
     Returns
     -------
-    list of (Rows, list of Place)
+    list of (Rows, list of CurvePoint)
         For each space the curves that are left, with the tip behind them, and the rows and driver
         angles, rad, at which loops begin and end; none where there is no loop.
     """
@@ -145,43 +145,13 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, 
     made = []
     for space, rings in zip(spaces, remaining(curves, _chains(curves, spaces)), strict=True):
         tip = ROWS_PER_TOOTH * (int(space) + 1) - 1
-        (*inner, last), *_ = (ring.spans for ring in rings)
-        spans = [*inner, Span(last.begin, Place(tip, float(rows.end[tip])))]
-        index, start, end, corner = rows_between(curves, spans)
+        (*inner, last), *_ = (ring.branches for ring in rings)
+        branches = [*inner, Branch(last.begin, CurvePoint(tip, float(rows.end[tip])))]
+        index, start, end, corner = rows_between(curves, branches)
         left = replace(select(rows, index), start=start, end=end, corner=corner)
-        places = [place for one, two in pairwise(spans) for place in (one.end, two.begin)]
+        places = [place for one, two in pairwise(branches) for place in (one.end, two.begin)]
         made.append((left, places))
     return made
-
-
-def meet(toothing: Toothing, rows: Rows, one: int, other: int) -> tuple[float, float] | None:
-    """Return where two rows cross first, or None if they do not.
-
-    Parameters
-    ----------
-    toothing : Toothing
-        The wheel.
-    rows : Rows
-        Its curves.
-    one, other : int
-        Numbers of the rows.
-
-    Returns
-    -------
-    (float, float) or None
-        Driver angles, rad, on both.
-    """
-    curves = WheelCurves(toothing=toothing, rows=rows)
-    share = np.linspace(0.0, 1.0, 4 * _SAMPLES)
-    up, down = (rows.start[k] + (rows.end - rows.start)[k] * share for k in (one, other))
-    # along one row, over to the end of the other, and back along it
-    low, high = np.append(up, down[:0:-1]), np.concatenate([up[1:], up[-1:], down[-2::-1]])
-    curve = np.repeat([one, other], [len(up), len(down) - 1])
-    points = _points(curves, np.append(curve, other), np.append(low, down[0]))
-    ((ring,),) = remaining(curves, [Chain(curve=curve, low=low, high=high, points=points)])
-    if not ring.crossed:
-        return None
-    return ring.spans[0].end.parameter, ring.spans[1].begin.parameter
 
 
 def select(rows: Rows, index: Index) -> Rows:
@@ -222,4 +192,4 @@ def _chains(curves: WheelCurves, spaces: Index) -> list[Chain]:
 def _points(curves: WheelCurves, index: Index, phi: Array) -> Plane:
     """Return points of rows at driver angles, mirrored where rising s runs clockwise."""
     points = curves.at(index.ravel(), phi.ravel())[0].reshape(phi.shape)
-    return np.conj(points) if curves.toothing.wheel == 2 else points
+    return np.conj(points) if curves.toothing.track.clockwise else points

@@ -74,7 +74,7 @@ class BasicRack:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HelixSpec:
+class StepsSpec:
     """Stepped wheels: each step is cut for itself, its teeth moved along the pitch curve.
 
     The teeth of a non-circular wheel cannot follow a helix by twisting: every place of the
@@ -82,7 +82,7 @@ class HelixSpec:
     along both centrodes, take turns in the mesh as those of a helical wheel do.
     """
 
-    steps: int = param(
+    count: int = param(
         COUNT, default=1, ge=1, le=100, doc="steps over the width; 1 for spur wheels"
     )
     offset: float | None = param(
@@ -108,7 +108,11 @@ class PairSpec:
         NUMBER, default=0.0, ge=-1, le=1, doc="profile shift in modules: + on wheel 1, - on wheel 2"
     )
     backlash: float = param(
-        LENGTH, default=0.0, ge=0, le=1e4, doc="play along the pitch curve, shared by both wheels"
+        LENGTH,
+        default=0.0,
+        ge=0,
+        le=1e4,
+        doc="along the pitch curve, shared by both wheels",
     )
     face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="width of the wheels")
 

@@ -16,10 +16,14 @@ from gearcam.quantities import NUMBER, Param
 
 Array = NDArray[np.float64]
 
-KIND = "gear-pair"
+KIND = "teeth"
+"""The checks of a pair's teeth and centrodes."""
 
 CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 """Limit of the contact ratio, for all checks that ask for it."""
+
+ROUNDING = 1e-9
+"""Share of a limit that is rounding: what a finding names, typed in as printed, keeps the limit."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,32 +47,42 @@ class Subject:
     def with_teeth(self, factor: float) -> str:
         """Return in words with how many teeth, in the same ratio, all is `factor` times as wide."""
         common = math.gcd(*self.pair.teeth)
-        each = math.ceil(common * factor * (1.0 + 1e-9))
+        each = math.ceil(common * factor * (1.0 + ROUNDING))
         counts = ", ".join(str(count // common * each) for count in self.pair.teeth)
         return f"With pair.teeth = [{counts}] or more"
 
     @cached_property
     def slopes(self) -> tuple[Array, Array]:
         """Extremes of the centrodes' slope psi, ``tan(psi) = r1'/r1``: phi1, rad, and psi, rad."""
-        law = self.pair.law
 
         def slope(phi: Array) -> tuple[Array, Array]:
-            i, di, ddi = law.ratio.derivatives(phi, 2)
-            factor = 1.0 if law.feeds else 1.0 / (1.0 + i)
-            tangent = di / i * factor  # r1'/r1
-            bend = ddi / i * factor - tangent * tangent
-            if not law.feeds:
-                bend = bend - 2.0 * di * di / i * factor * factor
-            return np.arctan(tangent)[None], (bend / (1.0 + tangent * tangent))[None]
+            r, dr, ddr = self.pair.rolling.radii(phi, 2)
+            bend = (ddr * r - dr * dr) / (r * r + dr * dr)
+            return np.arctan(dr / r)[None], bend[None]
 
-        ((places, values),) = extremes(slope, law.knots)
+        ((places, values),) = extremes(slope, self.pair.law.knots)
         return places, values
+
+    @cached_property
+    def pressure_angles(self) -> dict[str, tuple[float, float]]:
+        """Largest pressure angle of the flanks that drive each way: phi1 and angle, rad.
+
+        The rack's angle and the slope of the centrode add up: on the flanks that drive forward it
+        is ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
+        """
+        places, slopes = self.slopes
+        alpha = self.pair.rack.pressure_angle
+        first, last = int(slopes.argmin()), int(slopes.argmax())
+        return {
+            "forward": (float(places[first]), alpha - float(slopes[first])),
+            "backward": (float(places[last]), alpha + float(slopes[last])),
+        }
 
     @cached_property
     def accelerations(self) -> tuple[Array, Array]:
         """Extremes of ``d(i21)/dphi1``: phi1, rad, and values; of a rack over its mean speed."""
         law = self.pair.law
-        scale = law.lobes.period / law.lobes.advance if law.feeds else 1.0
+        scale = 1.0 / self.pair.rolling.mean_radius
 
         def change(phi: Array) -> tuple[Array, Array]:
             _, di, ddi = law.ratio.derivatives(phi, 2)
@@ -93,7 +107,7 @@ class Subject:
         return all(bool(pairs.stretches[2].all()) for pairs in self.sides)
 
     @property
-    def play(self) -> float:
+    def backlash(self) -> float:
         """What the spaces are wider than the teeth along the pitch curve, both wheels', mm."""
         one, two = (toothing.cutter for toothing in self.pair.toothings)
         return 2.0 * (one.half_space + two.half_space) - one.pitch

@@ -1,21 +1,29 @@
-"""Where flanks end at the top: at the tip curve, at the mate's reach, or at a cusp."""
+"""Where flanks end at the top: at the addendum curve, at the mate's reach, or at a cusp."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
-from gearcam.gears.rolling import Plane
+from gearcam.gears.track import Plane
 from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-_MISS = 1e-12
-"""Distance at which flank and tip curve meet, in addenda."""
+MISS = 1e-12
+"""Distance at which curves meet, in addenda or pitches: rounding."""
+
+ROUGH = 1e3
+"""Times that distance within which curves meet that Newton's method has no better place of."""
+
+_STEPS = 25
+"""Steps of Newton's method; four or five serve where curves do cross."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -34,7 +42,7 @@ class TipEnds:
     height : (n,) array, mm
         Its distance from the centrode.
     full : (n,) bool array
-        Whether it reaches the tip curve.
+        Whether it reaches the addendum curve.
     """
 
     phi: Array
@@ -44,7 +52,7 @@ class TipEnds:
 
 
 def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> TipEnds:
-    """Find where flanks meet the tip curve, the parallel of the centrode at the addendum.
+    """Find where flanks meet the addendum curve, the parallel of the centrode at the addendum.
 
     Parameters
     ----------
@@ -53,7 +61,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     sf, sigma : (n,) arrays
         Flanks.
     highest : (n,) array, mm
-        Largest reach allowed: the mate's joint, or a cusp.
+        Largest reach allowed: that of the mate's form point, or of a cusp.
 
     Returns
     -------
@@ -67,8 +75,9 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     """
     addendum = toothing.cutter.addendum
     phi, foot, height = _quick(toothing, sf, sigma)
-    reach = sigma * (sf - toothing.rolling.arc_length(phi))
+    reach = sigma * (sf - toothing.track.arc_length(phi))
     full = np.isfinite(height) & (reach > 0.0) & (reach <= highest)
+    full &= np.abs(toothing.track.arc_length(foot) - sf) <= _around(toothing)
     rest = np.flatnonzero(~full)
     if rest.size:
         ends = _search(toothing, sf[rest], sigma[rest], highest[rest])
@@ -78,37 +87,103 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
 
 
 def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, Array]:
-    """Driver angles of the crossings with the tip curve, and of their feet; height nan if none."""
+    """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
-    phi, foot = toothing.rolling.angle(
+    phi, foot = toothing.track.angle(
         np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
     )
-    miss = np.full(sf.shape, np.inf, dtype=complex)
-    for _ in range(8):
-        both = toothing.frames(np.stack([phi, foot]))
-        roll, base = both.take(0), both.take(1)
-        miss = toothing.flank_points(roll, sf, sigma) - base.p - addendum * w * base.t
-        if float(np.abs(miss).max()) <= _MISS * addendum:
-            break
-        move = toothing.flank_motion(roll, sf, sigma)
-        slide = -base.speed * (1.0 + base.kappa * addendum) * base.t
-        with np.errstate(divide="ignore", invalid="ignore"):
-            phi = phi - np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)
-            foot = foot - np.imag(np.conj(move) * miss) / np.imag(np.conj(move) * slide)
-        bad = ~(np.isfinite(phi) & np.isfinite(foot))
-        phi[bad] = foot[bad] = 0.0
-    return phi, foot, np.where(np.abs(miss) <= _MISS * addendum, addendum, np.nan)
+
+    def curve(angle: Array) -> tuple[Plane, Plane]:
+        base = toothing.frames(angle)
+        slide = base.speed * (1.0 + base.kappa * addendum) * base.t
+        return base.p + addendum * w * base.t, slide
+
+    flank = partial(flank_at, toothing, sf, sigma)
+    phi, foot, miss = cross(flank, curve, phi, foot, MISS * addendum)
+    return phi, foot, np.where(miss <= MISS * addendum, addendum, np.nan)
+
+
+def flank_at(toothing: Toothing, sf: Array, sigma: Array, phi: Array) -> tuple[Plane, Plane]:
+    """Return points of flanks (`sf`, `sigma`) of a `toothing` at `phi`, and how they move on."""
+    frames = toothing.frames(phi)
+    return toothing.flank_points(frames, sf, sigma), toothing.flank_motion(frames, sf, sigma)
+
+
+def cross(
+    one: Callable[[Array], tuple[Plane, Plane]],
+    two: Callable[[Array], tuple[Plane, Plane]],
+    x: Array,
+    y: Array,
+    near: float,
+) -> tuple[Array, Array, Array]:
+    """Find where curves cross, n pairs at once, by Newton's method.
+
+    Parameters
+    ----------
+    one, two : callable
+        ``one(x)`` returns points, mm, and their derivatives.
+    x, y : (n,) arrays
+        Parameters to begin with.
+    near : float, mm
+        Distance at which a crossing is found.
+
+    Returns
+    -------
+    x, y : (n,) arrays
+        Parameters on both curves.
+    miss : (n,) array, mm
+        How far their points are apart, at most one step before.
+    """
+    miss = np.full(x.shape, np.inf, dtype=complex)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        for _ in range(_STEPS):
+            (p, move), (q, slide) = one(x), two(y)
+            miss = p - q
+            if not np.any(np.abs(miss) > near):
+                break
+            first = -np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)
+            second = np.imag(np.conj(move) * miss) / np.imag(np.conj(move) * slide)
+            good = np.isfinite(first) & np.isfinite(second)
+            x, y = x + np.where(good, first, 0.0), y + np.where(good, second, 0.0)
+    return x, y, np.abs(miss)
+
+
+def flank_crossings(
+    toothing: Toothing, sf: Array, sigma: Array, start: Array
+) -> tuple[Array, Mask]:
+    """Find where two flanks of teeth cross.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    sf, sigma : (2, n) arrays, mm and 1
+        The flanks, both of a tooth on one turn.
+    start : (2, n) array, rad
+        Driver angles to begin with.
+
+    Returns
+    -------
+    phi : (2, n) array, rad
+        Driver angles of the crossing on both.
+    met : (n,) bool array
+        Whether they cross.
+    """
+    one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
+    near = MISS * toothing.pitch
+    *phi, miss = cross(one, two, *start, near)
+    return np.stack(phi), miss <= ROUGH * near
 
 
 def _search(
     toothing: Toothing, sf: Array, sigma: Array, highest: Array
 ) -> tuple[Array, Array, Array, Mask]:
     """Search tip ends in their bracket: driver angles, feet, heights, whether they are full."""
-    rolling, addendum, w = toothing.rolling, toothing.cutter.addendum, toothing.turn
-    around = 3.0 * toothing.cutter.half_space + addendum
+    track, addendum, w = toothing.track, toothing.cutter.addendum, toothing.turn
+    around = _around(toothing)
     near = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
-    start, end, low, high, guess = rolling.angle(
+    start, end, low, high, guess = track.angle(
         np.stack([sf, sf - sigma * highest, sf - around, sf + around, near])
     )
 
@@ -118,9 +193,7 @@ def _search(
         foot = feet(toothing, points, low[at], high[at], guess[at])
         base = toothing.frames(foot)
         outward = base.t * w
-        g = sigma[at] * toothing.regularity(frames, sf[at], sigma[at])
-        normal = frames.t * np.exp(w * sigma[at] * toothing.cutter.alpha)
-        slope = np.real(np.conj(outward) * (-g * frames.speed * w * normal))
+        slope = np.real(np.conj(outward) * toothing.flank_motion(frames, sf[at], sigma[at]))
         return np.real(np.conj(outward) * (points - base.p)), slope, foot
 
     height, _, foot = distance(end, slice(None))
@@ -134,10 +207,15 @@ def _search(
             return value - addendum, slope
 
         first = start[at] + (end - start)[at] * np.clip(addendum / height[at], 0.0, 1.0)
-        tolerance = _ANGLE * rolling.law.lobes.period
+        tolerance = _ANGLE * track.arc.period
         phi[at] = newton_in_bracket(over, start[at], end[at], first, tolerance)
         height[at], _, foot[at] = distance(phi[at], at)
     return phi, foot, height, full
+
+
+def _around(toothing: Toothing) -> float:
+    """How far the feet of flanks may be from them along the centrode, mm."""
+    return 3.0 * toothing.cutter.half_space + toothing.cutter.addendum
 
 
 def feet(toothing: Toothing, points: Plane, low: Array, high: Array, start: Array) -> Array:
@@ -165,4 +243,4 @@ def feet(toothing: Toothing, points: Plane, low: Array, high: Array, start: Arra
         return along, frames.speed * (1.0 + frames.kappa * out)
 
     inside = np.clip(start, np.minimum(low, high), np.maximum(low, high))
-    return newton_in_bracket(miss, low, high, inside, _ANGLE * toothing.rolling.law.lobes.period)
+    return newton_in_bracket(miss, low, high, inside, _ANGLE * toothing.track.arc.period)

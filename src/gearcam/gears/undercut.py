@@ -19,6 +19,21 @@ from gearcam.numeric.roots import bracketed_root
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+_STEPS = 33
+"""Places along a flank at which a change of sign is looked for, the knots' apart."""
+
+_BESIDE = 1e-9
+"""How far from a knot its two sides are looked at, over the length of the flank."""
+
+_NEAR = 0.05
+"""Regularity below which a minimum is looked at closer: it may hide two changes of sign."""
+
+_SECTIONS = 45
+"""Golden sections of a minimum: its place to rounding."""
+
+_ANGLE = 1e-14
+"""Driver angle in periods to which a cusp is found: rounding."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Undercut:
@@ -47,7 +62,7 @@ def find_cusps(
     sf, sigma : (n,) arrays
         Flanks.
     lowest, highest : float, mm
-        Range of reach that a flank could have: down to the fillet joint, up to the tip.
+        Range of reach that a flank could have: down to the form point, up to the tip.
 
     Returns
     -------
@@ -55,7 +70,7 @@ def find_cusps(
         A cusp is a sign change of g, at a root or at a jump of the curvature.
     """
     sine, cosine = np.sin(toothing.cutter.alpha), np.cos(toothing.cutter.alpha)
-    kappa = toothing.rolling.curvature_extremes(toothing.wheel)[1]
+    kappa = toothing.track.curvature_extremes[1]
     sides = []
     for reach, worst in ((lowest, kappa.max()), (highest, kappa.min())):
         cusp = np.full(sf.shape, np.copysign(np.inf, reach))
@@ -83,21 +98,21 @@ def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Ar
         lambda x: regularity(x, hit),
         grid[hit, np.maximum(first[hit] - 1, 0)],
         grid[hit, first[hit]],
-        1e-14 * toothing.rolling.law.lobes.period,
+        _ANGLE * toothing.track.arc.period,
     )
-    result[hit] = sigma[hit] * (sf[hit] - toothing.rolling.arc_length(phi))
+    result[hit] = sigma[hit] * (sf[hit] - toothing.track.arc_length(phi))
     return result
 
 
 def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
     """Driver angles from w = 0 to `reach`, a flank a row, both sides of every knot among them."""
-    law = toothing.rolling.law
-    start, end = toothing.rolling.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
+    start, end = toothing.track.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
     span = end - start
-    columns = [np.broadcast_to(np.linspace(0.0, 1.0, 33), (len(sf), 33))]
-    for nearest in np.moveaxis(law.knots_near(0.5 * (start + end)[:, 0]), -1, 0):
+    columns = [np.broadcast_to(np.linspace(0.0, 1.0, _STEPS), (len(sf), _STEPS))]
+    for nearest in np.moveaxis(toothing.track.knots_near(0.5 * (start + end)[:, 0]), -1, 0):
         columns += [
-            np.clip((nearest[:, None] - start) / span + side, 0.0, 1.0) for side in (-1e-9, 1e-9)
+            np.clip((nearest[:, None] - start) / span + side, 0.0, 1.0)
+            for side in (-_BESIDE, _BESIDE)
         ]
     return start + span * np.sort(np.concatenate(columns, axis=1), axis=1)
 
@@ -107,13 +122,13 @@ def _refine_minima(
 ) -> tuple[Array, Array]:
     """Replace samples at positive local minima near zero by the true minimum (golden section)."""
     low = values[:, 1:-1]
-    dip = (low > 0.0) & (low < 0.05) & (low <= values[:, :-2]) & (low <= values[:, 2:])
+    dip = (low > 0.0) & (low < _NEAR) & (low <= values[:, :-2]) & (low <= values[:, 2:])
     rows, cols = np.nonzero(dip)
     if rows.size == 0:
         return grid, values
     a, b = grid[rows, cols], grid[rows, cols + 2]
     ratio = 0.5 * (np.sqrt(5.0) - 1.0)
-    for _ in range(45):
+    for _ in range(_SECTIONS):
         c, d = b - ratio * (b - a), a + ratio * (b - a)
         left = function(c, rows) < function(d, rows)
         a, b = np.where(left, a, c), np.where(left, d, b)

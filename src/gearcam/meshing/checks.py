@@ -114,11 +114,11 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
 
 
 @check(
-    "contact-off-flank",
+    "fillet-interference",
     kind=KIND,
     doc="contact of the outlines where no active flanks predict it",
 )
-def contact_off_flank(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
     """Warn of facing halves that overlap although their flanks cannot."""
     side, driver = meshing.setup.side, meshing.setup.turning.driver
     least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
@@ -133,7 +133,7 @@ def contact_off_flank(meshing: Meshing, limit: float) -> Iterator[Finding]:  # n
         off[block.first + found.step[strange]] = True
     if off.any():
         yield Finding(
-            code="contact-off-flank",
+            code="fillet-interference",
             severity="warning",
             message="The outlines touch where neither flank is: on a fillet or on a tip.",
             value=float(np.count_nonzero(off)),
@@ -187,7 +187,7 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
     ):
         places = toothing.tooth_places[toothing.whole]
         phi1 = turning.rolling.angle(places)
-        passed = phi1 <= pairs.way * (1.0 + 1e-9)
+        passed = phi1 <= pairs.travel * (1.0 + 1e-9)
         phi1 = phi1[passed]
         turn, shift = turning.pose(phi1, 0.0)
         # the half of a tooth begins in the middle of its tip

@@ -6,7 +6,6 @@ phases, with sliding, curvature and force.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import normals, touch
-from gearcam.gears.rolling import WHEELS, Plane
+from gearcam.gears.track import WHEELS, Plane
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -83,12 +82,11 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     kappa/g.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-    rolling, side = pairs.toothings[0].rolling, pairs.side
-    alpha = pairs.toothings[0].cutter.alpha
+    side = pairs.side
     step, pair = pairs.beside(phi1)
-    pose, touching = touch(pairs, phi1[step], pairs.play(pair))
+    pose, touching = touch(pairs, phi1[step], pairs.separation(pair))
     reach = [
-        sign * (pairs.place(wheel, pair) - rolling.arc_length(angle))
+        sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
         for wheel, sign, angle in zip(WHEELS, (side, -side), (pose.one, pose.two), strict=True)
     ]
     for wheel, w in zip(WHEELS, reach, strict=True):
@@ -96,21 +94,19 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
         touching = touching & (w >= low) & (w <= high)
     step, pair = step[touching], pair[touching]
     pose = pose.take(touching)
-    at = normals(pairs, pose, pairs.play(pair))
+    at = normals(pairs, pose, pairs.separation(pair))
     first, second = at.frames
-    roll1, roll2 = (
-        sign * w[touching] * math.cos(alpha) for sign, w in zip((side, -side), reach, strict=True)
-    )
+    (one, two), sf = pairs.toothings, [pairs.place(wheel, pair) for wheel in WHEELS]
     normal = at.normal[0]
-    point = at.foot[0] + roll1 * normal
+    point = at.foot[0] + one.ahead(first, sf[0]) * normal
     by_one, by_two, _ = at.rates
-    g1 = side * math.sin(alpha) + roll1 * first.kappa
-    g2 = -side * math.sin(alpha) + roll2 * second.kappa
+    g1 = side * one.regularity(first, sf[0], side)
+    g2 = -side * two.regularity(second, sf[1], -side)
     way1, way2 = g1 * by_one * first.speed, g2 * by_two * second.speed
     force = side * normal
     axes = (0.0, pairs.distance)
     lever = np.abs(np.stack([np.imag(np.conj(point - axis) * force) for axis in axes]))
-    if rolling.law.feeds:
+    if not pairs.guide.turns:
         lever[1] = np.nan
     with np.errstate(divide="ignore", invalid="ignore"):
         specific = np.stack([(way1 + way2) / way1, (way1 + way2) / way2])

@@ -54,8 +54,7 @@ def _idle(pairs: FlankPairs) -> list[Idle]:
 
 
 def _repeats(pairs: FlankPairs) -> str:
-    lobes = pairs.toothings[0].rolling.law.lobes
-    return ", in each lobe" if pairs.closed and pairs.even and lobes.n1 > 1 else ""
+    return ", in each lobe" if pairs.closed and pairs.even and pairs.track.periods > 1 else ""
 
 
 @check(

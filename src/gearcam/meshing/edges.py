@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from gearcam.gears.rolling import Plane
+from gearcam.gears.track import Plane
 from gearcam.meshing.staircase import Edges
 
 Array = NDArray[np.float64]

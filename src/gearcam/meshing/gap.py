@@ -23,9 +23,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs, Ints
-from gearcam.gears.rolling import Plane, Rolling, Wheel
+from gearcam.gears.guide import Guide
+from gearcam.gears.track import Plane, Wheel
 from gearcam.meshing.contact import Contacts
-from gearcam.meshing.guide import Guide, guide_of
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -65,9 +65,9 @@ class Facing:
     def end(self, wheel: Wheel, tip: bool) -> Array:
         """Return the driver angles, rad, of the ends (`tip` or root) of a `wheel`'s flanks."""
         toothing = self.pairs.toothings[wheel - 1]
-        sigma = self.pairs.side if wheel == 1 else -self.pairs.side
+        sigma = self.pairs.sigma(wheel)
         reach = self.pairs.reach(wheel, self.pair)[int(tip)]
-        return toothing.rolling.angle(self._places[wheel - 1] - sigma * reach)
+        return toothing.track.angle(self._places[wheel - 1] - sigma * reach)
 
     def flank(self, wheel: Wheel, angle: Array, *, moving: bool) -> tuple[Plane, Plane]:
         """Return points seen from the driven wheel's guide and directions of a wheel's flanks.
@@ -87,7 +87,7 @@ class Facing:
             With the wheels turned to their phases, mm and 1 (or mm/rad).
         """
         toothing = self.pairs.toothings[wheel - 1]
-        sigma = self.pairs.side if wheel == 1 else -self.pairs.side
+        sigma = self.pairs.sigma(wheel)
         alpha, w = toothing.cutter.alpha, toothing.turn
         frames = toothing.frames(angle, curved=moving)
         cosine, sine = np.cos(alpha), sigma * np.sin(alpha)
@@ -106,7 +106,7 @@ class Facing:
     @cached_property
     def guide(self) -> Guide:
         """What guides the driven wheel."""
-        return guide_of(self.pairs.toothings[0].rolling)
+        return self.pairs.guide
 
     @cached_property
     def _stands(self) -> tuple[tuple[Plane, Plane | float], tuple[Plane, Plane]]:
@@ -218,7 +218,6 @@ def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
         Driver angles of the ends of the common range on the driver's flanks, root first.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
-    rolling = pairs.toothings[0].rolling
     step, pair = pairs.beside(phi1)
     every = Facing(pairs=pairs, step=step, pair=pair, phi1=phi1[step])
     height = every.guide.height
@@ -226,7 +225,7 @@ def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
     mates = [every.end(2, tip=True), every.end(2, tip=False)]
     far, near = (height(every.flank(1, angle, moving=False)[0]) for angle in ends)
     highest, lowest = (height(every.flank(2, angle, moving=False)[0]) for angle in mates)
-    apart = np.abs(every.pairs.place(1, every.pair) - rolling.arc_length(every.phi1))
+    apart = np.abs(every.pairs.place(1, every.pair) - pairs.track.arc_length(every.phi1))
     shared = (np.minimum(far, highest) > np.maximum(near, lowest)) & (apart < 2.0 * pairs.pitch)
     found = every.select(shared)
     low, high = ends[0][shared], ends[1][shared]
@@ -337,13 +336,13 @@ def foremost(side: int, count: int, step: Ints, turn: Array) -> Array:
     return outward
 
 
-def to_pitch_line(rolling: Rolling, phi1: Array) -> Array:
+def to_pitch_line(pairs: FlankPairs, phi1: Array) -> Array:
     """Return what turns of the driven wheel are along the pitch curve at phases, mm/rad.
 
     Parameters
     ----------
-    rolling : Rolling
-        The centrodes.
+    pairs : FlankPairs
+        The side.
     phi1 : (n,) array, rad
         Phases.
 
@@ -352,6 +351,5 @@ def to_pitch_line(rolling: Rolling, phi1: Array) -> Array:
     (n,) array
         The driven radius times the cosine of the pitch line's slope; of a rack the cosine alone.
     """
-    tangent = rolling.frames(1, phi1).t * np.exp(-1j * phi1)
-    radius = 1.0 if rolling.law.feeds else np.abs(rolling.frames(2, phi1).p)
-    return radius * tangent.imag
+    one, two = (toothing.frames(phi1, curved=False) for toothing in pairs.toothings)
+    return -pairs.guide.lever(-np.abs(two.p).astype(complex), one.t * np.exp(-1j * phi1))

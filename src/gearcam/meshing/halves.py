@@ -20,9 +20,9 @@ import shapely
 from numpy.typing import NDArray
 
 from gearcam.gears.contact import Ints
-from gearcam.gears.flank import Kind, Toothing
+from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
-from gearcam.gears.rolling import Plane
+from gearcam.gears.track import Plane
 from gearcam.meshing.edges import Edge, covered, joined, rising, thinned
 from gearcam.meshing.staircase import Edges
 
@@ -266,7 +266,7 @@ def _flanks(outline: Outline) -> Ints:
     rows, toothing = outline.rows, outline.toothing
     vertices = outline.sampler.chords[0]
     row = outline.sampler.curve_of(vertices[:-1] if toothing.closed else vertices)
-    flank = np.flatnonzero(rows.kind == Kind.FLANK)
+    flank = np.flatnonzero(rows.kind == Curve.FLANK)
     plus = rows.sigma[flank] > 0.0
     count = len(toothing.numbers) - (0 if toothing.closed else 1)
     space = (rows.tooth[flank] - toothing.numbers[0] - np.where(plus, 0, 1)) % count
@@ -283,7 +283,7 @@ def _inner(outline: Outline, count: int) -> Plane:
     """Points below the middles of lands; at the ends of an open wheel the corners of its body."""
     toothing = outline.toothing
     start = toothing.tooth_places[0] if toothing.closed else toothing.ends[0]
-    angle = toothing.rolling.angle(start + 0.5 * toothing.pitch * np.arange(count))
+    angle = toothing.track.angle(start + 0.5 * toothing.pitch * np.arange(count))
     frames = toothing.frames(angle, curved=False)
     height = -(1.0 + _BELOW) * toothing.cutter.dedendum
     inner = frames.p + height * toothing.turn * frames.t

@@ -49,17 +49,16 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
         In order.
     """
     start, end, carrying = pairs.stretches
-    rolling = pairs.toothings[0].rolling
-    lobe = rolling.law.lobes.period if pairs.closed and pairs.even else pairs.way
+    lobe = pairs.track.arc.period if pairs.closed and pairs.even else pairs.travel
     at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - 1e-12)))
     phi1 = (start[at, None] + (end - start)[at, None] * _BETWEEN).ravel()
     if not phi1.size:
         return ()
     near = touches(pairs, phi1)
     lead = -pairs.side * foremost(pairs.side, len(phi1), near.step, near.turn)
-    nearest = pairs.near(rolling.arc_length(phi1))[:, 0]
-    free = touch(pairs, phi1, pairs.play(nearest))[0].lead
-    apart = np.abs((lead - free) * to_pitch_line(rolling, phi1)).reshape(len(at), -1).max(axis=1)
+    nearest = pairs.near(pairs.track.arc_length(phi1))[:, 0]
+    free = touch(pairs, phi1, pairs.separation(nearest))[0].lead
+    apart = np.abs((lead - free) * to_pitch_line(pairs, phi1)).reshape(len(at), -1).max(axis=1)
     return tuple(
         Idle(start=low, end=high, edges=bool(np.isfinite(most)), apart=most)
         for low, high, most in zip(

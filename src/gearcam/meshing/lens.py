@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import Normals, Pose, normals
-from gearcam.gears.rolling import WHEELS, Plane, Wheel
+from gearcam.gears.track import WHEELS, Plane, Wheel
 from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -127,33 +127,28 @@ class Graphs:
     def ends(self, wheel: Wheel) -> Array:
         """Return the driver angles, rad, of a `wheel`'s flanks at the lower and upper end in x."""
         low, high = self.pairs.reach(wheel, self.pair)
-        sigma, sf = self.pairs.side, self.sf[wheel - 1]
+        sf = self.sf[wheel - 1]
         # x rises to the driver's tip, and so to the driven wheel's root
         reach = np.stack([low, high] if wheel == 1 else [high, low])
-        return self.pairs.toothings[0].rolling.angle(sf - (sigma if wheel == 1 else -sigma) * reach)
+        return self.pairs.toothings[0].track.angle(sf - self.pairs.sigma(wheel) * reach)
 
     def at(self, wheel: Wheel, angle: Array) -> tuple[Array, Array, Array]:
         """Return x and y, mm, of a `wheel`'s flanks at driver angles, rad, and dx/dangle."""
         toothing = self.pairs.toothings[wheel - 1]
-        sigma = self.pairs.side if wheel == 1 else -self.pairs.side
-        alpha = toothing.cutter.alpha
-        frames = toothing.frames(angle)
-        normal = frames.t * complex(np.cos(alpha), -self.pairs.side * np.sin(alpha))
-        ahead = (self.sf[wheel - 1] - frames.s) * np.cos(alpha)
-        point = (frames.p + ahead * normal) * self.turned[wheel - 1] + self.shift[wheel - 1]
-        seen = point * np.conj(self.along)
-        g = sigma * np.sin(alpha) + ahead * frames.kappa
-        sign = 1.0 if wheel == 1 else -1.0
-        tilt = np.real(normal * self.turned[wheel - 1] * -1j * np.conj(self.along))
-        return seen.real, self.pairs.side * seen.imag, -sign * g * frames.speed * tilt
+        sigma = self.pairs.sigma(wheel)
+        frames, sf = toothing.frames(angle), self.sf[wheel - 1]
+        turned = self.turned[wheel - 1] * np.conj(self.along)
+        shift = self.shift[wheel - 1] * np.conj(self.along)
+        seen = toothing.flank_points(frames, sf, sigma) * turned + shift
+        slope = np.real(toothing.flank_motion(frames, sf, sigma) * turned)
+        return seen.real, self.pairs.side * seen.imag, slope
 
     def slope(self, wheel: Wheel, angle: Array) -> Array:
         """Return dy/dx of a `wheel`'s flanks at driver angles `angle`, rad."""
         toothing = self.pairs.toothings[wheel - 1]
-        tangents = toothing.frames(angle, curved=False).t * self.turned[wheel - 1]
-        alpha = toothing.cutter.alpha
-        tilt = complex(-self.pairs.side * np.sin(alpha), -np.cos(alpha))
-        direction = tangents * tilt * np.conj(self.along)
+        frames = toothing.frames(angle, curved=False)
+        normals = toothing.normals(frames, self.pairs.sigma(wheel)) * self.turned[wheel - 1]
+        direction = -1j * normals * np.conj(self.along)
         return self.pairs.side * direction.imag / direction.real
 
     def find(self, wheel: Wheel, x: Array, ends: Array) -> Array:
@@ -244,28 +239,20 @@ def _overlapping(
 
     Returns their places, penetrations, mm, relative curvatures, 1/mm, and graphs.
     """
-    rolling, law, side = pairs.toothings[0].rolling, pairs.toothings[0].rolling.law, pairs.side
-    ahead, scale = phi1 + advance, rolling.center_distance if law.feeds else 1.0
-    lead = lead + scale * (law.phi2(phi1) - law.phi2(ahead))
-    pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.play(pair))
+    side, ahead = pairs.side, phi1 + advance
+    lead = lead + pairs.guide.nominal(phi1) - pairs.guide.nominal(ahead)
+    pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.separation(pair))
     deep = -side * at.equations[1]
     missed = np.abs(at.equations[0]) + np.abs(at.equations[2]) / pairs.pitch
     some = np.flatnonzero((deep > 0.0) & (missed < _MISS))
     first, second = at.frames
-    alpha = pairs.toothings[0].cutter.alpha
-    cosine, sine = np.cos(alpha), side * np.sin(alpha)
-    roll1, roll2 = (
-        (pairs.place(wheel, pair) - frames.s) * cosine
-        for wheel, frames in zip(WHEELS, at.frames, strict=True)
-    )
+    one, two = pairs.toothings
+    sf = [pairs.place(wheel, pair) for wheel in WHEELS]
     with np.errstate(divide="ignore", invalid="ignore"):
-        bend = side * (
-            first.kappa / (sine + roll1 * first.kappa)
-            - second.kappa / (roll2 * second.kappa - sine)
-        )
-    turns = np.zeros(phi1.shape) if law.feeds else law.phi2(ahead) + lead
-    turned = np.exp(1j * np.stack([-ahead, turns]))
-    origin = at.foot[0] + roll1 * at.normal[0]
+        bend = first.kappa / one.regularity(first, sf[0], side)
+        bend = bend + second.kappa / two.regularity(second, sf[1], -side)
+    turned = np.stack([np.exp(-1j * ahead), pairs.guide.stand(ahead, lead)[0]])
+    origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
     graphs = Graphs(
         pairs=pairs,
         pair=pair,
@@ -334,12 +321,12 @@ def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
 
 def _uneven(pairs: FlankPairs, low: Array, high: Array) -> Mask:
     """Whether stretches of flank, by driver angle, hold a knot of the law."""
-    law = pairs.toothings[0].rolling.law
+    arc, knots = pairs.track.arc, pairs.guide.law.knots
     start, end = np.minimum(low, high), np.maximum(low, high)
-    if not law.lobes.closed:
-        inside = (law.knots > start[:, None]) & (law.knots < end[:, None])
+    if not arc.periodic:
+        inside = (knots > start[:, None]) & (knots < end[:, None])
         return np.any(inside, axis=1)
     # a smooth law has no knots but the ends of its lobe
-    knots = law.knots[:-1] if len(law.knots) > 2 else law.knots[:0]
-    first = np.floor((start[:, None] - knots) / law.lobes.period)
-    return np.any(np.floor((end[:, None] - knots) / law.lobes.period) > first, axis=1)
+    knots = knots[:-1] if len(knots) > 2 else knots[:0]
+    first = np.floor((start[:, None] - knots) / arc.period)
+    return np.any(np.floor((end[:, None] - knots) / arc.period) > first, axis=1)

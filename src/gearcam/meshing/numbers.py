@@ -51,7 +51,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
             for a, b, n in zip(np.degrees(start), np.degrees(end), carrying, strict=True)
         ],
     }
-    if not turning.rolling.law.feeds:
+    if turning.guide.turns:
         result["center_distance_mm"] = turning.distance
     if not meshing.blocks:
         return result
@@ -90,7 +90,7 @@ def motion(meshing: Meshing) -> dict[str, Any]:
     touching = np.isfinite(lead)
     if not touching.any():
         return {}
-    unit = "mm" if meshing.setup.turning.rolling.law.feeds else "rad"
+    unit = meshing.setup.turning.guide.unit
     error: dict[str, Any] = {
         "unit": unit,
         "mean_lag": float(-lead[touching].mean()),

@@ -20,8 +20,9 @@ import shapely
 from numpy.typing import NDArray
 
 from gearcam.gears.contact import Ints
-from gearcam.gears.rolling import Plane, Rolling
-from gearcam.meshing.guide import Guide, guide_of
+from gearcam.gears.guide import Guide
+from gearcam.gears.rolling import Rolling
+from gearcam.gears.track import Plane
 from gearcam.meshing.halves import Halves, as_polygons
 from gearcam.meshing.staircase import Facing, overlap
 
@@ -93,7 +94,7 @@ class Turning:
     @cached_property
     def guide(self) -> Guide:
         """What guides the driven wheel."""
-        return guide_of(self.rolling)
+        return self.rolling.guide
 
     @cached_property
     def _tree(self) -> Any:

@@ -34,7 +34,7 @@ def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:
     """
     if spec.end is not None:
         return spec.start, spec.end
-    return spec.start, pairs.way + (spec.start if pairs.closed else 0.0)
+    return spec.start, pairs.travel + (spec.start if pairs.closed else 0.0)
 
 
 def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
@@ -66,20 +66,20 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
         )
     phi1 = np.linspace(first, last, spec.steps, endpoint=not pairs.closed)
     if not pairs.closed:
-        _demand_travel(first, last, pairs.way)
+        _demand_travel(first, last, pairs.travel)
     if spec.teeth is None:
         return phi1
-    rolling = pairs.toothings[0].rolling
+    track = pairs.track
     wanted = np.isin(pairs.tooth(1, pairs.numbers), spec.teeth)
-    start, end = (rolling.arc_length(edge[wanted]) for edge in pairs.arcs)
-    apart = rolling.arc_length(phi1)[:, None] - start
+    start, end = (track.arc_length(edge[wanted]) for edge in pairs.arcs)
+    apart = track.arc_length(phi1)[:, None] - start
     margin = _BESIDE * pairs.pitch
     if pairs.closed:
-        apart = np.mod(apart + margin, rolling.length(1)) - margin
+        apart = np.mod(apart + margin, track.length) - margin
     inside = (apart >= -margin) & (apart <= end - start + margin)
     chosen = phi1[inside.any(axis=1)]
     if not chosen.size:
-        angles = np.degrees(rolling.angle(0.5 * (start + end)))
+        angles = np.degrees(track.angle(0.5 * (start + end)))
         raise InfeasibleError(
             "none of the phases has one of these teeth in contact",
             where="meshing.teeth",

@@ -142,7 +142,7 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     size = every.shape[1]
 
     def column(number: int, values: Array) -> Array:
-        result = np.ma.masked_all(size, dtype=float)
+        result = np.ma.array(np.zeros(size), mask=True)
         result[rows[number]] = np.ma.masked_invalid(values)
         return result
 
@@ -150,7 +150,7 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     area[rows[0]] = found.area
     carries = np.zeros(size)
     carries[rows[1]] = 1.0
-    axis, unit = turning.distance, "mm" if turning.rolling.law.feeds else "rad"
+    axis, unit = turning.distance, turning.guide.unit
     return {
         "step": (block.first + step).astype(float),
         "phi1_deg": np.degrees(block.phi1[step]),

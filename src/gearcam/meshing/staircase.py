@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.gears.contact import Ints
-from gearcam.meshing.guide import Guide
+from gearcam.gears.guide import Guide
 
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]

@@ -200,10 +200,10 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
     distance = _distance(pair, spec)
     pairs = {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
     side = DRIVE if spec.advance > 0.0 else COAST
-    grid = np.linspace(0.0, pairs[side].way, 20 * len(pairs[side].numbers))
+    grid = np.linspace(0.0, pairs[side].travel, 20 * len(pairs[side].numbers))
     levers = contacts(pairs[side], grid).lever[0]
     if not levers.size:
-        levers = np.abs(pair.rolling.frames(1, np.zeros(1)).p.real)
+        levers = np.abs(pair.rolling.tracks[0].frames(np.zeros(1)).p.real)
     penetration = abs(spec.advance) * float(levers.min())
     tolerance = min(_SHARE * penetration, pair.chord_tolerance(None))
     if tolerance < FINEST * pair.module:
@@ -245,7 +245,7 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
     """Distance of the shafts as mounted, mm; 0 of a rack."""
     if spec.center_distance is None:
         return pair.shift
-    if pair.law.feeds:
+    if pair.on_rack:
         raise InfeasibleError(
             "a rack has no shaft",
             where="meshing.center_distance_mm",
@@ -281,7 +281,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     ahead = turning.overlaps(phi1, spec.advance, lead)
     held = turning.gaps(side, phi1, -spec.advance, lead)
     play = extreme[COAST] - extreme[DRIVE]
-    along = to_pitch_line(turning.rolling, phi1)
+    along = to_pitch_line(setup.pairs[side], phi1)
     backlash = play * along
     # too little room for both sides is hidden from the outlines by the advance
     interferes = backlash < -setup.noise

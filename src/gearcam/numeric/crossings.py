@@ -55,28 +55,28 @@ _LEVELS = 10
 there for crossings that were first sought beside the place."""
 
 
-class Place(NamedTuple):
+class CurvePoint(NamedTuple):
     """A place on a chain: the number of a curve and its parameter."""
 
     curve: int
     parameter: float
 
 
-class Span(NamedTuple):
+class Branch(NamedTuple):
     """A stretch of a chain from one place to another, over whole curves between them."""
 
-    begin: Place
-    end: Place
+    begin: CurvePoint
+    end: CurvePoint
 
 
-def rows_between(curves: Curves, spans: Iterable[Span]) -> tuple[Index, Array, Array, Mask]:
-    """Return the curves along spans.
+def rows_between(curves: Curves, branches: Iterable[Branch]) -> tuple[Index, Array, Array, Mask]:
+    """Return the curves along branches.
 
     Parameters
     ----------
     curves : Curves
         In order; the first follows the last.
-    spans : iterable of Span
+    branches : iterable of Branch
         In order.
 
     Returns
@@ -86,10 +86,10 @@ def rows_between(curves: Curves, spans: Iterable[Span]) -> tuple[Index, Array, A
     start, end : (n,) arrays
         Parameters at which their remaining parts begin and end.
     corner : (n,) bool array
-        Whether a corner precedes them: the curve's own, or the beginning of a span.
+        Whether a corner precedes them: the curve's own, or the beginning of a branch.
     """
     rows: list[tuple[int, float, float, bool]] = []
-    for begin, end in spans:
+    for begin, end in branches:
         k, start, first = begin.curve, begin.parameter, True
         while k != end.curve or (first and _behind(curves, begin, end)):
             rows.append((k, start, float(curves.end[k]), first or bool(curves.corner[k])))
@@ -100,7 +100,7 @@ def rows_between(curves: Curves, spans: Iterable[Span]) -> tuple[Index, Array, A
     return np.array(index), np.array(starts), np.array(ends), np.array(corner)
 
 
-def _behind(curves: Curves, begin: Place, end: Place) -> bool:
+def _behind(curves: Curves, begin: CurvePoint, end: CurvePoint) -> bool:
     """Return whether an end on the same curve lies before the beginning: a way all around."""
     forward = np.sign(curves.end[begin.curve] - curves.start[begin.curve]) or 1.0
     return bool((end.parameter - begin.parameter) * forward < 0.0)
@@ -137,9 +137,9 @@ class Ring:
 
     Parameters
     ----------
-    spans : tuple of Span
+    branches : tuple of Branch
         In order; each ends at a crossing, where the next one begins. Where there is no crossing
-        the only span is the whole chain.
+        the only branch is the whole chain.
     crossed : bool
         Whether there are crossings.
     polygon : (n,) complex array
@@ -148,7 +148,7 @@ class Ring:
         Largest distance of the curves at its crossings.
     """
 
-    spans: tuple[Span, ...]
+    branches: tuple[Branch, ...]
     crossed: bool
     polygon: Complex
     gap: float
@@ -174,7 +174,8 @@ def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
     -------
     list of list of Ring
         The boundary of each chain's region of positive winding number, in no order; of an open
-        chain only the part from its beginning to its end. Nothing where chords cannot tell.
+        chain only the part from its beginning to its end. Where chords cannot tell, nothing, and
+        all of an open chain.
     """
     tangles = [_tangle(chain) for chain in chains]
     if not any(tangle.share.size for tangle in tangles):
@@ -184,7 +185,7 @@ def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
     parameter, gap = _refined(curves, index, low, high)
     cuts = np.cumsum([tangle.share.shape[1] for tangle in tangles])[:-1]
     return [
-        [_ring(tangle, spans, places, gaps) for spans in _rings(tangle)]
+        [_ring(tangle, branches, places, gaps) for branches in _rings(tangle)]
         for tangle, places, gaps in zip(
             tangles, np.split(parameter, cuts, axis=1), np.split(gap, cuts), strict=True
         )
@@ -224,7 +225,7 @@ class _Tangle:
         return self.chain.curve[self.chord], middle - quarter, middle + quarter
 
 
-_Spans = list[tuple[int, int]]
+_Stays = list[tuple[int, int]]
 """Events between which a chain stays."""
 
 _WHOLE = (-1, -1)
@@ -279,7 +280,7 @@ def _near(starts: Array, ends: Array) -> tuple[Index, Index]:
     return one, two
 
 
-def _rings(tangle: _Tangle) -> list[_Spans]:
+def _rings(tangle: _Tangle) -> list[_Stays]:
     """Return what is left of a chain."""
     count = len(tangle.turn)
     if not count:
@@ -292,16 +293,16 @@ def _rings(tangle: _Tangle) -> list[_Spans]:
     seam, rings = int(order[-1]), []
     while ends:
         start = event = seam if seam in ends else next(iter(ends))
-        spans: _Spans = []
+        branches: _Stays = []
         while event in ends:
-            spans.append((event, ends.pop(event)))
-            event = (spans[-1][1] + count) % (2 * count)
+            branches.append((event, ends.pop(event)))
+            event = (branches[-1][1] + count) % (2 * count)
         if event == start:  # else chords are too near each other
-            rings.append(spans[1:] + spans[:1])
+            rings.append(branches[1:] + branches[:1])
     if not tangle.chain.open:
         return rings
     if not rings or rings[0][-1][0] != seam:
-        return []
+        return [[_WHOLE]]
     *others, (begin, end) = rings[0]
     return [[(-1, end), *others, (begin, -1)]]
 
@@ -325,23 +326,23 @@ def _right_of_start(chain: Chain, at: Array, change: Index) -> int:
 
 
 def _ring(
-    tangle: _Tangle, spans: _Spans, parameter: Array | None = None, gap: Array | None = None
+    tangle: _Tangle, branches: _Stays, parameter: Array | None = None, gap: Array | None = None
 ) -> Ring:
-    """Return the ring of some spans, with the parameters (2, m) and gaps (m,) of crossings."""
+    """Return the ring of some branches, with the parameters (2, m) and gaps (m,) of crossings."""
     chain, at = tangle.chain, _events(tangle)[0]
     curve, count = chain.curve[tangle.chord].ravel(), len(tangle.turn)
     ends = (
-        Place(int(chain.curve[0]), float(chain.low[0])),
-        Place(int(chain.curve[-1]), float(chain.high[-1])),
+        CurvePoint(int(chain.curve[0]), float(chain.low[0])),
+        CurvePoint(int(chain.curve[-1]), float(chain.high[-1])),
     )
 
-    def place(event: int, side: int) -> Place:
+    def place(event: int, side: int) -> CurvePoint:
         if event < 0 or parameter is None:
             return ends[side]
-        return Place(int(curve[event]), float(parameter.ravel()[event]))
+        return CurvePoint(int(curve[event]), float(parameter.ravel()[event]))
 
     total, ways = len(chain.points), []
-    for begin, end in spans:
+    for begin, end in branches:
         first = float(at[begin]) if begin >= 0 else 0.0
         last = float(at[end]) if end >= 0 else float(len(chain.curve))
         last += total if last < first else 0
@@ -349,9 +350,9 @@ def _ring(
     way = np.concatenate(ways)
     number = way.astype(np.int64)
     low, high = (chain.points[(number + k) % total] for k in (0, 1))
-    crossings = [end % count for _, end in spans if end >= 0]
+    crossings = [end % count for _, end in branches if end >= 0]
     return Ring(
-        spans=tuple(Span(place(begin, 0), place(end, 1)) for begin, end in spans),
+        branches=tuple(Branch(place(begin, 0), place(end, 1)) for begin, end in branches),
         crossed=bool(crossings),
         polygon=low + (way - number) * (high - low),
         gap=float(gap[crossings].max()) if gap is not None and crossings else 0.0,

@@ -152,8 +152,8 @@ def roll(contour: Contour, radius: float) -> Rolled:
         raise too_far(contour, radius)
     touched: list[Touched] = []
     centers: list[complex | None] = []
-    for span in rings[0].spans:
-        for k, low, high in zip(*rows_between(middles, [span])[:3], strict=True):
+    for branch in rings[0].branches:
+        for k, low, high in zip(*rows_between(middles, [branch])[:3], strict=True):
             if low < high:
                 touched.append(replace(pieces[k], low=float(low), high=float(high)))
                 centers.append(None)

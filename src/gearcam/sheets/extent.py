@@ -29,24 +29,19 @@ def true_points(contours: Iterable[Contour]) -> Array:
     """
     runs = [run for contour in contours for run in contour.runs]
     points = np.vstack([run.points for run in runs])
-    tangents = np.vstack([run.tangents for run in runs])
+    tangents = as_complex(np.vstack([run.tangents for run in runs]))
     reach = np.hypot(*points.T)
     extremes = {
         int(pick(values)) for values in (*points.T, reach) for pick in (np.argmin, np.argmax)
     }
     starts = np.cumsum([0, *(len(run.points) for run in runs)])
     # the last point of a run and the first of the next have nothing between them
-    pieces = [
-        slice(first, first + 2)
+    firsts = [
+        first
         for place in sorted(extremes)
         for first in (place - 1, place)
         if first >= 0 and first + 1 not in starts
     ]
-    return np.vstack([points, *(_cubic(points[piece], tangents[piece]) for piece in pieces)])
-
-
-def _cubic(ends: Array, tangents: Array) -> Array:
-    """Points between two points with unit tangents."""
-    share = np.linspace(0.0, 1.0, _BETWEEN)
-    step = np.zeros(_BETWEEN, dtype=np.int64)
-    return as_pairs(on_cubics(as_complex(ends), as_complex(tangents), step, share)[0])
+    share = np.tile(np.linspace(0.0, 1.0, _BETWEEN), len(firsts))
+    between, _ = on_cubics(as_complex(points), tangents, np.repeat(firsts, _BETWEEN), share)
+    return np.vstack([points, as_pairs(between)])
