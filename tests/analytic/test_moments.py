@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from gearcam.numeric.cubics import hermite_arms
+from gearcam.numeric.hermite import hermite_arms
 from gearcam.numeric.moments import Moments, arc_moments, curve_moments
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import Curve, arc, as_pairs, disc_contour, line, square_contour

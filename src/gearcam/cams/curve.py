@@ -138,7 +138,7 @@ class CamCurve:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Strokes:
+class ProfileSegments:
     """Sweeps and jumps in order; fulfils `gearcam.numeric.sampling.Curves`.
 
     Parameters
@@ -179,7 +179,7 @@ class Strokes:
         Parameters
         ----------
         index : (n,) array of int
-            Numbers of the strokes.
+            Numbers of the segments.
         parameter : (n,) array
             theta or velocity, within them.
         order : int
@@ -196,7 +196,7 @@ class Strokes:
         Parameters
         ----------
         index : (n,) array of int
-            Numbers of the strokes.
+            Numbers of the segments.
         parameter : (n,) array
             theta or velocity, within them.
         """
@@ -209,7 +209,7 @@ class Strokes:
         Parameters
         ----------
         index : (n,) array of int
-            Numbers of the strokes.
+            Numbers of the segments.
         parameter : (n,) array
             theta or velocity, within them.
 
@@ -235,7 +235,7 @@ class Strokes:
         return self.inset * a * (m.arm or 1.0) / (a * a + b * b)
 
 
-def strokes(curve: CamCurve, inset: float) -> Strokes:
+def segments(curve: CamCurve, inset: float) -> ProfileSegments:
     """Return the whole curve over a turn, in the order of drawing.
 
     Parameters
@@ -247,7 +247,7 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
 
     Returns
     -------
-    Strokes
+    ProfileSegments
         From the beginning of the turn; no corner but at a pitch curve's jumps (see `begun`).
     """
     program = curve.program
@@ -262,7 +262,7 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
         corner = jump is not None and not drawn
         rows.append((piece, float(knots[piece]), float(knots[piece + 1]), False, corner))
     piece, start, end, jumps, corner = zip(*rows, strict=True)
-    return Strokes(
+    return ProfileSegments(
         curve=curve,
         inset=inset,
         piece=np.array(piece),
@@ -273,11 +273,11 @@ def strokes(curve: CamCurve, inset: float) -> Strokes:
     )
 
 
-def begun(strokes: Strokes) -> Strokes:
-    """Return `strokes` that begin at a corner, as a `Sampler` wants them; one is made if needed."""
-    order = (np.arange(len(strokes.start)) + strokes.corner.argmax()) % len(strokes.start)
+def begun(segments: ProfileSegments) -> ProfileSegments:
+    """Return `segments` that begin at a corner, as a `Sampler` wants them; one is made if needed."""
+    order = (np.arange(len(segments.start)) + segments.corner.argmax()) % len(segments.start)
     turned = {
-        name: getattr(strokes, name)[order] for name in ("piece", "start", "end", "jump", "corner")
+        name: getattr(segments, name)[order] for name in ("piece", "start", "end", "jump", "corner")
     }
     turned["corner"][0] = True  # a smooth closed curve begins somewhere
-    return replace(strokes, **turned)
+    return replace(segments, **turned)

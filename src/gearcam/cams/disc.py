@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.cams.curve import Array, CamCurve, Plane, Strokes, begun, strokes
+from gearcam.cams.curve import Array, CamCurve, Plane, ProfileSegments, begun, segments
 from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
@@ -46,7 +46,7 @@ _OVERSAMPLING = 8
 class _Kept:
     """What trimming leaves: as `drawn`, in a `sampler`, and `corners` of an unmirrored cam."""
 
-    drawn: Strokes
+    drawn: ProfileSegments
     sampler: Sampler
     corners: tuple[Corner, ...]
 
@@ -143,7 +143,7 @@ class DiscCam:
 
     @cached_property
     def _kept(self) -> _Kept:
-        whole = strokes(self.curve, self.mechanism.radius)
+        whole = segments(self.curve, self.mechanism.radius)
         size = self.mechanism.least + self.program.range[1] * self.mechanism.lever
         kept, corners, left = without_small_loops(whole, self.undercut, size)
         drawn = self._drawn(kept)
@@ -157,10 +157,10 @@ class DiscCam:
         corners = tuple(sorted(corners, key=lambda corner: corner.before))
         return _Kept(drawn=drawn, sampler=sampler, corners=corners)
 
-    def _drawn(self, kept: Strokes) -> Strokes:
+    def _drawn(self, kept: ProfileSegments) -> ProfileSegments:
         return replace(begun(kept), curve=replace(self.curve, mirrored=self.clockwise))
 
-    def _sampled(self, drawn: Strokes) -> Sampler:
+    def _sampled(self, drawn: ProfileSegments) -> Sampler:
         return Sampler(curves=drawn, tolerance=self.tolerance)
 
     @property
@@ -216,7 +216,7 @@ class DiscCam:
         """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
         if self.mechanism.flat or self.mechanism.radius == 0.0:
             return self.contour
-        return self._contour(self._sampled(self._drawn(strokes(self.curve, 0.0))))
+        return self._contour(self._sampled(self._drawn(segments(self.curve, 0.0))))
 
     def _contour(self, sampler: Sampler) -> Contour:
         _, points, error = sampler.chords

@@ -15,9 +15,10 @@ from itertools import product
 
 import numpy as np
 
-from gearcam.cams.curve import Array, Strokes
+from gearcam.cams.curve import Array, ProfileSegments
 from gearcam.cams.measures import over_the_end
-from gearcam.cams.trim import Corner, Place, between, cut_out
+from gearcam.cams.trim import Corner, cut_out
+from gearcam.numeric.crossings import Branch, CurvePoint, rows_between
 from gearcam.numeric.roots import bracketed_root
 
 SMALL = 1e-4
@@ -39,13 +40,13 @@ _WIDTH = 1e-15
 
 
 def without_small_loops(
-    strokes: Strokes, undercut: Sequence[tuple[float, float]], size: float
-) -> tuple[Strokes, tuple[Corner, ...], list[tuple[float, float]]]:
+    segments: ProfileSegments, undercut: Sequence[tuple[float, float]], size: float
+) -> tuple[ProfileSegments, tuple[Corner, ...], list[tuple[float, float]]]:
     """Close the small loops of a profile.
 
     Parameters
     ----------
-    strokes : Strokes
+    segments : ProfileSegments
         The whole profile, in order from the beginning of the turn.
     undercut : sequence of (float, float)
         Cam angles between which it runs backwards, rad.
@@ -54,110 +55,112 @@ def without_small_loops(
 
     Returns
     -------
-    strokes : Strokes
+    segments : ProfileSegments
         Without the loops that were closed.
     corners : tuple of Corner
         Where they were.
     left : list of (float, float)
         The stretches that are undercut still.
     """
-    closed: list[tuple[Place, Place]] = []
+    closed: list[tuple[CurvePoint, CurvePoint]] = []
     left: list[tuple[float, float]] = []
     for parts in over_the_end(undercut):
         # of two parts, one on each side of the turn's end, the later one begins
-        found = _closed(strokes, (parts[-1][0], parts[0][1]), size)
+        found = _closed(segments, (parts[-1][0], parts[0][1]), size)
         if found is None:
             left += parts
         else:
             closed.append(found)
     if not closed:
-        return strokes, (), left
-    kept, corners = cut_out(strokes, closed)
+        return segments, (), left
+    pairs = zip(closed, [*closed[1:], closed[0]], strict=True)
+    kept, corners = cut_out(segments, [Branch(one[1], two[0]) for one, two in pairs])
     return kept, corners, left
 
 
 def _closed(
-    strokes: Strokes, stretch: tuple[float, float], size: float
-) -> tuple[Place, Place] | None:
+    segments: ProfileSegments, stretch: tuple[float, float], size: float
+) -> tuple[CurvePoint, CurvePoint] | None:
     """Return the places where a loop about a stretch closes; None if it is not a small one."""
-    begin, end = _span(strokes, *stretch)
-    back = abs(_way(strokes, begin, end))
+    begin, end = _span(segments, *stretch)
+    back = abs(_way(segments, begin, end))
     if back > SMALL * size:
         return None
-    for one, two in product(_beside(strokes, begin, -1), _beside(strokes, end, 1)):
-        found = _searched(strokes, one, two, back, size)
+    for one, two in product(_beside(segments, begin, -1), _beside(segments, end, 1)):
+        found = _searched(segments, one, two, back, size)
         if found is not None:
             return found
     return (begin, end) if back <= _NOTHING * size else None
 
 
-def _span(strokes: Strokes, low: float, high: float) -> tuple[Place, Place]:
+def _span(segments: ProfileSegments, low: float, high: float) -> tuple[CurvePoint, CurvePoint]:
     """Return the places between which a stretch runs backwards, with jumps at its ends."""
-    count, back = len(strokes.start), strokes.jump & (strokes.end < strokes.start)
+    count, back = len(segments.start), segments.jump & (segments.end < segments.start)
     if low == high:
-        theta = strokes.curve.program.knots[strokes.piece]
+        theta = segments.curve.program.knots[segments.piece]
         k = int(np.flatnonzero(back & (theta == low))[0])
-        return (k, float(strokes.start[k])), (k, float(strokes.end[k]))
-    sweep = ~strokes.jump
-    first = int(np.flatnonzero(sweep & (strokes.start <= low) & (low < strokes.end))[0])
-    last = int(np.flatnonzero(sweep & (strokes.start < high) & (high <= strokes.end))[0])
-    begin, end = (first, low), (last, high)
-    if low == strokes.start[first] and back[first - 1]:
-        begin = ((first - 1) % count, float(strokes.start[first - 1]))
+        return CurvePoint(k, float(segments.start[k])), CurvePoint(k, float(segments.end[k]))
+    sweep = ~segments.jump
+    first = int(np.flatnonzero(sweep & (segments.start <= low) & (low < segments.end))[0])
+    last = int(np.flatnonzero(sweep & (segments.start < high) & (high <= segments.end))[0])
+    begin, end = CurvePoint(first, low), CurvePoint(last, high)
+    if low == segments.start[first] and back[first - 1]:
+        begin = CurvePoint((first - 1) % count, float(segments.start[first - 1]))
     after = (last + 1) % count
-    if high == strokes.end[last] and back[after]:
-        end = (after, float(strokes.end[after]))
+    if high == segments.end[last] and back[after]:
+        end = CurvePoint(after, float(segments.end[after]))
     return begin, end
 
 
-def _beside(strokes: Strokes, place: Place, side: int) -> list[Place]:
-    """Return the ends of the two strokes that come before (-1) or behind (+1) a place."""
-    far, near = (strokes.end, strokes.start) if side > 0 else (strokes.start, strokes.end)
-    k, count = place[0], len(strokes.start)
-    found = [place] if not strokes.jump[k] and place[1] != far[k] else []
+def _beside(segments: ProfileSegments, place: CurvePoint, side: int) -> list[CurvePoint]:
+    """Return the ends of the two segments that come before (-1) or behind (+1) a place."""
+    far, near = (segments.end, segments.start) if side > 0 else (segments.start, segments.end)
+    k, count = place[0], len(segments.start)
+    found = [place] if not segments.jump[k] and place[1] != far[k] else []
     for step in (1, 2)[: 2 - len(found)]:
         other = (k + side * step) % count
-        found.append((other, float(near[other])))
+        found.append(CurvePoint(other, float(near[other])))
     return found
 
 
 def _searched(
-    strokes: Strokes, begin: Place, end: Place, back: float, size: float
-) -> tuple[Place, Place] | None:
-    """Return where a loop closes on the strokes of two places beside it, if it does there."""
-    ways = (_ahead(strokes, begin, -1, 0.5 * back), _ahead(strokes, end, 1, 0.5 * back))
+    segments: ProfileSegments, begin: CurvePoint, end: CurvePoint, back: float, size: float
+) -> tuple[CurvePoint, CurvePoint] | None:
+    """Return where a loop closes on the segments of two places beside it, if it does there."""
+    ways = (_ahead(segments, begin, -1, 0.5 * back), _ahead(segments, end, 1, 0.5 * back))
     if ways[0] is None or ways[1] is None:
         return None
-    room = begin[1], end[1]
-    found = _close(strokes, (begin[0], ways[0]), (end[0], ways[1]), room)
+    room = begin.parameter, end.parameter
+    found = _close(segments, CurvePoint(begin.curve, ways[0]), CurvePoint(end.curve, ways[1]), room)
     if found is None:
         return None
-    fits = abs(_way(strokes, *found)) <= _CLOSED * back + _NOISE * size
+    fits = abs(_way(segments, *found)) <= _CLOSED * back + _NOISE * size
     return found if fits else None
 
 
-def _ahead(strokes: Strokes, place: Place, side: int, length: float) -> float | None:
+def _ahead(segments: ProfileSegments, place: CurvePoint, side: int, length: float) -> float | None:
     """Return where a sweep is a length of way before (-1) or behind (+1) a place."""
-    k, start = place
-    limit = float(strokes.end[k] if side > 0 else strokes.start[k])
+    k = place.curve
+    limit = float(segments.end[k] if side > 0 else segments.start[k])
 
     def miss(parameter: Array) -> Array:
-        return np.array([abs(_part(strokes, k, start, float(p))) - length for p in parameter])
+        ends = [(place, CurvePoint(k, float(p)))[::side] for p in parameter]
+        return np.array([abs(_way(segments, *pair)) - length for pair in ends])
 
     if miss(np.array([limit]))[0] < 0.0:
         return None
-    return float(bracketed_root(miss, [start], [limit], _WIDTH)[0])
+    return float(bracketed_root(miss, [place.parameter], [limit], _WIDTH)[0])
 
 
 def _close(
-    strokes: Strokes, one: Place, two: Place, room: tuple[float, float]
-) -> tuple[Place, Place] | None:
+    segments: ProfileSegments, one: CurvePoint, two: CurvePoint, room: tuple[float, float]
+) -> tuple[CurvePoint, CurvePoint] | None:
     """Move two places, one before and one behind a stretch, until the way between them closes."""
     (first, a), (last, b) = one, two
     for _ in range(_STEPS):
-        way = _way(strokes, (first, a), (last, b))
+        way = _way(segments, CurvePoint(first, a), CurvePoint(last, b))
         index, places = np.array([first, last]), np.array([a, b])
-        slopes = strokes.moving(index, places)[1]
+        slopes = segments.moving(index, places)[1]
         # way - slopes[0]*da + slopes[1]*db = 0
         cross = (np.conj(slopes[0]) * slopes[1]).imag
         if cross == 0.0:
@@ -165,20 +168,18 @@ def _close(
         da = (np.conj(slopes[1]) * way).imag / (np.conj(slopes[1]) * slopes[0]).imag
         db = -(np.conj(slopes[0]) * way).imag / cross
         a, b = a + float(da), b + float(db)
-        if not (strokes.start[first] <= a <= room[0] and room[1] <= b <= strokes.end[last]):
+        if not (segments.start[first] <= a <= room[0] and room[1] <= b <= segments.end[last]):
             return None
         if abs(da) + abs(db) <= _WIDTH:
             break
-    return (first, a), (last, b)
+    return CurvePoint(first, a), CurvePoint(last, b)
 
 
-def _way(strokes: Strokes, begin: Place, end: Place) -> complex:
-    """Return the way from one place of the curve to another, along its strokes."""
-    return sum(_part(strokes, k, low, high) for k, low, high, _ in between(strokes, begin, end))
-
-
-def _part(strokes: Strokes, k: int, low: float, high: float) -> complex:
+def _way(segments: ProfileSegments, begin: CurvePoint, end: CurvePoint) -> complex:
+    """Return the way from one place of the curve to another, along its segments."""
+    k, low, high, _ = rows_between(segments, [Branch(begin, end)])
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    places = 0.5 * (low + high) + 0.5 * (high - low) * nodes
-    index = np.full(_GAUSS, k)
-    return complex(0.5 * (high - low) * (weights @ strokes.moving(index, places)[1]))
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    places = (middle[:, None] + half[:, None] * nodes).ravel()
+    slopes = segments.moving(np.repeat(k, _GAUSS), places)[1].reshape(-1, _GAUSS)
+    return complex((half * (slopes @ weights)).sum())

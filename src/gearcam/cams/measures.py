@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.cams.contact import Contact
-from gearcam.cams.curve import Array, CamCurve, Strokes
+from gearcam.cams.curve import Array, CamCurve, ProfileSegments
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes, extremes_among
 from gearcam.numeric.roots import bracketed_root
@@ -30,7 +30,7 @@ _GAUSS = 16
 _CELLS = 4
 _MOST_CELLS = 1024
 _AGREED = 1e-14
-"""Gauss points in each cell of a stroke; the cells are halved until sums agree to this part."""
+"""Gauss points in each cell of a segment; the cells are halved until sums agree to this part."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,12 +204,12 @@ class Size:
     area_error: float
 
 
-def size_of(strokes: Strokes) -> Size:
-    """Return perimeter and area of a closed curve, by Gauss-Legendre quadrature of every stroke.
+def size_of(segments: ProfileSegments) -> Size:
+    """Return perimeter and area of a closed curve, by Gauss-Legendre quadrature of every segment.
 
     Parameters
     ----------
-    strokes : Strokes
+    segments : ProfileSegments
         Closed; mirrored or not.
 
     Returns
@@ -217,9 +217,9 @@ def size_of(strokes: Strokes) -> Size:
     Size
         The errors are differences to half the cells, and rounding.
     """
-    cells, found = _CELLS, _integrals(strokes, _CELLS)
+    cells, found = _CELLS, _integrals(segments, _CELLS)
     while True:
-        cells, before, found = 2 * cells, found, _integrals(strokes, 2 * cells)
+        cells, before, found = 2 * cells, found, _integrals(segments, 2 * cells)
         changes = np.abs(found - before)
         if np.all(changes <= _AGREED * found) or cells >= _MOST_CELLS:
             break
@@ -228,16 +228,16 @@ def size_of(strokes: Strokes) -> Size:
     return Size(perimeter=perimeter, area=area, perimeter_error=errors[0], area_error=errors[1])
 
 
-def _integrals(strokes: Strokes, cells: int) -> Array:
-    """Return perimeter and area with as many cells for each stroke."""
+def _integrals(segments: ProfileSegments, cells: int) -> Array:
+    """Return perimeter and area with as many cells for each segment."""
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     share = ((np.arange(cells)[:, None] + 0.5 * (nodes + 1.0)) / cells).ravel()
     weight = np.tile(0.5 * weights / cells, cells)
-    count = len(strokes.start)
+    count = len(segments.start)
     index = np.repeat(np.arange(count), len(share))
-    run = (strokes.end - strokes.start)[index]
-    parameter = strokes.start[index] + np.tile(share, count) * run
-    points, velocities = strokes.moving(index, parameter)
+    run = (segments.end - segments.start)[index]
+    parameter = segments.start[index] + np.tile(share, count) * run
+    points, velocities = segments.moving(index, parameter)
     way = velocities * run * np.tile(weight, count)
     swept = 0.5 * float((np.conj(points) * way).imag.sum())
     return np.array([math.fsum(np.abs(way)), abs(swept)])

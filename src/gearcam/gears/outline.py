@@ -14,7 +14,6 @@ from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
-    Crossing,
     entangled,
     join,
     regular_rows,
@@ -26,6 +25,7 @@ from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
+from gearcam.numeric.crossings import CurvePoint
 from gearcam.numeric.sampling import Sampler
 from gearcam.tolerances import Tolerances
 
@@ -43,7 +43,7 @@ class Flanks:
     Parameters
     ----------
     sf, sigma : (2z,) arrays, mm and 1
-        Place on the pitch curve and side.
+        CurvePoint on the pitch curve and side.
     cusps : Undercut
         Cusps.
     tips : TipEnds
@@ -303,11 +303,11 @@ def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> t
     """Replace entangled spaces by untangled ones and shorten the flanks they trim."""
     lowest = flanks.lowest.copy()
     parts, done = [], 0
-    for space, (part, crossings) in zip(spaces, untangle(toothing, rows, spaces), strict=True):
+    for space, (part, places) in zip(spaces, untangle(toothing, rows, spaces), strict=True):
         first = ROWS_PER_TOOTH * int(space)
         parts += [select(rows, np.arange(done, first)), part]
         done = first + ROWS_PER_TOOTH
-        _trim(toothing, rows, lowest, crossings)
+        _trim(toothing, rows, lowest, places)
     parts.append(select(rows, np.arange(done, len(rows.kind))))
     joined = join(parts)
     if not toothing.closed:
@@ -321,17 +321,16 @@ def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> t
     return joined, replace(flanks, highest=np.where(np.isfinite(highest), highest, flanks.highest))
 
 
-def _trim(toothing: Toothing, rows: Rows, lowest: Array, crossings: list[Crossing]) -> None:
+def _trim(toothing: Toothing, rows: Rows, lowest: Array, places: list[CurvePoint]) -> None:
     """Write down how far the flanks of an untangled space still reach."""
     z, first = len(toothing.numbers), toothing.numbers[0]
-    for crossing in crossings:
-        for number, phi in ((crossing.before, crossing.leaves), (crossing.after, crossing.enters)):
-            if rows.kind[number] == Curve.FLANK:
-                sf, sigma = rows.sf[number], rows.sigma[number]
-                flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
-                reach = sigma * (sf - float(toothing.track.arc_length(phi)))
-                # A flank that crosses itself counts down to its first loop only.
-                lowest[flank] = max(lowest[flank], reach)
+    for number, phi in places:
+        if rows.kind[number] == Curve.FLANK:
+            sf, sigma = rows.sf[number], rows.sigma[number]
+            flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
+            reach = sigma * (sf - float(toothing.track.arc_length(phi)))
+            # A flank that crosses itself counts down to its first loop only.
+            lowest[flank] = max(lowest[flank], reach)
 
 
 def _demand_simple(outline: Outline) -> None:

@@ -28,6 +28,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.chebyshev import Expansion
+from gearcam.numeric.hermite import hermite_cubic
 from gearcam.numeric.roots import newton_in_bracket
 
 Wheel = Literal[1, 2]
@@ -124,10 +125,8 @@ class ArcLength:
         width = arcs[index + 1] - arcs[index]
         t = (rest - arcs[index]) / width
         # Hermite's cubic on the inverse: Newton then has little left to do.
-        bend = (1.0 - t) * (slopes[index] * width - (high - low)) + t * (
-            (high - low) - slopes[index + 1] * width
-        )
-        start = np.clip(low + t * (high - low) + t * (1.0 - t) * bend, low, high)
+        ends = slopes[index] * width, slopes[index + 1] * width
+        start = np.clip(low + hermite_cubic(high - low, *ends, t)[0], low, high)
 
         def miss(phi: Array) -> tuple[Array, Array]:
             return self.unit(phi) - rest, self.speed(phi)

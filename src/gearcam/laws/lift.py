@@ -30,6 +30,7 @@ from gearcam.laws.phases_of_lift import (
 )
 from gearcam.laws.placed import PlacedLaws, PlacedPiece, placed
 from gearcam.laws.rises import Rise, RiseParameters
+from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import polynomial
 from gearcam.numeric.piecewise import (
     Piece,
@@ -326,14 +327,8 @@ class _Frame:
         width, rise = self.width(number), self.rise(number)
         start, end = self.end_state((number - 1) % len(self.phases)), self.end_state(number)
         v0, a0, v1, a1 = start[0] * width, start[1] * width**2, end[0] * width, end[1] * width**2
-        # what is left at the end after the start's own parabola
-        p, v, a = rise - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
-        cubic, quartic, quintic = (
-            10 * p - 4 * v + 0.5 * a,
-            -15 * p + 7 * v - a,
-            6 * p - 3 * v + 0.5 * a,
-        )
-        powers = (0.0, v0, 0.5 * a0, cubic, quartic, quintic)
+        ends = np.array([[0.0, 1.0], [0.0, rise], [v0, v1], [a0, a1]])
+        powers = hermite_quintics(*ends)[0].tolist()
         return piecewise([0.0, 1.0], [Piece(polynomial, parameters=(0.0, *powers))])
 
     def end_state(self, number: int) -> tuple[float, float]:

@@ -21,6 +21,7 @@ from gearcam.laws.rises import (
     ClosedForm,
     Rise,
 )
+from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
@@ -196,15 +197,12 @@ def _through(points: Array, start: tuple[float, float], end: tuple[float, float]
     x, y = points.T
     slopes, bends = _joined(x, y, start, end).T
     h = np.diff(x)
-    d0, d1, s0, s1 = slopes[:-1], slopes[1:], bends[:-1], bends[1:]
-    rise = np.diff(y) / h
-    # third to fifth coefficient, from what is given at both ends of an interval
-    first = 10.0 * rise - 6.0 * d0 - 4.0 * d1 - (1.5 * s0 - 0.5 * s1) * h
-    second = -15.0 * rise + 8.0 * d0 + 7.0 * d1 + (1.5 * s0 - s1) * h
-    third = 6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (s0 - s1) * h
-    left = np.array([y[:-1], d0, 0.5 * s0, first / h**2, second / h**3, third / h**4])
-    jerk = (first + 4.0 * second + 10.0 * third) / h**2
-    right = np.array([y[1:], d1, 0.5 * s1, jerk, (second + 5.0 * third) / h**3, third / h**4])
+    left = hermite_quintics(x, y, slopes, bends).T
+    cubic, quartic, quintic = left[3:]
+    jerk = cubic + h * (4.0 * quartic + 10.0 * h * quintic)
+    right = np.array(
+        [y[1:], slopes[1:], 0.5 * bends[1:], jerk, quartic + 5.0 * h * quintic, quintic]
+    )
     # the jerk at a point is one number for both sides, not only to rounding: the wider side's
     shared = np.where(h[1:] > h[:-1], left[3, 1:], right[3, :-1])
     left[3, 1:], right[3, :-1] = shared, shared

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from gearcam.numeric.bulges import Array, Complex, as_complex, as_pairs, off_circle
 from gearcam.numeric.contour import Run
+from gearcam.numeric.hermite import on_cubics
 
 Piece = list[tuple[complex, float]]
 """End point and bulge of each arc of a piece."""
@@ -180,10 +181,7 @@ def _between(
     place = np.concatenate([[0], np.cumsum(parts)])
     index = np.repeat(np.arange(len(parts)), parts)
     part = (np.arange(len(index)) - place[index]) / parts[index]
-    chord = np.diff(points)[index]
-    first, second = (np.abs(chord) * tangents[index + k] - chord for k in (0, 1))
-    bow = part * (1 - part) * (first * (1 - part) - second * part)
-    return np.append(points[index] + part * chord + bow, points[-1]), place
+    return np.append(on_cubics(points, tangents, index, part)[0], points[-1]), place
 
 
 def _longest(curve: _Curve, start: int, guess: int, tolerance: float) -> tuple[int, Piece]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.numeric.bulges import Complex, as_complex, bulge_pieces
-from gearcam.numeric.cubics import hermite_arms
+from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 Array = NDArray[np.float64]
 
@@ -105,13 +105,10 @@ def curve_moments(points: Array, tangents: Array) -> Moments:
     """
     p, u = as_complex(points), as_complex(tangents)
     chord = np.diff(p)
-    arms = hermite_arms(p, u)
     place, weight = _gauss(_ON_CUBIC)
-    t = place[:, None]
-    first, second = (u[k : len(u) - 1 + k] * arms - chord for k in (0, 1))
-    bow = t * (1.0 - t) * (first * (1.0 - t) - second * t)
-    slope = first * (1.0 - t) * (1.0 - 3.0 * t) - second * t * (2.0 - 3.0 * t)
-    return _integrate(p[:-1] + t * chord + bow, chord + slope, weight)
+    arms = hermite_arms(p, u)
+    way, slope = hermite_cubic(chord, u[:-1] * arms, u[1:] * arms, place[:, None])
+    return _integrate(p[:-1] + way, slope, weight)
 
 
 def _gauss(count: int) -> tuple[Array, Array]:

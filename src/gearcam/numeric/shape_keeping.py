@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.numeric.hermite import hermite_quintics
+
 Array = NDArray[np.float64]
 
 _STENCIL = 5
@@ -38,21 +40,7 @@ def quintics(x: Array, y: Array, rise: float | None) -> Array:
     slope, bend = _estimates(x, y, rise)
     slope = _limited_slopes(slope, secant, rise is not None)
     bend = _limited_bends(slope, bend, secant, h, rise is not None)
-    d0, d1, s0, s1 = slope[:-1], slope[1:], bend[:-1], bend[1:]
-    # the end conditions on what a parabola from the left end misses
-    miss = secant - d0 - 0.5 * s0 * h
-    turn, gap = d1 - d0 - s0 * h, s1 - s0
-    return np.stack(
-        [
-            y[:-1],
-            d0,
-            0.5 * s0,
-            (10.0 * miss - 4.0 * turn + 0.5 * gap * h) / h**2,
-            (-15.0 * miss + 7.0 * turn - gap * h) / h**3,
-            (6.0 * miss - 3.0 * turn + 0.5 * gap * h) / h**4,
-        ],
-        axis=1,
-    )
+    return hermite_quintics(x, y, slope, bend)
 
 
 def _estimates(x: Array, y: Array, rise: float | None) -> tuple[Array, Array]:

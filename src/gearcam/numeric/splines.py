@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from gearcam.numeric.bulges import Complex, as_complex, as_pairs
 from gearcam.numeric.contour import Run
-from gearcam.numeric.cubics import hermite_arms
+from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 Array = NDArray[np.float64]
 
@@ -130,11 +130,8 @@ def _error(p: Complex, t: Complex, way: Array, start: int, end: int) -> float:
     if end - start < 2:
         return 0.0
     u = (way[inner] - way[start]) / length
-    v = 1.0 - u
-    arms = length / 3.0
-    near, far = p[start] + arms * t[start], p[end] - arms * t[end]
-    curve = v**3 * p[start] + 3.0 * u * v * (v * near + u * far) + u**3 * p[end]
-    miss = curve - p[inner]
+    way, _ = hermite_cubic(p[end] - p[start], length * t[start], length * t[end], u)
+    miss = p[start] + way - p[inner]
     # across the curve; what is along it only shifts the parameter, and counts by its square
     bend = abs(np.angle(t[end] * np.conj(t[start]))) / length
     across = np.abs((miss * np.conj(t[inner])).imag)

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.bulges import Complex, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.cubics import on_cubics
-from gearcam.parts.rolled import Stretch, arc_run, roll, too_far
+from gearcam.numeric.hermite import on_cubics
+from gearcam.parts.rolled import Touched, arc_run, roll, too_far
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -66,7 +66,7 @@ def moved(contour: Contour, by: float) -> Contour:
     """
     if by == 0.0:
         return contour
-    runs = [stretch.as_run(stretch.by) for stretch, _, _ in roll(contour, by).pairs]
+    runs = [part.as_run(part.by) for part, _, _ in roll(contour, by).pairs]
     return _contour(runs, contour, by)
 
 
@@ -184,7 +184,7 @@ def _fewer_digits(size: float) -> float:
     return float(f"{math.floor(size / step) * step:.3g}")
 
 
-def _ends(one: Stretch, two: Stretch) -> tuple[complex, complex]:
+def _ends(one: Touched, two: Touched) -> tuple[complex, complex]:
     return one.touched(one.high), two.touched(two.low)
 
 

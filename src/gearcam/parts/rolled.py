@@ -2,24 +2,21 @@
 
 The middle of a disc that touches a smooth run outside (or, with a negative radius, inside) runs on
 the run's parallel. About a corner that opens towards the disc it runs on an arc; at one that closes
-the parallels are joined through the corner itself. All of this is one closed *chain*, which may
-cross itself. The chain is cut at its crossings, and what lies around the faces with a positive
-winding number is the way that the disc can really go: *stretches* of runs and arcs, in order.
-
-Everything is done on dense points with their exact tangents; crossings are then refined on the
-cubics through them.
+the parallels are joined through the corner itself. All of this is one closed chain, which may cross
+itself; what has a positive winding number is the way that the disc can really go (see
+`gearcam.numeric.crossings`). Everything is done on the cubics through dense points with their exact
+tangents.
 
 Refused: discs that leave no single way around.
 
-Depends on numeric; shapely inside the functions.
+Depends on numeric.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +24,8 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.bulges import Complex, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.cubics import on_cubics
+from gearcam.numeric.crossings import Chain, remaining, rows_between
+from gearcam.numeric.hermite import on_cubics
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,18 +36,12 @@ _SMOOTH: Final = 1e-9
 _DENSE: Final = 1 / 40
 """Chord error of dense points over the tolerance."""
 
-_ROUNDS: Final = 16
-_NARROWER: Final = 0.125
-_TOGETHER: Final = 1e-15
-"""Rounds in which a crossing is refined, how much narrower each looks, and the distance over that
-from the axis at which it is found: rounding."""
-
 _BESIDE: Final = 0.1
 """Steps of a run that its new ends keep from the points inside."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class Touched:
     """A part of a run between two places, counted in points of the run with fractions.
 
     Parameters
@@ -114,21 +106,21 @@ class Rolled:
 
     Parameters
     ----------
-    stretches : tuple of Stretch
+    touched : tuple of Touched
         What it touches, in order, counter-clockwise.
     centers : tuple of complex or None, mm
         Behind each stretch, where the disc touches this and the next one at once; None where one
         ends as the next begins.
     """
 
-    stretches: tuple[Stretch, ...]
+    touched: tuple[Touched, ...]
     centers: tuple[complex | None, ...]
 
     @property
-    def pairs(self) -> list[tuple[Stretch, Stretch, complex | None]]:
+    def pairs(self) -> list[tuple[Touched, Touched, complex | None]]:
         """Each stretch with the next one and what is between them."""
-        following = self.stretches[1:] + self.stretches[:1]
-        return list(zip(self.stretches, following, self.centers, strict=True))
+        following = self.touched[1:] + self.touched[:1]
+        return list(zip(self.touched, following, self.centers, strict=True))
 
 
 def roll(contour: Contour, radius: float) -> Rolled:
@@ -150,33 +142,104 @@ def roll(contour: Contour, radius: float) -> Rolled:
     InfeasibleError
         If the disc is too large to go around.
     """
-    pieces = _pieces(contour, radius)
-    chain = _chain(pieces)
-    ring = _way(chain.points, contour, radius)
-    stretches = list(_stretches(pieces, chain, ring))
-    if not stretches:
+    pieces, closing = _pieces(contour, radius)
+    middles = _Middles.of(pieces)
+    chain = middles.chain(closing)
+    # slivers that rounding leaves between parallels that all but coincide
+    least = _SMOOTH * contour.tolerance * float(np.abs(np.diff(chain.points)).sum())
+    rings = [ring for ring in remaining(middles, [chain])[0] if abs(ring.area) > least]
+    if len(rings) != 1 or rings[0].area < 0.0:
         raise too_far(contour, radius)
-    return _joined(stretches, contour, radius)
+    touched: list[Touched] = []
+    centers: list[complex | None] = []
+    for branch in rings[0].branches:
+        for k, low, high in zip(*rows_between(middles, [branch])[:3], strict=True):
+            if low < high:
+                touched.append(replace(pieces[k], low=float(low), high=float(high)))
+                centers.append(None)
+        if rings[0].crossed:
+            centers[-1] = touched[-1].middle(touched[-1].high)
+    if any(part.backwards for part in touched):
+        raise too_far(contour, radius)
+    return Rolled(tuple(touched), tuple(centers))
 
 
-def _pieces(contour: Contour, radius: float) -> list[Stretch | Complex]:
-    """Return the runs, arcs about opening corners, and chains through closing ones, in order."""
+def _pieces(contour: Contour, radius: float) -> tuple[list[Touched], dict[int, complex]]:
+    """Return runs and arcs about opening corners in order, and the closing corners behind some."""
     runs = [_densified(run, radius, contour.tolerance) for run in contour.runs]
-    made: list[Stretch | Complex] = []
+    made: list[Touched] = []
+    closing: dict[int, complex] = {}
     for run, following in zip(runs, [*runs[1:], runs[0]], strict=True):
-        whole = Stretch(run, radius, 0.0, len(run.points) - 1.0)
-        after = Stretch(following, radius, 0.0, 1.0)
+        whole = Touched(run, radius, 0.0, len(run.points) - 1.0)
         made.append(whole)
-        (corner, before), (_, behind) = whole.place(whole.high), after.place(0.0)
+        corner, before = whole.place(whole.high)
+        behind = Touched(following, radius, 0.0, 1.0).place(0.0)[1]
         turn = float(np.angle(behind / before))
-        if abs(turn * radius) <= _SMOOTH * contour.tolerance:
-            continue
-        if turn * radius > 0.0:
+        if turn * radius > _SMOOTH * contour.tolerance:
             arc = arc_run(corner, radius, -1j * before, -1j * behind, contour.tolerance)
-            made.append(Stretch(arc, 0.0, 0.0, len(arc.points) - 1.0, corner))
-        else:
-            made.append(np.array([whole.middle(whole.high), corner, after.middle(0.0)]))
-    return made
+            made.append(Touched(arc, 0.0, 0.0, len(arc.points) - 1.0, corner))
+        elif turn * radius < -_SMOOTH * contour.tolerance:
+            closing[len(made) - 1] = corner
+    return made, closing
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Middles:
+    """Where the disc's middle is, as `gearcam.numeric.sampling.Curves` over places on pieces.
+
+    `first` are the numbers of the pieces' first points; `points`, `tangents` and `by` of all.
+    """
+
+    start: Array
+    end: Array
+    corner: NDArray[np.bool_]
+    first: Ints
+    points: Complex
+    tangents: Complex
+    by: Array
+
+    @classmethod
+    def of(cls, pieces: list[Touched]) -> _Middles:
+        """Return the middle's way along all of some pieces."""
+        size = np.array([len(piece.run.points) for piece in pieces])
+        return cls(
+            start=np.zeros(len(pieces)),
+            end=size - 1.0,
+            corner=np.zeros(len(pieces), dtype=bool),  # smooth as far as anybody asks here
+            first=np.cumsum(size) - size,
+            points=as_complex(np.concatenate([piece.run.points for piece in pieces])),
+            tangents=as_complex(np.concatenate([piece.run.tangents for piece in pieces])),
+            by=np.repeat([piece.by for piece in pieces], size),
+        )
+
+    @property
+    def breaks(self) -> tuple[Ints, Array]:
+        """None that matter here."""
+        return np.zeros(0, dtype=np.int64), np.zeros(0)
+
+    def at(self, index: Ints, parameter: Array) -> tuple[Complex, Complex]:
+        """Return points, mm, and unit tangents of pieces at places."""
+        first = self.first[index]
+        step = np.clip(parameter, 0.0, self.end[index] - 1.0).astype(np.int64)
+        points, tangents = on_cubics(self.points, self.tangents, first + step, parameter - step)
+        return points - 1j * self.by[first] * tangents, tangents
+
+    def chain(self, closing: dict[int, complex]) -> Chain:
+        """Return the chain through all dense points and the corners behind some pieces."""
+        curve = np.repeat(np.arange(len(self.end)), self.end.astype(np.int64) + 1)
+        low = np.arange(len(curve)) - self.first[curve].astype(np.float64)
+        high = np.minimum(low + 1.0, self.end[curve])
+        # through a corner the way leads from the end of one run to the start of the next
+        behind = np.array(list(closing), dtype=np.int64)
+        at = np.append(self.first, len(curve))[behind + 1]
+        return Chain(
+            curve=np.insert(curve, at, (behind + 1) % len(self.end)),
+            low=np.insert(low, at, 0.0),
+            high=np.insert(high, at, 0.0),
+            points=np.insert(
+                self.points - 1j * self.by * self.tangents, at, list(closing.values())
+            ),
+        )
 
 
 def arc_run(center: complex, radius: float, start: complex, end: complex, tolerance: float) -> Run:
@@ -224,167 +287,6 @@ def _densified(run: Run, radius: float, tolerance: float) -> Run:
         tangents=as_pairs(np.append(tangents, t[-1])),
         joints=joints,
     )
-
-
-class _Chain(NamedTuple):
-    """The closed chain of the disc's middle: points, and the piece and number of each."""
-
-    points: Complex
-    piece: Ints
-    number: Ints
-
-
-def _chain(pieces: list[Stretch | Complex]) -> _Chain:
-    ways = [
-        piece
-        if isinstance(piece, np.ndarray)
-        else as_complex(piece.run.points) - 1j * piece.by * as_complex(piece.run.tangents)
-        for piece in pieces
-    ]
-    sizes = [len(way) for way in ways]
-    return _Chain(
-        points=np.concatenate(ways),
-        piece=np.repeat(np.arange(len(ways)), sizes),
-        number=np.concatenate([np.arange(size) for size in sizes]),
-    )
-
-
-def _way(chain: Complex, contour: Contour, radius: float) -> Complex:
-    """Return the outer boundary of the faces of positive winding number, counter-clockwise."""
-    from shapely import LineString, Polygon, get_coordinates, polygonize, unary_union
-
-    closed = np.append(chain, chain[:1])
-    faces: Any = polygonize([unary_union(LineString(as_pairs(closed)))])
-    inner = [face for face in faces.geoms if _winding(closed, face) > 0]
-    whole: Any = unary_union(inner)
-    # slivers that rounding leaves between parallels that all but coincide
-    least = contour.tolerance * float(np.abs(np.diff(closed)).sum()) * _SMOOTH
-    parts = [part for part in getattr(whole, "geoms", [whole]) if part.area > least]
-    if len(parts) != 1 or any(Polygon(hole).area > least for hole in parts[0].interiors):
-        raise too_far(contour, radius)
-    ring = as_complex(get_coordinates(parts[0].exterior))[:-1]
-    return ring if parts[0].exterior.is_ccw else ring[::-1]
-
-
-def _winding(closed: Complex, face: Any) -> int:
-    """How often a closed chain goes around a face."""
-    inside = face.representative_point()
-    way = closed - complex(inside.x, inside.y)
-    above = way.imag > 0.0
-    rises, falls = ~above[:-1] & above[1:], above[:-1] & ~above[1:]
-    left = (np.conj(way[:-1]) * way[1:]).imag
-    return int((rises & (left > 0.0)).sum()) - int((falls & (left < 0.0)).sum())
-
-
-def _segments(chain: _Chain, ring: Complex) -> Ints:
-    """Return where in the chain the segment under each edge of the ring begins."""
-    from shapely import STRtree, linestrings, points
-
-    p, q = chain.points, np.roll(chain.points, -1)
-    first = {edge: k for k, edge in enumerate(zip(p.tolist(), q.tolist(), strict=True))}
-    edges = zip(ring.tolist(), np.roll(ring, -1).tolist(), strict=True)
-    made = np.array([first.get(edge, -1) for edge in edges], dtype=np.int64)
-    cut = np.flatnonzero(made < 0)  # a part of a segment only: beside a crossing
-    if cut.size:
-        lines: Any = linestrings(np.stack([as_pairs(p), as_pairs(q)], axis=1))
-        tree = STRtree(lines)
-        middle = points(as_pairs(0.5 * (ring + np.roll(ring, -1))[cut]))
-        made[cut] = tree.query_nearest(middle, all_matches=False)[1]
-    return made
-
-
-def _stretches(pieces: list[Stretch | Complex], chain: _Chain, ring: Complex) -> Iterator[Stretch]:
-    """Yield what the disc touches along the ring, stretch by stretch."""
-    segment = _segments(chain, ring)
-    inside = np.roll(chain.number, -1)[segment] > 0
-    piece = np.where(inside, chain.piece[segment], -1)  # -1: between two pieces
-    ahead = np.roll(segment, -1)
-    goes_on = (np.roll(piece, -1) == piece) & (ahead >= segment) & (ahead <= segment + 1)
-    ends = np.flatnonzero(~goes_on)
-    if not ends.size:  # one smooth run all around
-        ends = np.array([len(ring) - 1])
-    last = np.roll(ends, 1)
-    for before, end in zip(last.tolist(), ends.tolist(), strict=True):
-        whole = pieces[int(piece[end])]
-        if piece[end] < 0 or isinstance(whole, np.ndarray):
-            continue
-        start = (before + 1) % len(ring)
-        low = _place(chain, int(segment[start]), ring[start])
-        high = _place(chain, int(segment[end]), ring[(end + 1) % len(ring)])
-        if low < high:
-            yield Stretch(whole.run, whole.by, low, high, whole.corner)
-
-
-def _place(chain: _Chain, segment: int, point: complex) -> float:
-    """Return the place of a point on a segment, in points of its piece."""
-    start, end = chain.points[segment], chain.points[(segment + 1) % len(chain.points)]
-    length = abs(end - start)
-    share = abs(point - start) / length if length else 0.0
-    return float(chain.number[segment]) + min(share, 1.0)
-
-
-def _joined(parts: list[Stretch], contour: Contour, radius: float) -> Rolled:
-    """Refine where stretches meet."""
-    centers: list[complex | None] = []
-    for number in range(len(parts)):
-        following = (number + 1) % len(parts)
-        one, two = parts[number], parts[following]
-        gap = abs(one.middle(one.high) - two.middle(two.low))
-        if gap <= _SMOOTH * contour.tolerance and one.high == len(one.run.points) - 1.0:
-            centers.append(None)
-            continue
-        center, high, low = _refined(one, two)
-        parts[number] = replace(one, high=high)
-        parts[following] = replace(parts[following], low=low)
-        centers.append(center)
-    if any(part.high < part.low or part.backwards for part in parts):
-        raise too_far(contour, radius)
-    return Rolled(tuple(parts), tuple(centers))
-
-
-def _refined(one: Stretch, two: Stretch) -> tuple[complex, float, float]:
-    """Return the crossing of two ways of the disc's middle, and its places.
-
-    Each round crosses the chords through places on either side; they come nearer by the square of
-    their distance, and stay within a step of the first ones.
-    """
-    high, low, reach = one.high, two.low, 1.0
-    ends = [(0.0, len(stretch.run.points) - 1.0) for stretch in (one, two)]
-    for _ in range(_ROUNDS):
-        (i, k), (j, m) = (
-            (max(at - reach, first), min(at + reach, last))
-            for at, (first, last) in zip((high, low), ends, strict=True)
-        )
-        found = _crossing(
-            np.array([one.middle(at) for at in (i, high, k)]),
-            np.array([two.middle(at) for at in (j, low, m)]),
-            np.array([i, high, k]),
-            np.array([j, low, m]),
-        )
-        if found is None:  # it lies beside what was looked at
-            reach = min(1.0, reach / _NARROWER**2)
-        else:
-            high, low = found
-            reach *= _NARROWER
-            if abs(one.middle(high) - two.middle(low)) < _TOGETHER * abs(one.middle(high)):
-                break
-    return 0.5 * (one.middle(high) + two.middle(low)), high, low
-
-
-def _crossing(a: Complex, b: Complex, i: Array, j: Array) -> tuple[float, float] | None:
-    """Return the places, on both, of the first crossing of two short chains."""
-    p, r = a[:-1, None], np.diff(a)[:, None]
-    q, s = b[None, :-1], np.diff(b)[None, :]
-    cross = (np.conj(r) * s).imag
-    with np.errstate(divide="ignore", invalid="ignore"):
-        x = (np.conj(q - p) * s).imag / cross
-        y = (np.conj(q - p) * r).imag / cross
-    hit = (x >= 0.0) & (x <= 1.0) & (y >= 0.0) & (y <= 1.0)
-    if not hit.any():
-        return None
-    k, m = (int(index[0]) for index in np.nonzero(hit))
-    share, other = float(x[k, m]), float(y[k, m])
-    return float(i[k] + share * (i[k + 1] - i[k])), float(j[m] + other * (j[m + 1] - j[m]))
 
 
 def too_far(contour: Contour, radius: float) -> InfeasibleError:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from gearcam.numeric.bulges import Complex, as_complex
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.cubics import on_cubics
+from gearcam.numeric.hermite import on_cubics
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.cubics import on_cubics
+from gearcam.numeric.hermite import on_cubics
 
 Array = NDArray[np.float64]
 

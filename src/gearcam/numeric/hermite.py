@@ -1,0 +1,120 @@
+"""Hermite's cubics and quintics: what lies between places with known derivatives.
+
+Points and tangents of curves are complex numbers inside this room.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.numeric.bulges import Array, Complex
+
+Ints = NDArray[np.int64]
+Numbers = NDArray[Any]
+"""Real or complex numbers."""
+
+
+def hermite_arms(points: Complex, tangents: Complex) -> Array:
+    """Return the length of the end derivatives of the cubics through a curve's points.
+
+    Parameters
+    ----------
+    points, tangents : (n,) complex arrays, mm and 1
+        Points, and unit tangents there.
+
+    Returns
+    -------
+    (n - 1,) array, mm
+        The lengths of arcs that turn as the tangents do: the cubics' error then falls with the
+        fourth power of the step.
+    """
+    return _arms(np.diff(points), tangents[:-1], tangents[1:])
+
+
+def _arms(chord: Complex, first: Complex, second: Complex) -> Array:
+    turn = np.angle(second * np.conj(first))
+    return np.abs(chord) / np.sinc(0.5 * turn / np.pi)
+
+
+def hermite_cubic(
+    chord: Numbers, first: Numbers, second: Numbers, share: Array
+) -> tuple[Numbers, Numbers]:
+    """Return the way and the slope of cubics.
+
+    Parameters
+    ----------
+    chord : array
+        From the beginning to the end.
+    first, second : arrays
+        Derivatives by the share at both ends.
+    share : array
+        From 0 to 1.
+
+    Returns
+    -------
+    way, slope : arrays
+        From the beginning, and by the share.
+    """
+    back = 1.0 - share
+    first, second = first - chord, second - chord
+    way = share * chord + share * back * (first * back - second * share)
+    slope = chord + first * back * (1.0 - 3.0 * share) - second * share * (2.0 - 3.0 * share)
+    return way, slope
+
+
+def on_cubics(p: Complex, t: Complex, step: Ints, share: Array) -> tuple[Complex, Complex]:
+    """Return places on the cubics between a curve's points.
+
+    Parameters
+    ----------
+    p, t : (n,) complex arrays, mm and 1
+        Points, and unit tangents there.
+    step : (k,) int array
+        Number of the point before each place.
+    share : (k,) array
+        Share of the way to the next point.
+
+    Returns
+    -------
+    points, tangents : (k,) complex arrays, mm and 1
+    """
+    chord, ends = p[step + 1] - p[step], (t[step], t[step + 1])
+    arms = _arms(chord, *ends)
+    way, slope = hermite_cubic(chord, ends[0] * arms, ends[1] * arms, share)
+    tangents: Complex = slope / np.abs(slope)
+    return p[step] + way, tangents
+
+
+def hermite_quintics(x: Array, y: Array, slopes: Array, bends: Array) -> Array:
+    """Return the quintics between places with known values, slopes and second derivatives.
+
+    Parameters
+    ----------
+    x : (n + 1,) array
+        Rising.
+    y, slopes, bends : (n + 1,) arrays
+        What is known there.
+
+    Returns
+    -------
+    (n, 6) array
+        Coefficients of the powers of ``x - x[k]`` on interval k.
+    """
+    h, d0, s0 = np.diff(x), slopes[:-1], bends[:-1]
+    # the end conditions on what a parabola from the left end misses
+    miss = np.diff(y) / h - d0 - 0.5 * s0 * h
+    turn, gap = slopes[1:] - d0 - s0 * h, bends[1:] - s0
+    return np.stack(
+        [
+            y[:-1],
+            d0,
+            0.5 * s0,
+            (10.0 * miss - 4.0 * turn + 0.5 * gap * h) / h**2,
+            (-15.0 * miss + 7.0 * turn - gap * h) / h**3,
+            (6.0 * miss - 3.0 * turn + 0.5 * gap * h) / h**4,
+        ],
+        axis=1,
+    )
