@@ -34,6 +34,9 @@ SINGLE: Final = 1e-6
 TOLD: Final = 1e-5
 """The same for numbers in texts, which have six digits."""
 
+_FINER: Final = 0.01
+"""How much finer than an outline's tolerance its curves are compared."""
+
 NOISE: Final = ("timings_s", "versions", "design", "files", "findings", "format")
 """Keys of a summary that tell of the run, or that are compared elsewhere."""
 
@@ -121,8 +124,10 @@ def files(name: str, before: bytes, after: bytes, tolerance: float) -> Iterator[
         yield from _meshes(name, before, after)
     else:
         found = [*_texts(name, before.decode(), after.decode())]
-        curves = kind in ("dxf", "svg") and "_drawing" not in name
-        if found and not (curves and farthest(kind, before, after) <= 2.0 * tolerance):
+        curves = name.endswith("cut.svg") or (kind == "dxf" and "_drawing" not in name)
+        if found and not (
+            curves and farthest(kind, before, after, _FINER * tolerance) <= 2.0 * tolerance
+        ):
             yield from found
 
 

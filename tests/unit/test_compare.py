@@ -137,8 +137,8 @@ def test_arcs_may_lie_elsewhere_within_their_tolerance() -> None:
     path = b'<path class="profile" d="M20 0A20 20 0 %d 1 %s %sA20 20 0 %d 1 20 0Z"/>'
     half = path % (0, b"-20", b"0", 0)
     quarter = path % (0, b"0", b"20", 1)
-    assert places("a.svg", half, quarter) == []
-    assert places("a.svg", half, quarter.replace(b"20 0Z", b"20.01 0Z")) == ["a.svg"]
+    assert places("cut.svg", half, quarter) == []
+    assert places("cut.svg", half, quarter.replace(b"20 0Z", b"20.01 0Z")) == ["cut.svg"]
 
 
 def test_solids_are_compared_in_single_precision() -> None:
