@@ -82,17 +82,18 @@ def folders(first: Path, second: Path, tolerance: float) -> Iterator[Difference]
         How far arcs may lie from their curve.
     """
     one, two = (_names(folder) for folder in (first, second))
-    for name in sorted(one ^ two):
+    for name in sorted(one.keys() ^ two.keys()):
         yield Difference(name, math.inf, f"only in {'base' if name in one else 'tree'}")
-    for name in sorted(one & two):
-        before, after = (first / name).read_bytes(), (second / name).read_bytes()
+    for name in sorted(one.keys() & two.keys()):
+        before, after = one[name].read_bytes(), two[name].read_bytes()
         if before != after:
             yield from files(name, before, after, tolerance)
 
 
-def _names(folder: Path) -> set[str]:
+def _names(folder: Path) -> dict[str, Path]:
+    """Return the files of a folder and of those in it, which bear the names of designs."""
     found = folder.rglob("*") if folder.exists() else ()
-    return {str(path.relative_to(folder)) for path in found if path.is_file()}
+    return {path.name: path for path in found if path.is_file()}
 
 
 def files(name: str, before: bytes, after: bytes, tolerance: float) -> Iterator[Difference]:
