@@ -26,11 +26,11 @@ ANYWHERE: Final = 0.06
 
 _SHARES: Final = {
     "gear-pair": {
-        "svg": 0.7, "dxf": 0.2, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
+        "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
         "drawing-dxf": 0.02, "stl": 0.05, "3mf": 0.02, "glb": 0.03, "step": 0.01,
     },
     "cam": {
-        "svg": 0.8, "dxf": 0.6, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
+        "svg": 0.8, "dxf": 0.3, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
         "drawing-dxf": 0.05, "stl": 0.1, "3mf": 0.05, "glb": 0.05, "step": 0.01,
         "tool-path": 0.2, "curvature": 0.3,
     },
