@@ -259,7 +259,7 @@ def run(
         ("1.5", "self.findings = []", "finding:thin-tip: 2 designs"),
         ("1.5", "(Path(out) / 'outline.csv').unlink()", "only in base"),
         ("1.5", "raise ValueError('no way')", "built | ValueError no way"),
-        ("1.5", "if 'two' in out: os._exit(3)", "end:built | crash #: 1 design\n"),
+        ("1.5", "if 'one' in out: os._exit(3)", "end:built | crash #: 1 design\n"),
         ("1.5", "while 'two' in out: pass", "end:built | out of time: 1 design\n"),
     ],
 )
