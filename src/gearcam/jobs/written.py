@@ -68,7 +68,8 @@ def finish(
 
     from gearcam.export.write import SUMMARY, write_all
 
-    text = json.dumps(tree(summary), indent=2, ensure_ascii=False, allow_nan=False)
+    summary = tree(summary)
+    text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
     everything = {**contents, SUMMARY: (text + "\n").encode()}
     removed = write_all(folder, everything, keep=keep)
     return Written(

@@ -56,7 +56,7 @@ _QUARTER: Final = 64
 
 @dataclass(frozen=True, kw_only=True)
 class Workpiece:
-    """Where a blank is made.
+    """What a blank is made into: a wheel of a pair, or a cam.
 
     Parameters
     ----------
