@@ -30,6 +30,9 @@ _CLEARANCE = (
 _UNPREDICTED = 0.5
 """Share of the penetration from which an overlap that no flank predicts is worth a word."""
 
+_PASSED = 1e-9
+"""Share of the travel by which the angle of a tooth at its end may be off by rounding."""
+
 
 def spans(angles: Array, step: float) -> str:
     """Return phases as ranges in degrees, with the number of the ranges that are left out.
@@ -47,12 +50,7 @@ def spans(angles: Array, step: float) -> str:
     """
     cuts = np.flatnonzero(np.diff(angles) > 1.5 * step)
     starts, ends = np.append(0, cuts + 1), np.append(cuts, len(angles) - 1)
-    shown = [
-        f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}"
-        for a, b in zip(np.degrees(angles[starts]), np.degrees(angles[ends]), strict=True)
-    ][:3]
-    more = f" and {len(starts) - 3} more" if len(starts) > 3 else ""
-    return f"phi1 = {', '.join(shown)} deg{more}"
+    return drive_checks.ranges_text(list(zip(angles[starts], angles[ends], strict=True)))
 
 
 def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
@@ -181,7 +179,7 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
     ):
         places = toothing.tooth_places[toothing.whole]
         phi1 = turning.rolling.angle(places)
-        passed = phi1 <= pairs.travel * (1.0 + 1e-9)
+        passed = phi1 <= pairs.travel * (1.0 + _PASSED)
         phi1 = phi1[passed]
         turn, shift = turning.pose(phi1, 0.0)
         # the half of a tooth begins in the middle of its tip

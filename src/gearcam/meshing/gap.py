@@ -34,6 +34,13 @@ Array = NDArray[np.float64]
 _SAMPLES = 13
 """Points of a flank between which the extreme is sought: on a smooth flank there is one."""
 
+_FOUND = 1e-14
+"""Driver angle, rad, to which a point of a given height is found: rounding, so that the turns of
+points compared differ by no more."""
+
+_EXTREME = 1e-10
+"""Driver angle, rad, to which an extreme is found: the turn there changes with its square."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Facing:
@@ -139,7 +146,7 @@ class Facing:
             return self.guide.height(point) - height, self.guide.rates(point, direction)[0]
 
         start = np.clip(start, np.minimum(low, high), np.maximum(low, high))
-        return newton_in_bracket(miss, low, high, start, 1e-14)
+        return newton_in_bracket(miss, low, high, start, _FOUND)
 
     def compare(self, angle: Array, root: Array, tip: Array) -> tuple[Array, Array]:
         """Compare flanks at points of the driver's.
@@ -267,7 +274,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
         lambda x: some.compare(x, root[inner], tip[inner])[1],
         angle[inner, left[inner]],
         angle[inner, right[inner]],
-        1e-10,
+        _EXTREME,
     )
     extreme[inner] = -pairs.side * some.compare(at[inner], root[inner], tip[inner])[0]
     edge = np.ones(len(low), dtype=bool)

@@ -45,8 +45,6 @@ class Halves:
         Largest distance of the curve from its chords.
     tips : (n,) complex array, mm
         Middle of the tip of each half's tooth.
-    width : (n,) array, mm
-        Largest distance of its corners from there.
     teeth : (n,) int array
         Number of each half's tooth.
     first : int
@@ -61,7 +59,6 @@ class Halves:
     starts: Ints
     chord_error: float
     tips: Plane
-    width: Array
     teeth: Ints
     first: int
     pitch: float
@@ -115,12 +112,13 @@ class Halves:
         apart = np.abs(points - np.repeat(center, sizes))
         return center, np.asarray(np.maximum.reduceat(apart, begin))
 
-    def gather(self, halves: Ints) -> tuple[Ints, Ints]:
-        """Return the indices into `points` of some `halves`, and which of these each belongs to."""
+    def placed(self, halves: Ints, turn: Plane, shift: Plane) -> Any:
+        """Return `halves` as polygons, (n,), each by its own `turn` and `shift`, mm."""
         sizes = self.starts[halves + 1] - self.starts[halves]
         owner = np.repeat(np.arange(len(halves)), sizes)
         first = np.cumsum(sizes) - sizes
-        return np.arange(len(owner)) - first[owner] + self.starts[halves][owner], owner
+        index = np.arange(len(owner)) - first[owner] + self.starts[halves][owner]
+        return as_polygons(self.points[index] * turn[owner] + shift[owner], sizes)
 
 
 def halve(outline: Outline) -> Halves:
@@ -141,24 +139,20 @@ def halve(outline: Outline) -> Halves:
     points, lands = _lands(outline)
     inner = _inner(outline, len(lands))
     halves: list[Plane] = []
-    tips: list[tuple[complex, float]] = []
-    for k, pair in enumerate(pairwise(lands)):
-        # on from a tip or back from it
-        step = 1 if pair[0].tip else -1
-        tip, root = pair[::step]
-        land, chain = _chain(tip, root, step, len(outline.sampler.chords[1]))
-        own, (under, low) = points[chain], inner[k : k + 2][::step]
-        halves.append(np.concatenate([own, [low, under]]))
-        tips.append((own[0], np.abs(points[land] - own[0]).max(initial=0.0)))
+    size = len(outline.sampler.chords[1])
+    for k, (first, second) in enumerate(pairwise(lands)):
+        between = np.arange(first.low + 1, second.high) % size
+        own = points[np.concatenate([[first.middle], between, [second.middle]])]
+        step = 1 if first.tip else -1
+        halves.append(np.concatenate([own[::step], inner[k : k + 2][::-step]]))
     if toothing.closed and toothing.wheel == 2:
-        halves, tips = halves[-1:] + halves[:-1], tips[-1:] + tips[:-1]
+        halves = halves[-1:] + halves[:-1]
     bodies = [] if toothing.closed else [_body(outline, inner)]
     return Halves(
         points=np.concatenate(halves + bodies),
         starts=_starts(halves + bodies),
         chord_error=outline.sampler.chords[2],
-        tips=np.array([tip for tip, _ in tips]),
-        width=np.array([width for _, width in tips]),
+        tips=np.array([half[0] for half in halves]),
         teeth=_teeth(toothing),
         first=0 if toothing.closed else -1,
         pitch=toothing.pitch,
@@ -181,23 +175,12 @@ def _starts(parts: Sequence[Sized]) -> Ints:
 
 
 class _Land(NamedTuple):
-    """A land between the vertices `begin` and `end`, and the number of its middle.
-
-    The middle is a vertex itself, or it lies between `low` and `high` and has a number of its own.
-    """
+    """A land, and the number of its middle: a vertex itself, or one between `low` and `high`."""
 
     tip: bool
-    begin: int
-    end: int
+    low: int
+    high: int
     middle: int
-
-    @property
-    def low(self) -> int:
-        return (self.begin + self.end) // 2
-
-    @property
-    def high(self) -> int:
-        return (self.begin + self.end + 1) // 2
 
 
 def _lands(outline: Outline) -> tuple[Plane, list[_Land]]:
@@ -223,21 +206,10 @@ def _lands(outline: Outline) -> tuple[Plane, list[_Land]]:
     low, high = ends.sum(axis=1) // 2, (ends.sum(axis=1) + 1) // 2
     middles = 0.5 * (points[low % size] + points[high % size])
     lands = [
-        _Land((k % 2 == 0) == (first is tips), begin, end, size + k if a < b else a % size)
-        for k, (begin, end, a, b) in enumerate(
-            zip(*ends.T.tolist(), low.tolist(), high.tolist(), strict=True)
-        )
+        _Land((k % 2 == 0) == (first is tips), a, b, size + k if a < b else a % size)
+        for k, (a, b) in enumerate(zip(low.tolist(), high.tolist(), strict=True))
     ]
     return np.concatenate([points, middles]), lands
-
-
-def _chain(tip: _Land, root: _Land, step: int, size: int) -> tuple[Ints, Ints]:
-    """Vertices of the tip before a half, and of the half from tip to root, `step` by step."""
-    if step > 0:
-        before, own = np.arange(tip.begin, tip.high), np.arange(tip.low + 1, root.high)
-    else:
-        before, own = np.arange(tip.end, tip.low, -1), np.arange(tip.high - 1, root.low, -1)
-    return before % size, np.concatenate([[tip.middle], own % size, [root.middle]])
 
 
 def _flanks(outline: Outline) -> Ints:

@@ -15,6 +15,9 @@ Ints = NDArray[np.int64]
 LEAST_STEPS = 8
 """Steps a tooth below which harmonics are not told."""
 
+WHOLE = 1e-9
+"""Part of a turn by which whole turns, written in degrees, may be off: rounding."""
+
 MOST_ORDERS = 3
 """Harmonics that are told, in harmonics of the mesh."""
 
@@ -122,7 +125,7 @@ def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
     turns = (meshing.setup.stretch[1] - meshing.setup.stretch[0]) / (2.0 * np.pi)
     if not pairs.closed:
         return "the driver does not turn for ever"
-    if round(turns) < 1 or abs(turns - round(turns)) > 1e-9:
+    if round(turns) < 1 or abs(turns - round(turns)) > WHOLE:
         return "the study is not of whole turns of the driver"
     if spec.teeth is not None or not meshing.complete:
         return "not every phase was studied"

@@ -26,9 +26,6 @@ from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
 
-_BESIDE = 4
-"""Halves on both sides of the facing one whose tips are taken for the driven wheel's reach."""
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Overlaps:
@@ -96,21 +93,9 @@ class Turning:
         return shapely.STRtree(self.driven.polygons)
 
     @cached_property
-    def _land(self) -> Array:
-        """Largest distance of a tip's corners from its middle, for each half of the driver."""
-        width, half = self.driver.width, np.arange(self.driver.count)
-        other = (half + np.where((half + self.driver.first) % 2 == 0, -1, 1)) % len(half)
-        return np.maximum(width, width[other])
-
-    @cached_property
-    def _reach(self) -> Array:
-        """Largest height of the driven wheel near the half that faces each of the driver's."""
-        driven, count = self.driven, self.driven.count
-        begin = driven.starts[:count]
-        heights = self.guide.height(driven.points[: driven.starts[count]])
-        near = np.arange(count)[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
-        near = near % count if driven.closed else np.clip(near, 0, count - 1)
-        return np.maximum.reduceat(heights, begin)[near].max(axis=1)
+    def _height(self) -> float:
+        """Largest height of the driven wheel, mm."""
+        return float(self.guide.height(self.driven.points).max())
 
     def pose(
         self, phi1: Array, overclosure: float, lead: Array | float = 0.0
@@ -137,18 +122,9 @@ class Turning:
     def overlaps(self, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Overlaps:
         """Return all pieces of overlap at phases (see `pose`)."""
         turn, shift = self.pose(phi1, overclosure, lead)
-        step, one, two = self._near(phi1, turn, shift)
-        if not self.driven.closed:
-            others = self._astray(turn, shift, step, one)
-            step, one = np.append(step, others[0]), np.append(one, others[1])
-            order = np.argsort(step, kind="stable")
-            two = np.append(two, np.full(len(others[0]), -1))[order]
-            step, one = step[order], one[order]
+        step, one = self._near(turn, shift)
         turn, shift = turn[step], shift[step]
-        index, owner = self.driver.gather(one)
-        points = self.driver.points[index] * turn[owner] + shift[owner]
-        sizes = np.bincount(owner)
-        polygons = as_polygons(points, sizes)
+        polygons = self.driver.placed(one, turn, shift)
         own, mate = self._tree.query(polygons)
         mates = self.driven.polygons[mate]
         # the prepared ones first: twice as fast as the tree's own test
@@ -157,6 +133,7 @@ class Turning:
         area = shapely.area(shared)
         some = np.flatnonzero(area > 0.0)
         own, mate, shared = own[hit][some], mate[hit][some], shared[some]
+        half = np.stack([one[own] + self.driver.first, mate + self.driven.first])
         bounds = shapely.bounds(shared)
         corners, of = shapely.get_coordinates(shared, return_index=True)
         seen = np.abs(corners @ [1.0, 1.0j] - shift[own][of])
@@ -164,8 +141,8 @@ class Turning:
         radius = [f.reduceat(seen, starts) if len(of) else seen for f in (np.minimum, np.maximum)]
         return Overlaps(
             step=step[own],
-            half=np.stack([one[own] + self.driver.first, mate + self.driven.first]),
-            facing=two[own] == mate,
+            half=half,
+            facing=self.face(phi1[step[own]], *half),
             area=area[some],
             length=np.hypot(bounds[:, 2] - bounds[:, 0], bounds[:, 3] - bounds[:, 1]),
             radius=np.stack(radius),
@@ -185,19 +162,14 @@ class Turning:
         -------
         (n,) bool array
         """
-        mate = self.driven.index(self._unroll(self._halves_past(phi1), one))
-        return (mate >= 0) & (mate + self.driven.first == two)
-
-    def _halves_past(self, phi1: Array) -> Array:
-        """How many halves have passed the pitch point."""
-        return 2.0 * (self.rolling.arc_length(phi1) - self.moved) / self.driver.pitch
-
-    def _unroll(self, at: Array, half: Ints) -> Ints:
-        """Count halves of the driver, known within the first turn, over all turns."""
-        if not self.driver.closed:
-            return half
-        turns = np.rint((at - 0.5 - half) / self.driver.count).astype(np.int64)
-        return half + turns * self.driver.count
+        driver, at = self.driver, self.rolling.arc_length(phi1) - self.moved
+        count = one
+        if driver.closed:  # counted on over the turns, to the half nearest the pitch point
+            past = 2.0 * at / driver.pitch
+            count = one + driver.count * np.rint((past - 0.5 - one) / driver.count).astype(np.int64)
+        mate = self.driven.index(count)
+        real = (mate >= 0) & (one < driver.first + driver.count)
+        return real & (mate + self.driven.first == two)
 
     def gaps(self, side: int, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Array:
         """Return the least distance of facing halves of a side at phases.
@@ -222,40 +194,29 @@ class Turning:
             half = 2 * j - (side < 0)
             one, two = self.driver.index(half), self.driven.index(half)
             there = np.flatnonzero((one >= 0) & (two >= 0))
-            index, owner = self.driver.gather(one[there])
-            points = self.driver.points[index] * turn[there][owner] + shift[there][owner]
-            polygons = as_polygons(points, np.bincount(owner))
+            polygons = self.driver.placed(one[there], turn[there], shift[there])
             distance = shapely.distance(polygons, self.driven.polygons[two[there]])
             least[there] = np.minimum(least[there], distance)
         return least
 
-    def _near(self, phi1: Array, turn: Plane, shift: Plane) -> tuple[Ints, Ints, Ints]:
-        """Phases, and the driver's halves within the driven wheel's tips with their mates."""
-        height = self.guide.height(self.driver.tips * turn[:, None] + shift[:, None])
-        step, half = np.nonzero(height <= self._reach.max() + self._land)
-        past = self._halves_past(phi1)[step]
-        mate = self.driven.index(self._unroll(past, half + self.driver.first))
-        near = (height[step, half] <= self._reach[mate] + self._land[half]) & (mate >= 0)
-        return step[near], half[near], mate[near]
+    def _near(self, turn: Plane, shift: Plane) -> tuple[Ints, Ints]:
+        """Phases and halves of the driver that may touch the driven wheel.
 
-    def _astray(self, turn: Plane, shift: Plane, step: Ints, facing: Ints) -> tuple[Ints, Ints]:
-        """Find what else of the driver comes near an open wheel or a rack, without mates.
-
-        `facing` are the halves that face theirs at each `step`. A body is the last of all.
+        The driver's body is the last of all.
         """
-        driver = self.driver
-        others = np.full((len(turn), driver.count), True)
-        others[step, facing] = False
-        step, half = np.nonzero(others)
-        center, radius = driver.circles
-        seen = center[half] * turn[step] + shift[step]
+        center, radius = self.driver.circles
+        seen = center * turn[:, None] + shift[:, None]
+        step, half = np.nonzero(self.guide.height(seen) - radius <= self._height)
+        seen = seen[step, half]
         points = shapely.points(seen.real, seen.imag)
         near = np.unique(self._tree.query(points, predicate="dwithin", distance=radius[half])[0])
         step, half = step[near], half[near]
-        if not driver.closed:
+        if not self.driver.closed:
             bodies = self._touched_bodies(turn, shift)
             step = np.append(step, bodies)
-            half = np.append(half, np.full(len(bodies), driver.count))
+            half = np.append(half, np.full(len(bodies), self.driver.count))
+            order = np.argsort(step, kind="stable")
+            step, half = step[order], half[order]
         return step, half
 
     def _touched_bodies(self, turn: Plane, shift: Plane) -> Ints:
