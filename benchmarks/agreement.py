@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 import gearcam
 import peers
-from gearcam.design import GearPairDesign, OutputSpec
 from gearcam.errors import InfeasibleError
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.laws.formula import Formula
 
 Array = NDArray[np.float64]
@@ -107,7 +107,7 @@ def ours(text: str, teeth: int) -> tuple[Gear, Gear]:
         law_type="formula",
         law=Formula(phi2=text),
         pair=PairSpec(module=1.0, teeth=(teeth, teeth)),
-        output=OutputSpec(chord_tolerance=CHORD),
+        output=PairOutputSpec(chord_tolerance=CHORD),
     )
     return gearcam.build(design).gears
 

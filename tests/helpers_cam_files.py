@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from gearcam.design import CamDesign, loads
+from gearcam.designs import loads
 from gearcam.errors import DesignError, Problem
+from gearcam.kinds.cam.design import CamDesign
 
 ROLLER = """\
 kind = "cam"

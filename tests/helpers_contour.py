@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.numeric.contour import Contour, Run
-from gearcam.parts.part import Opening
+from gearcam.parts.body import Opening
 from gearcam.parts.shapes import Circle
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]

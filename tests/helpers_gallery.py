@@ -260,7 +260,7 @@ NUMBERS: dict[str, dict[str, Number]] = {
     },
     "stepped_ellipse": {
         "pair.center_distance_mm": (ellipse_distance(2 * 24, "0.3"), 1e-9),
-        "helix.moved_mm[3]": (1.5 * math.pi, 1e-12),
+        "steps.moved_mm[3]": (1.5 * math.pi, 1e-12),
         # a circle of 8.2 mm less the segment beyond the flat, 3.1 mm from the axis
         "gears[0].openings[0].area_mm2": (flat_area("4.1", "3.1"), 1e-10),
     },

@@ -11,9 +11,9 @@ import numpy as np
 import shapely
 
 import gearcam
-from gearcam.design import GearPairDesign, OutputSpec
 from gearcam.gears.spec import PairSpec, Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.laws.base import LAWS
 from gearcam.parts.blank import Blank
 
@@ -33,7 +33,7 @@ def job(
     files: tuple[str, ...] = ("csv",),
     x: float = 0.0,
     backlash: float = 0.0,
-) -> GearPairJob:
+) -> GearPairResult:
     """Return the job of a design made in Python; lengths in mm, limits in inner units."""
     name = next(name for name, entry in LAWS.items() if entry.parameters is type(law))
     if module is None and distance is None:
@@ -49,13 +49,13 @@ def job(
             rack=rack or Rack(),
             blank=Blank(bore_diameter=bores),
             limits=limits or {},
-            output=OutputSpec(files=files, chord_tolerance=tolerance),
+            output=PairOutputSpec(files=files, chord_tolerance=tolerance),
         )
     )
 
 
 @cache
-def profile(name: str, tolerance: float | None = None) -> GearPairJob:
+def profile(name: str, tolerance: float | None = None) -> GearPairResult:
     """Return the job of a file in ``profiles/``, at a tolerance of its own where one is given."""
     design = gearcam.load(PROFILES / f"{name}.toml")
     assert isinstance(design, GearPairDesign)
@@ -71,7 +71,7 @@ def profile(name: str, tolerance: float | None = None) -> GearPairJob:
     )
 
 
-def explained(made: GearPairJob) -> float:
+def explained(made: GearPairResult) -> float:
     """Overlap that two chord errors explain: a lens of that depth on each of four flank pairs.
 
     A lens of depth d between flanks of relative curvature k has the area (4/3)*d*sqrt(2*d/k);
@@ -84,7 +84,7 @@ def explained(made: GearPairJob) -> float:
 class Assembly:
     """Two outlines on their shafts, turned to any phase and clipped to the zone of mesh."""
 
-    def __init__(self, made: GearPairJob, outlines: tuple[np.ndarray, np.ndarray] | None = None):
+    def __init__(self, made: GearPairResult, outlines: tuple[np.ndarray, np.ndarray] | None = None):
         self.law = made.law
         self.distance = made.pair.center_distance
         first, second = outlines or (made.gear1.outline, made.gear2.outline)

@@ -169,7 +169,7 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
     "teeth of an open pair": (pair(DOOR, [30, 36]), {"pair.teeth"}),
     "a long way": (pair(DOOR | {"driven_travel_deg": 300, "ratios": [1, 0.6, 0.6]}, [40, 40]),
                    {"law.driven_travel_deg"}),
-    "steps of an open pair": (pair(DOOR, [30, 30], helix={"steps": 3}), {"helix.steps"}),
+    "steps of an open pair": (pair(DOOR, [30, 30], steps={"count": 3}), {"steps.count"}),
     "follower's offset": (cam(ROLLER | {"offset_mm": 35}, {"prime_radius_mm": 30}),
                           {"follower.offset_mm", "cam.prime_radius_mm"}),
     "lift below the axis": (

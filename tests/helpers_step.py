@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import fit_spline
-from gearcam.parts.part import Part
+from gearcam.parts.body import Part
 from gearcam.parts.shapes import Loop
 
 KEYED = 10.0, 2.5, 12.8

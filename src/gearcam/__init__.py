@@ -11,21 +11,19 @@ Importing the package loads nothing else: `load` and `build` bring in what they 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any
+
+from gearcam.version import __version__
 
 if TYPE_CHECKING:
     import os
 
-    from gearcam.design import CamDesign, Design, GearPairDesign
+    from gearcam.advice import Remedies
+    from gearcam.designs import Design
     from gearcam.errors import InfeasibleError
-    from gearcam.jobs import Job
-    from gearcam.jobs.cam import CamJob
-    from gearcam.jobs.gear_pair import GearPairJob
-    from gearcam.jobs.remedies import Remedies
+    from gearcam.result import Result
 
 __all__ = ["__version__", "build", "load", "remedies"]
-
-__version__ = "0.1.0"
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -38,49 +36,46 @@ def load(path: str | os.PathLike[str]) -> Design:
 
     Returns
     -------
-    GearPairDesign or CamDesign
-        What is asked for, in mm and rad, as the file's kind says.
+    Design
+        What is asked for, in mm and rad, of the file's kind.
 
     Raises
     ------
     DesignError
         With every problem of the file at once.
     """
-    from gearcam.design import load as read
+    from gearcam.designs import load as read
 
     return read(path)
 
 
-@overload
-def build(design: GearPairDesign) -> GearPairJob: ...
-@overload
-def build(design: CamDesign) -> CamJob: ...
-def build(design: GearPairDesign | CamDesign) -> GearPairJob | CamJob:
-    """Return the job of a design; nothing is computed until it is asked for.
+def build(design: Design) -> Any:
+    """Return the result of a design; nothing is computed until it is asked for.
 
     Parameters
     ----------
-    design : GearPairDesign or CamDesign
+    design : Design
         What is asked for.
 
     Returns
     -------
-    GearPairJob or CamJob
-        Its attributes compute what they name and raise `InfeasibleError` for what cannot be made.
+    Result
+        Of the design's kind: its attributes compute what they name and raise `InfeasibleError` for
+        what cannot be made.
     """
-    from gearcam.jobs import make_job
+    from gearcam.designs.kind import KINDS
 
-    return make_job(design)
+    return KINDS[design.kind].room("build").build(design)
 
 
 def remedies(
-    job: Job, refusal: InfeasibleError | None = None, *, patience: float = 6.0
+    result: Result, refusal: InfeasibleError | None = None, *, patience: float = 6.0
 ) -> Remedies:
     """Search for changes with which a refused design, or one with errors, can be made.
 
     Parameters
     ----------
-    job : Job
+    result : Result
         From `build`.
     refusal : InfeasibleError, optional
         How it was refused; found by building where left out.
@@ -92,6 +87,6 @@ def remedies(
     Remedies
         Each was built: nothing is refused, what was an error is gone, and no other has come.
     """
-    from gearcam.jobs.remedies import remedies as search
+    from gearcam.advice import remedies as search
 
-    return search(job, refusal, patience=patience)
+    return search(result, refusal, patience=patience)

@@ -10,17 +10,19 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import logging
 import os
 import shlex
 import sys
 import textwrap
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from gearcam import remedies
+from gearcam import build, remedies
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -32,7 +34,8 @@ from gearcam.console import (
     remedy_lines,
     say,
 )
-from gearcam.design import FORMATS, KINDS, demand_kind, load
+from gearcam.designs import KINDS, Design, load
+from gearcam.designs.outputs import FORMATS
 from gearcam.errors import (
     DesignError,
     InfeasibleError,
@@ -42,8 +45,8 @@ from gearcam.errors import (
 )
 
 if TYPE_CHECKING:
-    from gearcam.design import Design
-    from gearcam.jobs import Job, Written
+    from gearcam.commands import Command
+    from gearcam.result import Progress, Result, Written
 
 GOOD: Final = 0
 FINDINGS: Final = 1
@@ -53,6 +56,7 @@ FAULT: Final = 4
 INTERRUPTED: Final = 130
 
 _ABOUT: Final = "Non-circular gears and cams from a description of the motion."
+_FILES: Final = "design files (TOML)"
 _CODES: Final = (
     "exit codes: 0 good, 1 findings at error level, 2 wrong by reading, 3 impossible, "
     "4 a fault of the program, 130 interrupted"
@@ -77,6 +81,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with contextlib.suppress(AttributeError, ValueError):
             stream.reconfigure(errors="backslashreplace")  # pyright: ignore[reportAttributeAccessIssue]
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None and not (sys.warnoptions or "--debug" in words or os.environ.get(DEBUG)):
+        # libraries warn programmers; errors are told all the same
+        warnings.simplefilter("ignore")
+        logging.getLogger().addHandler(logging.NullHandler())
     try:
         _dispatch(words)
     except SystemExit as stop:
@@ -90,90 +98,83 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    functions = (_build, _check, _mesh, _follow, _laws, _new, _migrate, _schema)
-    commands = {function.__name__.lstrip("_"): function for function in functions}
+    functions = (_build, _check, _laws, _new, _migrate, _schema)
+    own = {function.__name__.lstrip("_"): function for function in functions}
+    word = words[0] if words else ""
+    if word in own:
+        formats = _formats() if {"-h", "--help"} & set(words) else FORMATS
+        parser = _parser(word, own[word], formats)
+        own[word](**vars(parser.parse_intermixed_args(words[1:])))
+        return
+    others = {command.name: command for command in _commands_of_kinds()}
+    if word in others:
+        _of_kind(others[word], words[1:])
+        return
+    docs = {name: function.__doc__ or "" for name, function in own.items()}
+    docs |= {name: command.doc for name, command in others.items()}
     top = argparse.ArgumentParser(
         prog="gearcam",
         description=_ABOUT,
-        epilog=_command_help(commands) + _CODES,
+        epilog=_command_help(docs) + _CODES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("--version", action="store_true", help="show the version")
     top.add_argument("command", nargs="?", metavar="COMMAND", help="see below")
-    if words and words[0] in commands:
-        parser = _parser(words[0], commands[words[0]])
-        commands[words[0]](**vars(parser.parse_intermixed_args(words[1:])))
-        return
     given = top.parse_args(words[:1])
     if given.version:
-        from gearcam import __version__
+        from gearcam.version import __version__
 
         say(f"gearcam {__version__}")
     elif given.command is None:
         top.print_help(sys.stderr)
         raise SystemExit(WRONG)
     else:
-        from gearcam.design.wording import did_you_mean
+        from gearcam.designs.faults import did_you_mean
 
-        hint = did_you_mean(given.command, commands)
-        _refuse(
-            [Problem(f'"{given.command}" is not a command', allowed=", ".join(commands), hint=hint)]
-        )
+        message, hint = f'"{word}" is not a command', did_you_mean(word, docs)
+        _refuse([Problem(message, allowed=", ".join(docs), hint=hint)])
 
 
-def _parser(name: str, command: Callable[..., None]) -> argparse.ArgumentParser:
+def _commands_of_kinds() -> Iterator[Command]:
+    """Yield the commands that kinds of design add."""
+    for kind in KINDS.values():
+        with contextlib.suppress(ModuleNotFoundError):
+            yield from kind.room("commands").COMMANDS
+
+
+def _parser(
+    name: str, command: Callable[..., None], formats: Sequence[str]
+) -> argparse.ArgumentParser:
     """Return the parser of a command; its help is the function's docstring."""
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
-    if command in (_build, _check, _mesh, _migrate):
-        parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
-    if command is _follow:
-        parser.add_argument("file", metavar="FILE", help="design file (TOML) of a cam")
-        words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
-        parser.add_argument("profile", metavar="PROFILE", help=words)
-    if command in (_build, _check, _mesh, _follow):
-        parser.add_argument(
-            "-o", "--output", metavar="DIR", default="output", help="where to write"
-        )
-        parser.add_argument(
-            "--debug", action="store_true", help=f"show tracebacks (or set {DEBUG})"
-        )
+    if command in (_build, _check, _migrate):
+        parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
+    if command in (_build, _check):
+        _add_common(parser)
     if command is _build:
-        words = f"write only these: {','.join(FORMATS)}"
+        words = f"write only these: {','.join(formats)}"
         parser.add_argument("--only", action="append", metavar="KINDS", help=words)
-    if command is _mesh:
-        _mesh_options(parser)
     if command is _new:
         words = f"the kind of design: {' or '.join(KINDS)}"
         parser.add_argument("kind", metavar="KIND", help=words)
         parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
+        words = "printing, laser or wire: with backlash, clearance and kerf to start from"
+        parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
     return parser
 
 
-def _mesh_options(parser: argparse.ArgumentParser) -> None:
-    """Add the settings of a study: they stand before those of the file's table [meshing]."""
-    kinds = {"steps": int, "helix_step": int, "teeth": _numbers}
-    for key, entry in KINDS["gear-pair"].table("meshing").entries.items():
-        names = {"center_distance_mm": "center", "helix_step": "step"}
-        word = names.get(key, key.removesuffix("_deg"))
-        unit = entry.param.quantity.unit.upper()
-        parser.add_argument(
-            f"--{word}",
-            dest=key,
-            type=kinds.get(key, float),
-            metavar=unit or ("1,27,..." if key == "teeth" else "N"),
-            help=entry.param.doc,
-        )
+def _add_common(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("-o", "--output", metavar="DIR", default="output", help="where to write")
+    parser.add_argument("--debug", action="store_true", help=f"show tracebacks (or set {DEBUG})")
 
 
-def _numbers(text: str) -> list[int]:
-    try:
-        return [int(word) for word in text.split(",")]
-    except ValueError:
-        raise argparse.ArgumentTypeError(f'"{text}" is no list of teeth such as 1,27') from None
+def _formats() -> tuple[str, ...]:
+    """Return every kind of file that a design of some kind can give."""
+    return tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
 
 
-def _command_help(commands: Mapping[str, Callable[..., None]]) -> str:
-    rows = (f"  {name:<8}{command.__doc__}\n" for name, command in commands.items())
+def _command_help(docs: Mapping[str, str]) -> str:
+    rows = (f"  {name:<8}{doc}\n" for name, doc in docs.items())
     return "commands:\n" + "".join(rows) + "\n"
 
 
@@ -181,48 +182,46 @@ def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -
     """Build designs into DIR/<name>/."""
     kinds = _kinds(only)
 
-    def action(job: Job, progress: Progress | None) -> Written:
-        return job.write(output, files=kinds, progress=progress)
+    def action(result: Result, progress: Progress | None) -> Written:
+        return result.write(output, files=kinds, progress=progress)
 
-    _jobs(files, "built", action, debug=debug)
+    _each_result(files, "built", action, debug=debug)
 
 
 def _check(files: list[str], output: str, debug: bool) -> None:
     """Check designs and write nothing but DIR/<name>/summary.json."""
 
-    def action(job: Job, progress: Progress | None) -> Written:  # noqa: ARG001
-        return job.check(output)
+    def action(result: Result, progress: Progress | None) -> Written:  # noqa: ARG001
+        return result.check(output)
 
-    _jobs(files, "checked", action, debug=debug)
+    _each_result(files, "checked", action, debug=debug)
 
 
-def _mesh(files: list[str], output: str, debug: bool, **settings: Any) -> None:
-    """Turn a pair step by step: contact, interference, backlash; writes DIR/<name>/meshing.csv."""
-    from gearcam.design import with_meshing
+def _of_kind(command: Command, words: list[str]) -> None:
+    """Run a command that a kind of design adds."""
+    parser = argparse.ArgumentParser(prog=f"gearcam {command.name}", description=command.doc)
+    if command.many:
+        parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
+    else:
+        parser.add_argument("file", metavar="FILE", help="design file (TOML)")
+    _add_common(parser)
+    command.arguments(parser)
+    options = vars(parser.parse_intermixed_args(words))
+    files = options.pop("files") if command.many else [options.pop("file")]
+    output, debug = options.pop("output"), options.pop("debug")
 
-    given = {key: value for key, value in settings.items() if value is not None}
+    def action(result: Result, progress: Progress | None) -> Written:
+        return command.run(result, output, options, progress)
 
     def adapt(design: Design) -> Design:
-        return with_meshing(demand_kind(design, "gear-pair"), given)
+        return command.adapt(design, options)
 
-    def action(job: Any, progress: Progress | None) -> Written:
-        return job.mesh(output, progress=progress)
-
-    _jobs(files, "meshed", action, debug=debug, adapt=adapt)
-
-
-def _follow(file: str, profile: str, output: str, debug: bool) -> None:
-    """Put a cam's follower on a given profile; writes DIR/<name>/followed.csv."""
-
-    def action(job: Any, progress: Progress | None) -> Written:
-        return job.follow(profile, output, progress=progress)
-
-    _jobs([file], "followed", action, debug=debug, adapt=lambda d: demand_kind(d, "cam"))
+    _each_result(files, command.done, action, debug=debug, adapt=adapt)
 
 
 def _laws() -> None:
     """Show every law, of ratios and of lifts: parameters, continuity, source."""
-    from gearcam.design.listing import law_groups
+    from gearcam.designs.listing import law_groups
 
     for heading, laws in law_groups():
         say(f"{heading}\n")
@@ -230,20 +229,25 @@ def _laws() -> None:
             say("\n".join(law_lines(law)))
 
 
-def _new(kind: str, file: str | None) -> None:
+def _new(kind: str, file: str | None, process: str | None) -> None:
     """Write a commented design file to start from; an existing file is never overwritten."""
-    from gearcam.design.template import template
-    from gearcam.design.wording import did_you_mean, show
+    from gearcam.designs.faults import did_you_mean, show
+    from gearcam.designs.template import template
 
     if kind not in KINDS:
         message, hint = f"{show(kind)} is not a kind of design", did_you_mean(kind, KINDS)
         _refuse([Problem(message, key="KIND", allowed=", ".join(KINDS), hint=hint)])
+    known = KINDS[kind].processes
+    if process is not None and process not in known:
+        message, hint = f"{show(process)} is not known here", did_you_mean(process, known)
+        _refuse([Problem(message, key="--for", allowed=", ".join(known), hint=hint)])
+    text = template(kind, Path(file or "").stem, process or "")
     if file is None:
-        say(template(kind).rstrip("\n"))
+        say(text.rstrip("\n"))
         return
     try:
         with Path(file).open("x", encoding="utf-8", newline="\n") as stream:
-            stream.write(template(kind, Path(file).stem))
+            stream.write(text)
     except FileExistsError:
         _refuse([Problem("exists, and is not overwritten", file=file)])
     except (OSError, ValueError) as error:
@@ -254,7 +258,7 @@ def _new(kind: str, file: str | None) -> None:
 
 def _migrate(files: list[str]) -> None:
     """Rewrite design files with keys that are no longer known; comments stay."""
-    from gearcam.design.migrate import migrate
+    from gearcam.designs.migrate import migrate
     from gearcam.export.rewrite import rewrite
 
     def one(file: str) -> int:
@@ -271,24 +275,26 @@ def _schema() -> None:
     """Print the JSON schema of design files, for editors."""
     import json
 
-    from gearcam.design.schema import schema as made
+    from gearcam.designs.schema import schema as made
 
     say(json.dumps(made(), indent=2))
 
 
 def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
     """Return the kinds of files of ``--only``, or refuse."""
-    from gearcam.design.wording import did_you_mean, show
+    from gearcam.designs.faults import did_you_mean, show
 
     if only is None:
         return None
     kinds = [word.strip() for words in only for word in words.split(",") if word.strip()]
-    rule = ", ".join(FORMATS)
-    problems = [] if kinds else [Problem("nothing is listed", key="--only", allowed=rule)]
+    problems = (
+        [] if kinds else [Problem("nothing is listed", key="--only", allowed=", ".join(_formats()))]
+    )
     for kind in kinds:
-        if kind not in FORMATS:
-            message, hint = f"{show(kind)} is not a kind of file", did_you_mean(kind, FORMATS)
-            problems.append(Problem(message, key="--only", value=kind, allowed=rule, hint=hint))
+        if kind not in FORMATS and kind not in (known := _formats()):
+            message, hint = f"{show(kind)} is not a kind of file", did_you_mean(kind, known)
+            allowed = ", ".join(known)
+            problems.append(Problem(message, key="--only", value=kind, allowed=allowed, hint=hint))
     if problems:
         _refuse(problems)
     return tuple(dict.fromkeys(kinds))
@@ -300,15 +306,14 @@ def _refuse(problems: Sequence[Problem]) -> None:
     raise SystemExit(WRONG)
 
 
-Progress = Callable[[str, int, int], None]
-Action = Callable[["Job", Progress | None], "Written"]
-Adapt = Callable[["Design"], "Design"]
+Action = Callable[["Result", "Progress | None"], "Written"]
+Adapt = Callable[[Design], Design]
 
 
-def _jobs(
+def _each_result(
     files: Sequence[str], done: str, action: Action, *, debug: bool, adapt: Adapt | None = None
 ) -> None:
-    """Do something with the job of every file, its design adapted where asked."""
+    """Do something with the result of every file, its design adapted where asked."""
     names: dict[str, str] = {}
     _each(files, done, lambda file: _one(file, names, done, action, adapt), debug=debug)
 
@@ -351,15 +356,13 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     start = time.perf_counter()
     design = load(file) if adapt is None else adapt(load(file))
     _demand_new_name(design, file, names)
-    from gearcam.jobs import make_job  # a file that is refused needs none of it
-
-    job = make_job(design)
+    result = build(design)
     try:
         with progress_bar(file) as progress:
-            written = action(job, progress)
+            written = action(result, progress)
     except InfeasibleError as error:
         complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
-        for line in remedy_lines(remedies(job, error)):
+        for line in remedy_lines(remedies(result, error)):
             complain(f"  {line}")
         return IMPOSSIBLE
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
@@ -369,7 +372,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         complain(f"{file}: interrupted: {found['steps_done']} of {found['steps']} steps are kept")
         return INTERRUPTED
     errors = any(finding.severity == "error" for finding in written.findings)
-    for line in remedy_lines(remedies(job)) if errors else ():
+    for line in remedy_lines(remedies(result)) if errors else ():
         say(f"  {line}")
     return FINDINGS if errors else GOOD
 

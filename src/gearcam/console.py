@@ -12,124 +12,44 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TextIO
+from typing import TYPE_CHECKING, Final, TextIO
+
+from gearcam.numerals import decimal, shown
 
 if TYPE_CHECKING:
-    from gearcam.design.listing import Listed
+    from gearcam.advice import Remedies
+    from gearcam.designs.listing import Listed
     from gearcam.errors import InfeasibleError
+    from gearcam.facts import Facts
     from gearcam.findings import Finding
-    from gearcam.jobs import Written
-    from gearcam.jobs.remedies import Remedies
+    from gearcam.result import Written
 
 DEBUG: Final = "GEARCAM_DEBUG"
 """The variable that asks for tracebacks."""
 
 _WIDTH: Final = 96
 
-
-def pair_lines(summary: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the line on the pair of a summary."""
-    pair = summary.get("pair", {})
-    teeth = " : ".join(str(count) for count in pair.get("teeth", ()))
-    distance, module = pair.get("center_distance_mm"), pair.get("module_mm")
-    if distance is not None and module is not None:
-        yield f"centre distance {distance:.6g} mm, module {module:.6g} mm, teeth {teeth}"
-    elif module is not None:
-        way = pair["way_per_turn_mm"]
-        yield f"wheel and rack, {way:.6g} mm a turn, module {module:.6g} mm, teeth {teeth}"
-    rack = pair.get("rack", {})
-    yielded = [
-        f"{name} {rack[name]:.6g} for the default {default:.6g}"
-        for name, default in rack.get("yielded", {}).items()
-    ]
-    if yielded:
-        yield f"of the rack gave way to given values: {', '.join(yielded)}"
+_ROUNDING: Final = 1e-9
+"""What is smaller, mm, is rounding of a study."""
 
 
-def cam_lines(summary: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines on the cam of a summary, and on a profile that was followed."""
-    cam, motion = summary.get("cam"), summary.get("motion", {})
-    if cam is None:
-        return
-    lift = motion["lift"]["max"] - motion["lift"]["min"]
-    radius = "base" if cam["follower"].endswith("flat") else "prime"
-    follower = f"{'an' if cam['follower'][0] == 'o' else 'a'} {cam['follower']} follower"
-    yield (
-        f"{cam['form']} cam for {follower}, lift {lift:.6g} {motion['unit']}, "
-        f"{radius} radius {cam[f'{radius}_radius_mm']:.6g} mm"
-    )
-    angles = cam["pressure_angle_deg"]
-    told = [
-        f"{angles[f'{kind}_max']:.6g} deg on the {kind}"
-        for kind in ("rise", "return")
-        if angles.get(f"{kind}_max", 0.0) > 0.0
-    ]
-    pressure = f"pressure angle up to {' and '.join(told)}; " if told else ""
-    yield f"{pressure}motion C{motion['continuity']}"
-    found = summary.get("followed")
-    if found is not None:
-        yield (
-            f"the profile's lift differs from the program by up to "
-            f"{found['largest_difference']:.4g} {found['unit']} (at {found['at_deg']:.6g} deg), "
-            f"error of its chords {found['error']:.2g} {found['unit']}"
-        )
-
-
-def meshing_lines(summary: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the table of the numbers of a meshing study, if the summary has one."""
-    found = summary.get("meshing")
-    if found is None:
-        return
-    ahead = "ahead" if found["advance_deg"] > 0 else "back"
-    phases = (
-        f"{found['steps_done']} phases"
-        if found["complete"]
-        else (f"{found['steps_done']} of {found['steps']} phases")
-    )
-    distance = found.get("center_distance_mm")
-    mounted = "" if distance is None else f" at centre distance {distance:.6g} mm"
-    yield f"{phases}{mounted}, driver turned {ahead} by {abs(found['advance_deg']):.6g} deg"
+def fact_lines(facts: Facts) -> Iterator[str]:
+    """Yield what is known: the headline, then the quantities that are always shown, lined up."""
+    if facts.headline:
+        yield ", ".join(facts.headline)
     rows = [
-        ("contact ratio", found["contact_ratio"], ""),
-        ("pairs in contact", found.get("pairs_in_contact"), ""),
-        ("phases with interference", found.get("interference_steps"), ""),
-        ("backlash along the pitch curve", found.get("backlash_mm"), "mm"),
-        ("lag of the driven wheel, taken up", found.get("lag_mm"), "mm"),
-        *_error_rows(found.get("transmission_error")),
-        ("penetration of flanks", found["penetration_mm"], "mm"),
-        ("chord error of outlines", found["chord_error_mm"], "mm"),
+        (one.meaning, one.text, f"({one.limit})" if one.limit else "", one.place)
+        for one in facts.shown()
     ]
-    for words, value, unit in rows:
-        if value is not None:
-            yield f"  {words:<33}  {_span(value)} {unit}".rstrip()
+    yield from ("  " + row for row in lined_up(rows))
 
 
-def _error_rows(error: Mapping[str, Any] | None) -> Iterator[tuple[str, Any, str]]:
-    """Yield the rows on the transmission error of a study, if anything touched in it."""
-    if error is None:
-        return
-    unit = error["unit"]
-    yield "transmission error, peak to peak", error["peak_to_peak"], unit
-    if "no_harmonics" in error:
-        yield "its harmonics", f"not told: {error['no_harmonics']}", ""
-    else:
-        largest = max(error["harmonics"], key=lambda one: one["amplitude"])
-        yield f"its largest harmonic, {largest['order']} a turn", largest["amplitude"], unit
-
-
-def _span(value: Any) -> str:
-    """Write a number, or the smallest and largest of some."""
-    if isinstance(value, str):
-        return value
-    if not isinstance(value, Mapping):
-        return f"{value:.4g}"
-    low, high = (_small(value[end]) for end in ("min", "max"))
-    return low if low == high else f"{low} to {high}"
-
-
-def _small(value: float) -> str:
-    """Write a number; what is rounding of millimetres is 0."""
-    return f"{0.0 if abs(value) < 1e-9 else value:.4g}"
+def lined_up(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
+    """Yield the rows of a table with their columns lined up; empty columns are left out."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True) if width)
+        yield "  ".join(cells).rstrip()
 
 
 def law_lines(law: Listed) -> Iterator[str]:
@@ -147,23 +67,27 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
         yield "findings: none"
         return
     yield "findings"
-    rows = []
-    for finding in findings:
-        limit = f"limit {_number(finding.limit, finding.unit)}" if finding.limit is not None else ""
-        value = _number(finding.value, finding.unit)
-        rows.append((finding.severity, finding.code, finding.where, value, limit))
-    widths = [max(len(row[k]) for row in rows) for k in range(5)]
-    for row, finding in zip(rows, findings, strict=True):
-        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True) if width)
-        yield "  " + "  ".join(cells).rstrip()
+    rows = [
+        (one.severity, one.code, one.where, _number(one.value, one.unit), _limit(one))
+        for one in findings
+    ]
+    for row, finding in zip(lined_up(rows), findings, strict=True):
+        yield f"  {row}"
         yield wrapped(finding.message, first="      ", rest="      ")
+
+
+def _limit(finding: Finding) -> str:
+    """Return the limit of a finding in words: what was found is on its wrong side."""
+    value, limit = finding.value, finding.limit
+    if value is None or limit is None:
+        return ""
+    words = "at most" if value > limit else "at least"
+    return f"{words} {_number(limit, finding.unit)}"
 
 
 def all_lines(written: Written) -> Iterator[str]:
     """Yield all that is said of what was `written`: sizes, study, findings, files."""
-    yield from pair_lines(written.summary)
-    yield from cam_lines(written.summary)
-    yield from meshing_lines(written.summary)
+    yield from fact_lines(written.facts)
     yield from finding_lines(written.findings)
     yield from written_lines(written)
 
@@ -194,7 +118,7 @@ def _stale_lines(stale: Mapping[str, str | None]) -> Iterator[str]:
 
 
 def _number(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{value:.6g} {unit}".rstrip()
+    return "" if value is None else f"{shown(value)} {unit}".rstrip()
 
 
 def _size(path: Path) -> str:
@@ -204,7 +128,7 @@ def _size(path: Path) -> str:
         return ""
     if count < 1000:
         return f"{count} B"
-    return f"{count / 1e3:.1f} kB" if count < 1e6 else f"{count / 1e6:.1f} MB"
+    return f"{decimal(count / 1e3, 1)} kB" if count < 1e6 else f"{decimal(count / 1e6, 1)} MB"
 
 
 def fault_text(error: Exception, file: str) -> str:
@@ -238,7 +162,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more" if found.found else "a remedy"
-        yield f"the search for {sought} was given up after {found.seconds:g} s"
+        yield f"the search for {sought} was given up after {shown(found.seconds)} s"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 
@@ -252,7 +176,7 @@ def _value(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, float):
-        return f"{value:.10g}"
+        return shown(value, 10)
     return json.dumps(value)
 
 

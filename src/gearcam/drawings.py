@@ -1,10 +1,10 @@
 """Drawings: what an exporter of flat files sees.
 
 A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the kind of
-what they hold: OUTLINE, BORE, HOLE, SLOT, MARK, CENTRODE, CENTER; a pair's layers begin with the
-wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME and FOLLOWER show
-what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name. *Placing* turns and
-shifts shapes without changing them otherwise.
+what they hold: OUTLINE, BORE, HOLE, SLOT, INNER (inner teeth), MARK, CENTRODE, CENTER; a pair's
+layers begin with the wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME
+and FOLLOWER show what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name.
+*Placing* turns and shifts shapes without changing them otherwise.
 
 What a cutter burns away, its *kerf*, is nothing of the part's: it moves the paths of a drawing to
 be cut, whose layers then end in ``_KERF``.
@@ -17,7 +17,7 @@ Depends on parts and numeric, numpy only.
 from __future__ import annotations
 
 import cmath
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -25,8 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.numerals import shown
 from gearcam.numeric.contour import Contour
-from gearcam.parts.part import Part
+from gearcam.parts.body import Part
 from gearcam.parts.shapes import Circle, Loop
 
 Array = NDArray[np.float64]
@@ -35,6 +36,7 @@ OUTLINE: Final = "OUTLINE"
 BORE: Final = "BORE"
 HOLE: Final = "HOLE"
 SLOT: Final = "SLOT"
+INNER: Final = "INNER"
 MARK: Final = "MARK"
 CENTRODE: Final = "CENTRODE"
 CENTER: Final = "CENTER"
@@ -46,13 +48,16 @@ TOOL: Final = "TOOL"
 LABEL: Final = "LABEL"
 
 OUTER: Final = (OUTLINE, PROFILE)
-INNER: Final = (BORE, HOLE, SLOT)
+THROUGH: Final = (BORE, HOLE, SLOT, INNER)
 """Kinds that are cut: around the part, and right through it."""
+
+DASHED: Final = (CENTRODE, PITCH, PRIME)
+"""Kinds that are drawn dashed."""
 
 KERF: Final = "_KERF"
 """End of layers that hold paths of a cutter, not edges of the part."""
 
-CLOSED: Final = (*OUTER, PITCH, TOOL, *(kind + KERF for kind in (*OUTER, BORE, SLOT)))
+CLOSED: Final = (*OUTER, INNER, PITCH, TOOL, *(kind + KERF for kind in (*OUTER, BORE, SLOT, INNER)))
 """Ends of layers whose closed curves are contours."""
 
 CROSS_SIZE: Final = 0.04
@@ -164,6 +169,19 @@ def reach(shape: Shape) -> Array:
             return np.array([center - 0.5 * size, center + 0.5 * size])
 
 
+def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Array, bool]]:
+    """Yield the chains of points of a `shape`, chords within `sagitta`, mm, and if they close."""
+    match shape:
+        case Path(points=points, closed=closed):
+            yield points, closed
+        case Cross(center=center, size=size):
+            arm = np.array([[-0.5 * size, 0.0], [0.5 * size, 0.0]])
+            yield center + arm, False
+            yield center + arm[:, ::-1], False
+        case _:
+            yield shape.points(sagitta), True
+
+
 def place(
     features: Iterable[Feature], angle: float, offset: tuple[float, float], prefix: str = ""
 ) -> tuple[Feature, ...]:
@@ -176,10 +194,11 @@ def place(
 
 def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Feature, ...]:
     """Return the `outline` of a `step`, openings and marks of a `part`, in its own frame."""
+    layer = part.steps[step]
     return (
-        Feature(layer=outline, shape=part.contours[step]),
-        *(Feature(layer=opening.kind, shape=opening.shape) for opening in part.openings),
-        *(Feature(layer=MARK, shape=mark.circle) for mark in part.marks),
+        Feature(layer=outline, shape=layer.edge),
+        *(Feature(layer=opening.kind, shape=opening.shape) for opening in layer.openings),
+        *(Feature(layer=MARK, shape=pocket.edge) for pocket in part.pockets),
     )
 
 
@@ -213,7 +232,7 @@ def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
         drawing,
         features=tuple(
             Feature(layer=one.layer + KERF, shape=_path(one, kerf, tolerance, where))
-            if one.kind in (*OUTER, *INNER)
+            if one.kind in (*OUTER, *THROUGH)
             else one
             for one in drawing.features
         ),
@@ -230,20 +249,21 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
         case Circle(center=center, diameter=diameter):
             x, y = center.tolist()
             raise InfeasibleError(
-                f"the {feature.kind.lower()} at x = {x:.6g}, y = {y:.6g} mm is no wider than "
-                "what the cutter burns away",
+                f"the {feature.kind.lower()} at x = {shown(x)}, y = {shown(y)} mm is no wider "
+                "than what the cutter burns away",
                 where=where,
                 value=kerf,
                 limit=diameter,
                 unit="mm",
-                nearest=f"a kerf below {diameter:.6g} mm, or a larger {feature.kind.lower()}",
+                nearest=f"a kerf below {shown(diameter)} mm, or a larger {feature.kind.lower()}",
             )
         case Loop() as loop:
             inner = loop.contour(tolerance)
             there = f"{feature.kind.lower()} of {where}"
             return sized(lambda size: followed(inner, -0.5 * size), kerf, there, "kerf")
-        case Contour() as outer:
-            return sized(lambda size: moved(outer, 0.5 * size), kerf, where, "kerf")
+        case Contour() as edge:
+            side = -0.5 if feature.kind in THROUGH else 0.5
+            return sized(lambda size: moved(edge, side * size), kerf, where, "kerf")
         case shape:
             raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")
 

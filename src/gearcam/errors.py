@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from gearcam.numerals import shown
+
 
 class GearcamError(Exception):
     """Base of every error that gearcam raises on purpose."""
@@ -104,7 +106,7 @@ class InfeasibleError(GearcamError, ValueError):
         Unit of both.
     nearest : str
         What else is to be known: what the numbers are, or the rule. No promise: what was built is
-        found by `gearcam.jobs.remedies`.
+        found by `gearcam.advice`.
     ways : sequence of Way
         Changes of the design that may lift the refusal.
     more_teeth : float
@@ -128,7 +130,7 @@ class InfeasibleError(GearcamError, ValueError):
         self.value, self.limit = value, limit
         text = f"{what} ({where})" if where else what
         numbers = ", ".join(
-            f"{name} {number:.10g} {unit}".rstrip()
+            f"{name} {shown(number, 10)} {unit}".rstrip()
             for name, number in (("value", value), ("limit", limit))
             if number is not None
         )

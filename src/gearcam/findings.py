@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
+from gearcam.numerals import settled
 from gearcam.quantities import Param
 
 Severity = Literal["note", "warning", "error"]
@@ -30,7 +31,8 @@ class Finding:
     message : str
         One or two plain sentences.
     value, limit : float or None
-        The number found and the limit it is held against, in `unit`.
+        The number found and the limit it is held against, in `unit`; rounding noise against the
+        limit is 0.
     unit : str
         Unit of both.
     where : str
@@ -44,6 +46,10 @@ class Finding:
     limit: float | None = None
     unit: str = ""
     where: str = ""
+
+    def __post_init__(self) -> None:
+        if self.value is not None and self.limit is not None:
+            object.__setattr__(self, "value", settled(self.value, self.limit))
 
     def as_dict(self) -> dict[str, Any]:
         """Return the finding for JSON: what does not exist is left out."""
@@ -109,6 +115,25 @@ def check(
     return register
 
 
+def limit_of(kind: str, code: str, limits: Mapping[str, float]) -> float:
+    """Return the limit of a check.
+
+    Parameters
+    ----------
+    kind, code : str
+        Which check.
+    limits : mapping of str to float
+        Limits that the design sets, by name, inner units.
+
+    Returns
+    -------
+    float
+        The design's or the default one, in inner units; nan where the check has none.
+    """
+    known = CHECKS[kind, code].limit
+    return float("nan") if known is None else limits.get(known[0], known[2])
+
+
 def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Finding, ...]:
     """Run every check of a kind of design on a built subject.
 
@@ -129,11 +154,7 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
     found: list[Finding] = []
     for entry in CHECKS.values():
         if entry.kind == kind:
-            limit = float("nan")
-            if entry.limit is not None:
-                name, _, default = entry.limit
-                limit = limits.get(name, default)
-            found += entry.run(subject, limit)
+            found += entry.run(subject, limit_of(kind, entry.code, limits))
     return in_order(found)
 
 

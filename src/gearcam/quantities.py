@@ -79,23 +79,9 @@ class Param:
         return (self.word or name) + self.quantity.suffix
 
 
-def param(
-    quantity: Quantity = NUMBER,
-    *,
-    default: Any = REQUIRED,
-    gt: float | None = None,
-    ge: float | None = None,
-    lt: float | None = None,
-    le: float | None = None,
-    choices: tuple[str, ...] | None = None,
-    min_length: int | None = None,
-    doc: str = "",
-    word: str = "",
-    both: bool = False,
-) -> Any:
-    """Return a dataclass field that knows its quantity, bounds and meaning (see `Param`)."""
-    made = Param(quantity, gt, ge, lt, le, choices, min_length, doc, word, both)
-    return dataclasses.field(default=default, metadata={"param": made})
+def param(quantity: Quantity = NUMBER, *, default: Any = REQUIRED, **rest: Any) -> Any:
+    """Return a dataclass field that knows its quantity; `rest` and meaning as of `Param`."""
+    return dataclasses.field(default=default, metadata={"param": Param(quantity, **rest)})
 
 
 def params_of(owner: type) -> dict[str, Param]:
@@ -105,9 +91,3 @@ def params_of(owner: type) -> dict[str, Param]:
         for field in dataclasses.fields(owner)
         if "param" in field.metadata
     }
-
-
-def rounded_down(value: float) -> str:
-    """Return a positive limit in six digits, never above it: who takes it keeps it."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 5)
-    return f"{math.floor(value / step * (1.0 + 1e-12)) * step:.6g}"

@@ -1,4 +1,4 @@
-"""Registries: entries by name, each hung in by the module that is its home.
+"""Registries: entries by name, each registered by the module that is its home.
 
 A home is imported when its entry is asked for: a design with one law loads that law.
 """
@@ -11,7 +11,7 @@ from typing import Generic, Protocol, TypeVar
 
 
 class Named(Protocol):
-    """What can be hung in a registry."""
+    """What a registry can hold."""
 
     @property
     def name(self) -> str:
@@ -30,7 +30,7 @@ class Registry(Mapping[str, E], Generic[E]):
     what : str
         What an entry is, for messages.
     homes : mapping of str to tuple of str
-        The names that modules hang in when they are imported, by module.
+        The names that modules register when they are imported, by module.
     """
 
     def __init__(self, what: str, homes: Mapping[str, tuple[str, ...]]) -> None:
@@ -38,22 +38,23 @@ class Registry(Mapping[str, E], Generic[E]):
         self._homes = {name: module for module, names in homes.items() for name in names}
         self._entries: dict[str, E] = {}
 
-    def hang(self, entry: E) -> None:
-        """Hang an entry in.
+    def register(self, *entries: E) -> None:
+        """Take entries in.
 
         Parameters
         ----------
-        entry : Named
-            The entry.
+        *entries : Named
+            One or more.
 
         Raises
         ------
         ValueError
-            If its name is taken.
+            If a name is taken.
         """
-        if entry.name in self._entries:
-            raise ValueError(f"{self._what} {entry.name!r} is registered twice")
-        self._entries[entry.name] = entry
+        for entry in entries:
+            if entry.name in self._entries:
+                raise ValueError(f"{self._what} {entry.name!r} is registered twice")
+            self._entries[entry.name] = entry
 
     def __getitem__(self, name: str) -> E:
         if name not in self._entries and name in self._homes:

@@ -1,4 +1,4 @@
-"""Solids: a part as a closed mesh of triangles, made by manifold3d.
+"""Solids: a body as a closed mesh of triangles; those of layers are made by manifold3d.
 
 The one place that knows manifold3d. A *mesh* is plain arrays: the library's own objects cannot be
 pickled and its interface is moving.
@@ -13,15 +13,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, singledispatch
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import GearcamError
-from gearcam.parts.part import Mark, Part
-from gearcam.parts.shapes import circle_points, circle_segments
+from gearcam.numerals import shown
+from gearcam.numeric.contour import Contour
+from gearcam.parts.body import Body, Layer, Mark, Part
+from gearcam.parts.shapes import circle_segments
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -76,14 +78,15 @@ class Mesh:
         return bool((np.diff(there) > 0).all() and (there == back).all())
 
 
-def solid(part: Part) -> Mesh:
-    """Make the mesh of a part: outlines pulled up along z, with hubs, less openings and marks.
+@singledispatch
+def solid(body: Body) -> Mesh:
+    """Make the mesh of a body; each kind of body registers how.
 
     Parameters
     ----------
-    part : Part
-        The contours' polygons are used as they are; openings, hubs and marks are tessellated within
-        the contours' tolerance.
+    body : Body
+        A part, whose contours' polygons are used as they are, all else within its tolerance; or
+        another kind that is registered.
 
     Returns
     -------
@@ -94,40 +97,39 @@ def solid(part: Part) -> Mesh:
     SolidError
         If the solid comes out empty or open, or lost a part of its volume.
     """
+    raise TypeError(f"a {type(body).__name__} makes no solid")
+
+
+@solid.register
+def _(part: Part) -> Mesh:
     import manifold3d
 
-    holes = [opening.shape.points(part.tolerance)[::-1] for opening in part.openings]
-    slabs = [
-        _slab(manifold3d, [contour.vertices, *holes], low, high)
-        for contour, low, high in part.plates
-    ]
-    if part.hub is not None:
-        disc = circle_points((0.0, 0.0), part.hub.diameter, part.tolerance)
-        bores = [opening.shape.points(part.tolerance)[::-1] for opening in part.in_hub]
-        slabs += [_slab(manifold3d, [disc, *bores], low, high) for low, high in part.bosses]
-    body = (
+    slabs = [_slab(manifold3d, layer, part.tolerance) for layer in part.layers]
+    made = (
         slabs[0]
         if len(slabs) == 1
         else manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
     )
     for mark in part.marks:
-        body = body - _cutter(manifold3d, mark, part)
-    mesh = _mesh(body)
+        made = made - _cutter(manifold3d, mark, part)
+    mesh = _mesh(made)
     if not mesh.watertight:
         raise SolidError(f"{part.name}: the solid came out empty or open")
     missed, allowed = abs(mesh.volume - part.volume), volume_error(part)
     if missed > allowed:
         raise SolidError(
-            f"{part.name}: the solid's volume is {missed:.3g} mm3 off,"
-            f" {allowed:.3g} mm3 is explained"
+            f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
+            f" {shown(allowed, 3)} mm3 is explained"
         )
     return mesh
 
 
-def _slab(manifold3d: Any, loops: list[NDArray[np.float64]], low: float, high: float) -> Manifold:
-    """Return a plate between two heights: the first loop less the others, which run clockwise."""
-    section = manifold3d.CrossSection([np.ascontiguousarray(loop) for loop in loops])
-    return manifold3d.Manifold.extrude(section, high - low).translate((0.0, 0.0, low))
+def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
+    """Return a layer: its edge pulled up along z, less its openings, which run clockwise."""
+    holes = [opening.shape.points(tolerance)[::-1] for opening in layer.openings]
+    loops = [np.ascontiguousarray(loop) for loop in (layer.edge.points(tolerance), *holes)]
+    section = manifold3d.CrossSection(loops)
+    return manifold3d.Manifold.extrude(section, layer.height).translate((0.0, 0.0, layer.low))
 
 
 def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:
@@ -147,28 +149,29 @@ def _mesh(body: Manifold) -> Mesh:
     return Mesh(vertices=vertices[:, :3], triangles=np.array(raw.tri_verts, dtype=np.int64))
 
 
-def volume_error(part: Part) -> float:
-    """Bound the difference between a part's mesh and its true shape.
+@singledispatch
+def volume_error(body: Body) -> float:
+    """Bound the difference between a body's mesh and its true shape.
 
     Parameters
     ----------
-    part : Part
-        The part.
+    body : Body
+        A part, or another kind that is registered.
 
     Returns
     -------
     float, mm^3
-        Chord error and grid times length, for outlines and openings over their heights, hubs and
-        marks: every chord lies within its error of the curve, so the area between them is at most
-        that.
+        Chord error and grid times length, for every edge over its height: every chord lies within
+        its error of the curve, so the area between them is at most that.
     """
-    rounds = sum(opening.shape.length for opening in part.openings) * part.thickness
-    rounds += sum(mark.circle.length * mark.depth for mark in part.marks)
-    if part.hub is not None:
-        rounds += math.pi * part.hub.diameter * (part.hub.front + part.hub.back)
-    total = rounds * (part.tolerance + ROUNDING)
-    for contour, low, high in part.plates:
-        steps = np.diff(contour.vertices, axis=0, append=contour.vertices[:1])
-        length = float(np.hypot(*steps.T).sum())
-        total += length * (contour.chord_error + ROUNDING) * (high - low)
+    raise TypeError(f"a {type(body).__name__} makes no solid")
+
+
+@volume_error.register
+def _(part: Part) -> float:
+    total = 0.0
+    for layer in (*part.layers, *part.pockets):
+        for edge in (layer.edge, *(opening.shape for opening in layer.openings)):
+            error = edge.chord_error if isinstance(edge, Contour) else part.tolerance
+            total += edge.length * (error + ROUNDING) * layer.height
     return total

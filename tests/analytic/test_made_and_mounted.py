@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.study import study
@@ -56,7 +56,7 @@ class Wheels:
         self.play = backlash + 2.0 * sum(clearance) / math.cos(ALPHA)
         made = job(Constant(), teeth, module=module, x=x, backlash=backlash)
         blank = Blank(clearance=clearance, tip_rounding=rounding)
-        self.job = GearPairJob(replace(made.design, blank=blank))
+        self.job = GearPairResult(replace(made.design, blank=blank))
 
     def operating(self, distance: float) -> float:
         """Pressure angle at which the wheels run."""

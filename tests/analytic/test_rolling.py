@@ -46,7 +46,7 @@ PHI = np.linspace(-4.0, 15.0, 901)
 def test_euler_and_savary(rolling: Rolling) -> None:
     """kappa1 + kappa2 = (1 + i)/v: the sum of the curvatures follows from the ratio alone."""
     one, two = rolling.tracks[0].frames(PHI), rolling.tracks[1].frames(PHI)
-    (ratio,) = rolling.law.derivatives(PHI, 0)
+    _, ratio = rolling.law.derivatives(PHI, 1)
     expected = (1.0 + ratio) / one.speed
     np.testing.assert_allclose(one.kappa + two.kappa, expected, rtol=1e-9)
 

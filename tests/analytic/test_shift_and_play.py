@@ -11,7 +11,7 @@ import shapely
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.phases import Phases
@@ -23,7 +23,7 @@ from helpers_pairs import job, profile
 ALPHA = math.radians(20)
 
 
-def thickness(made: GearPairJob, wheel: int) -> float:
+def thickness(made: GearPairResult, wheel: int) -> float:
     """Thickness of tooth 1 (wheel 1) on a circular wheel, along the pitch circle, mm."""
     gear = made.gears[wheel - 1]
     radius = gear.convex_radius
@@ -110,7 +110,7 @@ def test_so_much_play_that_no_teeth_are_left_is_refused() -> None:
         _ = job(Constant(), (60, 60), module=1.0, backlash=most * 1.0001).pair
 
 
-def pitch_force(made: GearPairJob, pitches: float, torque: float) -> float:
+def pitch_force(made: GearPairResult, pitches: float, torque: float) -> float:
     """Force along the line of action at the pitch point at a roll, N: M1/(r1*cos(alpha))."""
     phi = made.pair.rolling.angle(np.array([pitches * made.gear1.toothing.pitch]))
     r1 = float(abs(made.pair.rolling.tracks[0].frames(phi).p[0]))

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from claims.claim import LawParameters
 from gearcam.gears.checks import largest_module
 from gearcam.gears.spec import Rack
-from gearcam.laws.base import LawParameters
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from gearcam.laws.rise_points import Table
+from claims.shown_rise import ShownRise, shown
+from gearcam.laws.rise_points import TableRise
 from gearcam.laws.rise_simple import Cycloidal
-from gearcam.laws.rises import Rise
 from gearcam.tolerances import DEFAULT
 
 COUNTS = (8, 16, 32, 64)
@@ -17,12 +17,12 @@ FINE = np.linspace(0.0, 1.0, 4001)
 EXACT = Cycloidal().build(DEFAULT).function.derivatives(FINE, 3)
 
 
-def through(count: int, *, uneven: float = 0.0) -> Rise:
+def through(count: int, *, uneven: float = 0.0) -> ShownRise:
     even = np.linspace(0.0, 1.0, count + 1)
     x = even + uneven * np.sin(math.pi * even) / math.pi
     x[-1] = 1.0
     y = Cycloidal().build(DEFAULT).function(x)
-    return Table(x=tuple(x.tolist()), y=tuple(y.tolist())).build(DEFAULT)
+    return shown(TableRise(x=tuple(x.tolist()), y=tuple(y.tolist())))
 
 
 @pytest.mark.parametrize("uneven", [0.0, 0.3])

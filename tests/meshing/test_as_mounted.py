@@ -10,7 +10,7 @@ import pytest
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import first_touch, touches
@@ -71,7 +71,7 @@ def test_arcs_end_where_an_edge_begins_to_touch(name: str, more: float, side: in
 def test_clearance_and_play_are_taken_up() -> None:
     """To first order the play along the pitch line is that of all four flanks, over cos(alpha)."""
     plain = job(Ellipse(eccentricity=0.3), (20, 20), module=2.5, backlash=0.02)
-    made = GearPairJob(replace(plain.design, blank=Blank(clearance=(0.05, 0.03))))
+    made = GearPairResult(replace(plain.design, blank=Blank(clearance=(0.05, 0.03))))
     both = [leads(flank_pairs(made.gears, s), np.linspace(0.0, 6.2, 37)) for s in (DRIVE, COAST)]
     play = 0.02 + 2.0 * 0.08 / math.cos(math.radians(20.0))
     phi1 = np.linspace(0.0, 6.2, 37)

@@ -11,7 +11,7 @@ import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
@@ -19,7 +19,7 @@ from helpers_pairs import job, profile
 
 
 @cache
-def samples() -> tuple[GearPairJob, ...]:
+def samples() -> tuple[GearPairResult, ...]:
     return (
         profile("nail_machine_two_phase"),
         profile("nail_machine_three_phase"),
@@ -41,7 +41,7 @@ def dense(gear: Gear, tooth: int, sigma: int, points: int) -> np.ndarray:
     return toothing.flank_points(frames, np.full(points, sf), np.full(points, float(sigma)))
 
 
-def first_touch(made: GearPairJob, side: int, phi: float, distance: float) -> float:
+def first_touch(made: GearPairResult, side: int, phi: float, distance: float) -> float:
     """The driven wheel's turn at first touch: all flanks near the pitch point, dense points."""
     gears, law = made.gears, made.law
     z = made.pair.teeth[0]
@@ -67,7 +67,7 @@ def first_touch(made: GearPairJob, side: int, phi: float, distance: float) -> fl
 @pytest.mark.parametrize("made", samples(), ids=NAMES)
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 @pytest.mark.parametrize("more", [0.0, 0.1, -0.1])
-def test_first_touch_is_that_of_dense_points(made: GearPairJob, side: int, more: float) -> None:
+def test_first_touch_is_that_of_dense_points(made: GearPairResult, side: int, more: float) -> None:
     phases = np.linspace(0.1, 6.2, 23)
     distance = made.pair.center_distance + more
     found = touches(flank_pairs(made.gears, side, distance), phases)
@@ -102,7 +102,7 @@ def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(s
 
 @pytest.mark.parametrize("made", samples(), ids=NAMES)
 @pytest.mark.parametrize("side", [DRIVE, COAST])
-def test_sliding_is_the_difference_of_the_arcs_travelled(made: GearPairJob, side: int) -> None:
+def test_sliding_is_the_difference_of_the_arcs_travelled(made: GearPairResult, side: int) -> None:
     pairs = flank_pairs(made.gears, side)
     phases, step = np.linspace(0.1, 6.2, 41), 1e-5
     middle = contacts(pairs, phases)
@@ -136,7 +136,7 @@ def test_sliding_is_the_difference_of_the_arcs_travelled(made: GearPairJob, side
 
 @pytest.mark.parametrize("made", samples(), ids=NAMES)
 @pytest.mark.parametrize("side", [DRIVE, COAST])
-def test_counts_arcs_and_contacts_agree(made: GearPairJob, side: int) -> None:
+def test_counts_arcs_and_contacts_agree(made: GearPairResult, side: int) -> None:
     pairs = flank_pairs(made.gears, side)
     phases = np.random.default_rng(7).uniform(0.0, 2.0 * math.pi, 500)
     number = pairs.carrying(phases)

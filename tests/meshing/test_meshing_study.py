@@ -15,7 +15,7 @@ from gearcam.findings import run_checks
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.outline import build_outline
 from gearcam.gears.subject import Subject
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import pairs_in_contact
@@ -234,7 +234,7 @@ def test_the_pair_s_own_check_names_the_sides_alike() -> None:
     assert worse[0].value == pytest.approx(ratios[DRIVE], rel=1e-12)
 
 
-def subject_of(made: GearPairJob) -> Subject:
+def subject_of(made: GearPairResult) -> Subject:
     return Subject(pair=made.pair, gears=made.gears, bores=made.bores)
 
 

@@ -18,8 +18,8 @@ from gearcam.cli import main
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
-from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.laws.rack import Rack
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.laws.rack import RackLaw
 from gearcam.laws.spiral import LogSpiral
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
@@ -42,13 +42,13 @@ PAIRS = {
         LogSpiral(ratios=(0.8, 2.36), driven_travel=math.radians(61)), (16, 16), module=2.0
     ),
     "feeder": lambda: profile("feeder"),
-    "pinion": lambda: job(Rack(r1="1"), (20, 30), module=2.0),
-    "short rack": lambda: job(Rack(r1="1 + 0.1*cos(phi1)"), (20, 6), module=2.0),
+    "pinion": lambda: job(RackLaw(r1="1"), (20, 30), module=2.0),
+    "short rack": lambda: job(RackLaw(r1="1 + 0.1*cos(phi1)"), (20, 6), module=2.0),
 }
 
 
 @cache
-def made(name: str) -> GearPairJob:
+def made(name: str) -> GearPairResult:
     return PAIRS[name]()
 
 
@@ -306,7 +306,7 @@ def test_the_command_studies_the_travel_with_both_stops(name: str, tmp_path: Pat
 
 
 def test_the_backlash_of_a_rack_is_the_way_that_it_may_move() -> None:
-    gears = job(Rack(r1="1"), (20, 12), module=2.0, backlash=0.06).gears
+    gears = job(RackLaw(r1="1"), (20, 12), module=2.0, backlash=0.06).gears
     found = study(gears, MeshingSpec(steps=5))
     assert found.every("play") == pytest.approx(0.06, rel=1e-9)
     assert found.every("backlash") == pytest.approx(0.06, rel=1e-9)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from gearcam.errors import InfeasibleError
-from gearcam.gears.helix import leads, stepped
 from gearcam.gears.pair import Gear, make_gear
-from gearcam.gears.spec import HelixSpec
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.gears.spec import StepsSpec
+from gearcam.gears.steps import leads, stepped
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
 from gearcam.tolerances import DEFAULT
@@ -28,9 +28,9 @@ def test_the_steps_of_round_wheels_are_turned_copies() -> None:
     """Wheel 1 turns on by way/r, wheel 2 back: a closed form for circles."""
     from shapely import Polygon
 
-    job = GearPairJob(replace(profile("circular").design, helix=HelixSpec(steps=4)))
+    job = GearPairResult(replace(profile("circular").design, steps=StepsSpec(count=4)))
     pitch = np.pi * job.pair.module
-    assert leads(job.pair, job.design.helix) == pytest.approx(pitch * np.arange(4) / 4)
+    assert leads(job.pair, job.design.steps) == pytest.approx(pitch * np.arange(4) / 4)
 
     def apart(number: int, gear: Gear, sense: int) -> float:
         radius = 0.5 * job.pair.module * gear.toothing.teeth
@@ -47,9 +47,9 @@ def test_the_steps_of_round_wheels_are_turned_copies() -> None:
 
 @pytest.mark.parametrize("name", ["nail_machine_two_phase", "formula"])
 def test_every_step_meshes_without_error_and_without_overlap(name: str) -> None:
-    design = replace(profile(name).design, helix=HelixSpec(steps=3, offset=-1.7))
+    design = replace(profile(name).design, steps=StepsSpec(count=3, offset=-1.7))
     spec = MeshingSpec(steps=90)
-    for gears in GearPairJob(design).steps[1:]:  # the first one is the pair without steps
+    for gears in GearPairResult(design).steps[1:]:  # the first one is the pair without steps
         found = study(gears, spec)
         assert np.abs(found.columns["lag_rad"]).max() < 1e-9
         assert np.abs(found.columns["backlash_mm"]).max() < 1e-9
@@ -60,8 +60,8 @@ def test_every_step_meshes_without_error_and_without_overlap(name: str) -> None:
 
 def test_steps_that_do_not_belong_together_collide() -> None:
     """Wheel 1 of one step against wheel 2 of another: the control of the test above."""
-    design = replace(profile("nail_machine_two_phase").design, helix=HelixSpec(steps=3))
-    job = GearPairJob(design)
+    design = replace(profile("nail_machine_two_phase").design, steps=StepsSpec(count=3))
+    job = GearPairResult(design)
     phases = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 
     def overlap(one: int, two: int) -> float:
@@ -78,18 +78,18 @@ def test_steps_that_do_not_belong_together_collide() -> None:
 def test_the_default_offset_is_a_part_of_the_pitch() -> None:
     pair = profile("ellipse").pair
     pitch = np.pi * pair.module
-    assert leads(pair, HelixSpec(steps=5)) == pytest.approx(pitch / 5 * np.arange(5))
-    assert leads(pair, HelixSpec(steps=3, offset=1.2 * pitch)) == pytest.approx(
+    assert leads(pair, StepsSpec(count=5)) == pytest.approx(pitch / 5 * np.arange(5))
+    assert leads(pair, StepsSpec(count=3, offset=1.2 * pitch)) == pytest.approx(
         [0.0, 0.2 * pitch, 0.4 * pitch]
     )
-    assert leads(pair, HelixSpec(steps=2, offset=-0.25 * pitch)) == pytest.approx(
+    assert leads(pair, StepsSpec(count=2, offset=-0.25 * pitch)) == pytest.approx(
         [0.0, 0.75 * pitch]
     )
 
 
 def test_whole_pitches_change_nothing() -> None:
     pair = profile("ellipse").pair
-    (_, way) = leads(pair, HelixSpec(steps=2, offset=np.pi * pair.module))
+    (_, way) = leads(pair, StepsSpec(count=2, offset=np.pi * pair.module))
     assert way == pytest.approx(0.0, abs=1e-12) or way == pytest.approx(np.pi * pair.module)
     tolerance = pair.chord_tolerance(None)
     plain = make_gear(pair, 1, tolerance, DEFAULT)
@@ -98,16 +98,14 @@ def test_whole_pitches_change_nothing() -> None:
 
 
 def test_open_wheels_cannot_be_stepped() -> None:
-    design = replace(profile("furnace_door").design, helix=HelixSpec(steps=2))
+    design = replace(profile("furnace_door").design, steps=StepsSpec(count=2))
     with pytest.raises(InfeasibleError, match="open wheels"):
-        GearPairJob(design).steps  # noqa: B018
+        GearPairResult(design).steps  # noqa: B018
 
 
 def test_a_step_that_is_not_there_is_refused_by_reading() -> None:
     from gearcam.errors import DesignError
 
     with pytest.raises(DesignError, match="no step 3") as caught:
-        replace(
-            profile("formula").design, helix=HelixSpec(steps=2), meshing=MeshingSpec(helix_step=3)
-        )
-    assert caught.value.problems[0].allowed == "1 to 2 (helix.steps)"
+        replace(profile("formula").design, steps=StepsSpec(count=2), meshing=MeshingSpec(step=3))
+    assert caught.value.problems[0].allowed == "1 to 2 (steps.count)"

@@ -10,7 +10,7 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.halves import Halves, halve
 from gearcam.meshing.overlap import Turning
@@ -23,17 +23,17 @@ TURN = np.radians(np.arange(360.0))
 
 
 @cache
-def halves_of(made: GearPairJob) -> tuple[Halves, Halves]:
+def halves_of(made: GearPairResult) -> tuple[Halves, Halves]:
     return halve(made.gear1.profile), halve(made.gear2.profile)
 
 
-def turning_of(made: GearPairJob, shift: float = 0.0) -> Turning:
+def turning_of(made: GearPairResult, shift: float = 0.0) -> Turning:
     first, second = halves_of(made)
     distance = made.pair.center_distance + shift
     return Turning(rolling=made.pair.rolling, driver=first, driven=second, distance=distance)
 
 
-def whole_areas(made: GearPairJob, distance: float, angles: Array, lead: float) -> list[float]:
+def whole_areas(made: GearPairResult, distance: float, angles: Array, lead: float) -> list[float]:
     """Overlap of the whole outlines."""
     areas = []
     for phi in angles:
@@ -56,7 +56,7 @@ OVERLAPPING = {
 
 
 @cache
-def overlapping(name: str) -> GearPairJob:
+def overlapping(name: str) -> GearPairResult:
     return OVERLAPPING[name]()
 
 

@@ -18,7 +18,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.gears.outline import Outline
 from gearcam.gears.spec import Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -130,7 +130,7 @@ def demand_outline(outline: Outline) -> None:
     assert off.max() <= outline.tolerance
 
 
-def demand_pair(given: Given) -> GearPairJob | None:
+def demand_pair(given: Given) -> GearPairResult | None:
     """Build a design and demand all that is promised of it; None if it is refused.
 
     What a refusal advises is proved in test_families.

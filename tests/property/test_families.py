@@ -19,20 +19,20 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import gearcam
-from gearcam.design.spec import changed
+from gearcam.designs.design import changed
 from gearcam.errors import InfeasibleError
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.centrodes import EccentricCircle, Limacon, Lobed
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
-from gearcam.laws.motion import Motion
+from gearcam.laws.motion import MotionLaw
 from gearcam.laws.phases import Phases
 from gearcam.laws.programs import Fourier, Multispeed, ThreePhasePolynomial
-from gearcam.laws.rack import Rack
-from gearcam.laws.shapes import BSpline, RoundedPolygon
+from gearcam.laws.rack import RackLaw
+from gearcam.laws.shapes import BSplineLaw, RoundedPolygon
 from gearcam.laws.spiral import LogSpiral
-from gearcam.laws.table import Table
+from gearcam.laws.table import TableLaw
 from gearcam.meshing.halves import halve
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import explained, job
@@ -114,7 +114,7 @@ def fouriers(draw: st.DrawFn) -> Fourier:
 
 
 @st.composite
-def tables(draw: st.DrawFn) -> Table:
+def tables(draw: st.DrawFn) -> TableLaw:
     count, a, shift = draw(st.integers(12, 48)), draw(rounded(-0.3, 0.3)), draw(rounded(0, 6))
     angles = tuple(TURN * k / count for k in range(count + 1))
     wave = [math.cos(x + shift) for x in (*angles[:-1], 0.0)]
@@ -124,25 +124,25 @@ def tables(draw: st.DrawFn) -> Table:
         values = [x + a * w for x, w in zip(angles, rise, strict=True)]
     else:
         values = [1.0 + (a if kind == "ratio" else 0.5 * a) * w for w in wave]
-    return Table(phi1=angles, **{kind: tuple(values)})  # type: ignore[arg-type]
+    return TableLaw(phi1=angles, **{kind: tuple(values)})  # type: ignore[arg-type]
 
 
 @st.composite
-def motions(draw: st.DrawFn) -> Motion:
+def motions(draw: st.DrawFn) -> MotionLaw:
     a = draw(rounded(0, 0.4))
     if draw(st.booleans()):
         turned = f"(phi1 - {a}*sin(phi1))"
-        return Motion(slide=f"1 - cos{turned}", rod=draw(rounded(2, 8)))
+        return MotionLaw(slide=f"1 - cos{turned}", rod=draw(rounded(2, 8)))
     travel = draw(degrees(90, 270))
-    return Motion(
+    return MotionLaw(
         y=f"x + {a}*x**2", x_from=0.0, x_to=1.0, driver_travel=travel, driven_travel=travel
     )
 
 
 @st.composite
-def splines(draw: st.DrawFn) -> BSpline:
+def splines(draw: st.DrawFn) -> BSplineLaw:
     count = draw(st.integers(4, 8))
-    return BSpline(radii=tuple(draw(rounded(0.9, 1.1)) for _ in range(count)))
+    return BSplineLaw(radii=tuple(draw(rounded(0.9, 1.1)) for _ in range(count)))
 
 
 def ellipses(e: float) -> Ellipse:
@@ -189,7 +189,7 @@ FAMILIES: dict[str, tuple[st.SearchStrategy[Any], st.SearchStrategy[tuple[int, i
     "table": (tables(), equal(12)),
     "motion": (motions(), equal(12)),
     "rack": (
-        rounded(0, 0.2).map(lambda a: Rack(r1=f"1 + {a}*cos(2*phi1)")),
+        rounded(0, 0.2).map(lambda a: RackLaw(r1=f"1 + {a}*cos(2*phi1)")),
         st.tuples(st.integers(12, 200), st.integers(6, 200)),
     ),
 }
@@ -199,7 +199,7 @@ def region(points: Any) -> Any:
     return shapely.Polygon(np.stack([points.real, points.imag], axis=1))
 
 
-def whole_overlap(made: GearPairJob, phi: float) -> float:
+def whole_overlap(made: GearPairResult, phi: float) -> float:
     """Area that the whole outlines share at a phase."""
     driven = float(made.law.phi2(phi))
     one = made.gear1.outline @ [1, 1j] * np.exp(-1j * phi)
@@ -211,7 +211,7 @@ def whole_overlap(made: GearPairJob, phi: float) -> float:
     return float(shapely.intersection(region(one), region(two)).area)
 
 
-def demand_free(made: GearPairJob) -> None:
+def demand_free(made: GearPairResult) -> None:
     """No collision: every phase by the stepwise overlap, a few by whole outlines."""
     end = float(made.centrode_angles()[-1]) if made.law.feeds else made.law.lobes.period
     phases = end * (np.arange(12) + 0.37) / 12
@@ -235,7 +235,7 @@ def demand_free(made: GearPairJob) -> None:
     assert areas.max() <= explained(made)
 
 
-def demand_remedies(refused: GearPairJob) -> None:
+def demand_remedies(refused: GearPairResult) -> None:
     """What the search names builds, and the next smaller change is refused or has errors."""
     found = gearcam.remedies(refused)
     assert found.found or found.gave_up or "pair.teeth" in found.tried

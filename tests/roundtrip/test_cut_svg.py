@@ -19,13 +19,13 @@ from gearcam.drawings import Drawing, Feature, cut_drawing, wheel_drawing
 from gearcam.export.cut_svg import cut_svg
 from gearcam.export.lettering import strokes, text_width
 from gearcam.export.nest import GAP, labelled, nested
-from gearcam.jobs.cam import CamJob
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank, WheelBlank
+from gearcam.parts.body import Mark, Part
 from gearcam.parts.make import make_part
-from gearcam.parts.openings import Place
-from gearcam.parts.part import Mark, Part
+from gearcam.parts.openings import Workpiece
 from helpers_cam_files import ROLLER, read
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_distance import distances
@@ -124,7 +124,7 @@ def marked(contour: Contour, name: str = "gear1", **sizes: Any) -> Part:
         bolt_circle=36.0, bolt_diameter=5.0, bolt_angle=2.0, stop_pin=3.0, **sizes,
     )  # fmt: skip
     mark = Mark(center=np.array([0.0, 16.0]), diameter=1.2, depth=0.5)
-    place = Place(wheel=1, module=2.0, travel=0.8)
+    place = Workpiece(wheel=1, module=2.0, travel=0.8)
     return make_part(name, [contour], 5.0, blank, place, lambda: mark)
 
 
@@ -202,7 +202,7 @@ def test_half_circles_keep_their_centres() -> None:
 def test_curves_stay_within_the_tolerance(tolerance: float) -> None:
     contour = gear_contour(9, 4.0, tolerance)
     plain = make_part(
-        "gear1", [contour], 5.0, WheelBlank(timing_marks=False), Place(wheel=1, module=4.0)
+        "gear1", [contour], 5.0, WheelBlank(timing_marks=False), Workpiece(wheel=1, module=4.0)
     )
     sheet = sheet_of(cut_svg([wheel_drawing(plain)], "one"))
     (line,) = sheet.lines
@@ -224,7 +224,7 @@ SHAPES = {
 @pytest.mark.parametrize("name", SHAPES)
 def test_nested_parts_keep_a_gap_and_the_sheet_is_tight(name: str) -> None:
     plain = WheelBlank(timing_marks=False)
-    place = Place(wheel=1, module=2.0)
+    place = Workpiece(wheel=1, module=2.0)
     parts = [make_part(f"gear{k}", [one], 5.0, plain, place) for k, one in enumerate(SHAPES[name])]
     sheet = sheet_of(cut_svg(nested([labelled(wheel_drawing(one)) for one in parts]), name))
     outlines = sheet.regions("outline")
@@ -262,7 +262,7 @@ def test_names_stand_on_their_parts_clear_of_all_edges() -> None:
 def test_names_without_room_stand_below() -> None:
     thin = make_part(
         "gear2_step1", [disc_contour(4.0)], 5.0,
-        WheelBlank(timing_marks=False, bore_diameter=6.0), Place(wheel=2, module=1.0),
+        WheelBlank(timing_marks=False, bore_diameter=6.0), Workpiece(wheel=2, module=1.0),
     )  # fmt: skip
     drawing = labelled(wheel_drawing(thin))
     sheet = sheet_of(cut_svg([drawing], "one"))
@@ -296,7 +296,7 @@ def test_a_pair_has_a_file_for_each_wheel_and_one_for_both() -> None:
     design = profile("ellipse").design
 
     output = replace(design.output, chord_tolerance=0.01, kerf=KERF)
-    made = GearPairJob(
+    made = GearPairResult(
         replace(design, output=output, blank=Blank(bore_diameter=(8.0, 6.0)))
     )._export("cut-svg", {})
     assert set(made) == {"gear1_cut.svg", "gear2_cut.svg", "cut.svg"}
@@ -315,7 +315,7 @@ def test_a_pair_has_a_file_for_each_wheel_and_one_for_both() -> None:
 def test_a_cam_is_cut_without_its_pitch_curve(kerf: float) -> None:
 
     design = read(ROLLER)
-    job = CamJob(replace(design, output=replace(design.output, kerf=kerf)))
+    job = CamResult(replace(design, output=replace(design.output, kerf=kerf)))
     made = job._export("cut-svg", {})
     assert set(made) == {"cam_cut.svg", "cut.svg"}
     (line,) = sheet_of(made["cam_cut.svg"]).lines
@@ -328,7 +328,7 @@ def test_a_cam_is_cut_without_its_pitch_curve(kerf: float) -> None:
 def test_stepped_wheels_have_a_file_for_each_step() -> None:
     design = profile("stepped_ellipse").design
     output = replace(design.output, chord_tolerance=0.02)
-    made = GearPairJob(replace(design, output=output))._export("cut-svg", {})
+    made = GearPairResult(replace(design, output=output))._export("cut-svg", {})
     wheels = [f"gear{wheel}_step{step}_cut.svg" for wheel in (1, 2) for step in (1, 2, 3, 4)]
     assert set(made) == {*wheels, "cut.svg"}
     assert len(sheet_of(made["cut.svg"]).regions("outline")) == 8

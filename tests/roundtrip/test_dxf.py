@@ -17,8 +17,8 @@ from ezdxf.math import bulge_to_arc
 from gearcam.drawings import Drawing, pair_drawing, wheel_drawing
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
+from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.part import Part
 from helpers_contour import bore, gear_contour, square_contour
 
 TOLERANCE = 1e-3
@@ -205,7 +205,7 @@ def test_the_same_design_gives_the_same_bytes(part: Part) -> None:
 import hashlib
 from gearcam.drawings import wheel_drawing
 from gearcam.export.dxf import DxfStyle, dxf_bytes
-from gearcam.parts.part import Part
+from gearcam.parts.body import Part
 from helpers_contour import bore, square_contour
 part = Part(name="p", contours=(square_contour(9.0),), openings=bore(2.0), width=1.0)
 print(hashlib.sha256(dxf_bytes(wheel_drawing(part), DxfStyle(tolerance=1e-3))).hexdigest())

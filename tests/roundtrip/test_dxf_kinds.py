@@ -18,8 +18,8 @@ from gearcam.numeric import splines
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Opening, Part
 from gearcam.parts.openings import bore as bore_of
-from gearcam.parts.part import Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import bore, gear_contour
 from helpers_distance import distances

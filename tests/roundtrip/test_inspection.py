@@ -11,30 +11,30 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam.design import OutputSpec
-from gearcam.jobs.files import export
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
+from gearcam.kinds.gear_pair.files import export
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
 
-def job(name: str, count: int = 7, **blank: Any) -> GearPairJob:
+def job(name: str, count: int = 7, **blank: Any) -> GearPairResult:
     design = replace(
         profile(name).design,
         blank=Blank(**blank),
-        output=OutputSpec(files=("inspection",), inspection_points=count),
+        output=PairOutputSpec(files=("inspection",), inspection_points=count),
     )
-    return GearPairJob(design)
+    return GearPairResult(design)
 
 
-def read(made: GearPairJob) -> dict[str, np.ndarray]:
+def read(made: GearPairResult) -> dict[str, np.ndarray]:
     """The file, by the standard library's reader."""
     text = export(made, "inspection", {})["inspection.csv"].decode("ascii")
     rows = list(csv.DictReader(io.StringIO(text)))
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
-def distances(made: GearPairJob, rows: dict[str, np.ndarray], wheel: int) -> np.ndarray:
+def distances(made: GearPairResult, rows: dict[str, np.ndarray], wheel: int) -> np.ndarray:
     """Of a wheel's points from the outline of its part."""
     from shapely import LinearRing, points
 

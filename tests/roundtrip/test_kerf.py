@@ -15,16 +15,16 @@ import trimesh
 from ezdxf.entities.circle import Circle as DxfCircle
 from ezdxf.entities.lwpolyline import LWPolyline
 
-from gearcam.design import OutputSpec
 from gearcam.drawings import cut_drawing, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
-from gearcam.jobs.cam import CamJob
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.parts.blank import Blank, WheelBlank
+from gearcam.parts.body import Part
 from gearcam.parts.make import make_part
-from gearcam.parts.openings import Place
-from gearcam.parts.part import Part
+from gearcam.parts.openings import Workpiece
 from helpers_cam_files import ROLLER, read
 from helpers_contour import contour_of, disc_contour, line
 from helpers_distance import distances
@@ -41,12 +41,12 @@ ORDER = Blank(
 
 
 @cache
-def job(kerf: float = 0.0, **sizes: Any) -> GearPairJob:
-    output = OutputSpec(files=("dxf",), chord_tolerance=TOLERANCE, kerf=kerf)
+def job(kerf: float = 0.0, **sizes: Any) -> GearPairResult:
+    output = PairOutputSpec(files=("dxf",), chord_tolerance=TOLERANCE, kerf=kerf)
     design = profile("ellipse").design
     pair = replace(design.pair, module=1.5, teeth=(19, 19))
     blank = replace(ORDER, **sizes)
-    return GearPairJob(replace(design, pair=pair, output=output, blank=blank))
+    return GearPairResult(replace(design, pair=pair, output=output, blank=blank))
 
 
 @cache
@@ -141,7 +141,7 @@ def test_holes_are_narrower_by_the_kerf_to_the_last_digit() -> None:
 def test_paths_are_measured_however_they_are_drawn(curves: str) -> None:
     made = job(KERF)
     output = replace(made.design.output, dxf_curves=curves)
-    other = GearPairJob(replace(made.design, output=output))
+    other = GearPairResult(replace(made.design, output=output))
     extras: dict[str, Any] = {}
     data = other._export("dxf", extras)["gear1.dxf"]
     assert 0.05 * TOLERANCE < extras["dxf"]["error_mm"]["gear1.dxf"] <= TOLERANCE
@@ -149,9 +149,9 @@ def test_paths_are_measured_however_they_are_drawn(curves: str) -> None:
     assert layers == {"OUTLINE_KERF", "BORE_KERF", "HOLE_KERF", "MARK"}
 
 
-def cam(kerf: float = 0.0, clearance: float = 0.0, **blank: Any) -> CamJob:
+def cam(kerf: float = 0.0, clearance: float = 0.0, **blank: Any) -> CamResult:
     design = read(ROLLER)
-    return CamJob(
+    return CamResult(
         replace(
             design,
             output=replace(design.output, kerf=kerf),
@@ -223,7 +223,7 @@ def test_a_path_is_no_profile_to_follow() -> None:
 
 
 def part(**sizes: Any) -> Part:
-    place = Place(wheel=1, module=2.0, travel=1.5)
+    place = Workpiece(wheel=1, module=2.0, travel=1.5)
     return make_part("g", [disc_contour(50.0)], 5.0, WheelBlank(timing_marks=False, **sizes), place)
 
 
@@ -257,7 +257,7 @@ def test_a_chamber_whose_mouth_the_kerf_closes_is_refused_with_a_kerf_that_does_
     corners = [0, 9.5, 9.5 + 6j, 6 + 6j, 6 + 14j, 14 + 14j, 14 + 6j, 10.5 + 6j, 10.5, 20, 20 + 20j,
                20j]  # fmt: skip
     pieces = [line(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
-    plain, place = WheelBlank(timing_marks=False), Place(wheel=1, module=1.0)
+    plain, place = WheelBlank(timing_marks=False), Workpiece(wheel=1, module=1.0)
     made = make_part("g", [contour_of(pieces, 1e-3)], 5.0, plain, place)
     with pytest.raises(InfeasibleError, match="no simple outline is left by this kerf") as caught:
         cut_drawing(wheel_drawing(made), 1.2)

@@ -18,8 +18,8 @@ import pytest
 from gearcam import solids
 from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
 from gearcam.numeric.contour import Contour
+from gearcam.parts.body import Mark, Part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.part import Mark, Part
 from gearcam.solids import Mesh, SolidError, solid, volume_error
 from helpers_contour import bore, gear_contour, square_contour
 

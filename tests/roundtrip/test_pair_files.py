@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam.design import OutputSpec
-from gearcam.jobs.files import export, poses
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
+from gearcam.kinds.gear_pair.files import export, poses
 from gearcam.parts.blank import Blank
 from gearcam.parts.mass import mass_properties
 from helpers_pairs import profile
@@ -27,10 +27,10 @@ PHI1 = math.radians(40.0)
 
 
 @cache
-def job(name: str = "ellipse") -> GearPairJob:
-    output = OutputSpec(files=("stl",), chord_tolerance=0.005, pose=PHI1)
+def job(name: str = "ellipse") -> GearPairResult:
+    output = PairOutputSpec(files=("stl",), chord_tolerance=0.005, pose=PHI1)
     blank = Blank(bore_diameter=(5.0, 6.0), hub_diameter=(9.0, 0.0), hub_back=(2.0, 0.0))
-    return GearPairJob(replace(profile(name).design, output=output, blank=blank))
+    return GearPairResult(replace(profile(name).design, output=output, blank=blank))
 
 
 @cache
@@ -126,7 +126,7 @@ def test_both_bodies_stand_where_they_belong(kind: str) -> None:
 def test_a_pair_that_is_not_turned_stands_elsewhere() -> None:
     """Control: the wheels' own frames are not the assembly."""
     plain = replace(job().design, output=replace(job().design.output, pose=0.0))
-    assert poses(GearPairJob(plain)) == ((-0.0, (0.0, 0.0)), (0.0, (job().pair.shift, 0.0)))
+    assert poses(GearPairResult(plain)) == ((-0.0, (0.0, 0.0)), (0.0, (job().pair.shift, 0.0)))
     _, place = centroid(bodies("stl")["gear1"])
     own = mass_properties(job().parts[0], 1.0).centroid
     assert math.dist(place, own) > 1.0
@@ -135,11 +135,11 @@ def test_a_pair_that_is_not_turned_stands_elsewhere() -> None:
 def test_the_drawn_pair_does_not_overlap_at_any_angle() -> None:
     from shapely import Polygon
 
-    from gearcam.jobs.files import _pair_drawing
+    from gearcam.kinds.gear_pair.files import _pair_drawing
 
     for degrees in (0.0, 77.7, 180.0, 301.0):
-        output = OutputSpec(files=("dxf",), pose=math.radians(degrees))
-        made = GearPairJob(replace(profile("ellipse").design, output=output))
+        output = PairOutputSpec(files=("dxf",), pose=math.radians(degrees))
+        made = GearPairResult(replace(profile("ellipse").design, output=output))
         one, two = (Polygon(shape.vertices) for shape in _pair_drawing(made).contours)
         assert one.intersection(two).area < 0.01
         assert one.distance(two) < 1e-3

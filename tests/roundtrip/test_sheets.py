@@ -24,11 +24,12 @@ from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
-from gearcam.parts.openings import Place
-from gearcam.parts.part import Hub, Mark, Opening, Part
+from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
-from gearcam.sheets import Sheet, pair_sheet, wheel_sheet
+from gearcam.sheets import pair_sheet, wheel_sheet
+from gearcam.sheets.sheet import Sheet
 from helpers_contour import disc_contour, gear_contour
 
 STYLE = DxfStyle(tolerance=1e-3)
@@ -48,7 +49,7 @@ def keyed(bore: float = 40.0) -> Part:
     )  # fmt: skip
     mark = Mark(center=np.array([70.0, 12.0]), diameter=2.0, depth=0.5)
     made = make_part(
-        "gear1", [gear_contour()], 50.0, blank, Place(wheel=1, module=5.0), lambda: mark
+        "gear1", [gear_contour()], 50.0, blank, Workpiece(wheel=1, module=5.0), lambda: mark
     )
     holes = [((10.0, 50.0), 20.0), ((-60.0, 3.0), 9.0)]
     more = [
@@ -62,12 +63,12 @@ def keyed(bore: float = 40.0) -> Part:
 def plain() -> Part:
     blank = WheelBlank(bore_diameter=20.0, timing_marks=False)
     contour = gear_contour(24, 2.0, squash=(1.0, 1.0))
-    return make_part("gear2", [contour], 12.0, blank, Place(wheel=2, module=2.0))
+    return make_part("gear2", [contour], 12.0, blank, Workpiece(wheel=2, module=2.0))
 
 
 def d_bore() -> Part:
     blank = WheelBlank(bore_diameter=12.0, bore_flat=10.5, keyway_angle=-2.0)
-    return make_part("gear1", [disc_contour(30.0)], 8.0, blank, Place(wheel=1, module=2.0))
+    return make_part("gear1", [disc_contour(30.0)], 8.0, blank, Workpiece(wheel=1, module=2.0))
 
 
 def fine_points(part: Part) -> np.ndarray:
@@ -331,7 +332,7 @@ import hashlib
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
-from gearcam.parts.part import Hub, Part
+from gearcam.parts.body import Hub, Part
 from gearcam.sheets import wheel_sheet
 from helpers_contour import square_contour
 part = Part(name="p", contours=(square_contour(90.0),), width=1.0, hub=Hub(diameter=9.0, front=2.0))

@@ -22,7 +22,7 @@ from gearcam.export import step, step_shapes
 from gearcam.export.step import Placed, StepSolid, read_step, step_bytes
 from gearcam.numeric.contour import Run
 from gearcam.numeric.splines import Spline, fit_spline
-from gearcam.parts.part import Hub, Mark, Opening, Part
+from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.shapes import Circle
 from gearcam.solids import SolidError
 from helpers_contour import bore, disc_contour, gear_contour, square_contour

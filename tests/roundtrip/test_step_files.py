@@ -7,32 +7,32 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearcam.design import OutputSpec
 from gearcam.export.step import read_step
-from gearcam.jobs.files import export
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import PairOutputSpec
+from gearcam.kinds.gear_pair.files import export
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
 
 @pytest.fixture(scope="module")
-def job() -> GearPairJob:
+def job() -> GearPairResult:
     design = replace(
         profile("circular").design,
         blank=Blank(bore_diameter=(8.0, 8.0), timing_marks=False),
-        output=OutputSpec(files=("step",), pose=0.7),
+        output=PairOutputSpec(files=("step",), pose=0.7),
     )
-    return GearPairJob(design)
+    return GearPairResult(design)
 
 
 @pytest.fixture(scope="module")
-def files(job: GearPairJob) -> dict[str, bytes]:
+def files(job: GearPairResult) -> dict[str, bytes]:
     return export(job, "step", {})
 
 
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_spur_wheel_has_a_face_for_each_flank_piece(
-    job: GearPairJob, files: dict[str, bytes], number: int
+    job: GearPairResult, files: dict[str, bytes], number: int
 ) -> None:
     part, teeth = job.parts[number], job.pair.teeth[number]
     (solid,) = read_step(files[f"{part.name}.step"])
@@ -43,7 +43,7 @@ def test_a_spur_wheel_has_a_face_for_each_flank_piece(
     assert solid.volume == pytest.approx(part.volume, rel=1e-6)
 
 
-def test_the_pair_stands_assembled(job: GearPairJob, files: dict[str, bytes]) -> None:
+def test_the_pair_stands_assembled(job: GearPairResult, files: dict[str, bytes]) -> None:
     one, two = read_step(files["pair.step"])
     assert [one.name, two.name] == ["gear1", "gear2"]
     width = job.design.pair.face_width
@@ -64,10 +64,10 @@ def test_the_pair_stands_assembled(job: GearPairJob, files: dict[str, bytes]) ->
 def test_a_non_circular_wheel_keeps_its_volume(name: str, bore: float) -> None:
     design = replace(
         profile(name).design,
-        output=OutputSpec(files=("step",)),
+        output=PairOutputSpec(files=("step",)),
         blank=Blank(bore_diameter=(bore, 0.0), tip_rounding=(0.3, 0.0)),
     )
-    job = GearPairJob(design)
+    job = GearPairResult(design)
     made = export(job, "step", {})
     for part in job.parts:
         (solid,) = read_step(made[f"{part.name}.step"])

@@ -42,3 +42,10 @@ def test_what_is_no_table_is_refused() -> None:
         table_bytes({"a": [1.0, 2.0], "b": [1.0]})
     with pytest.raises(ValueError, match="header"):
         table_bytes({"a,b": [1.0]})
+
+
+def test_what_is_masked_may_be_anything() -> None:
+    """A signalling not-a-number, as memory that nobody has written may hold, does not warn."""
+    signal = np.array([0x7FF0000000000001, 0x4059000000000000], dtype=np.uint64).view(float)
+    column = np.ma.array(signal, mask=[True, False])
+    assert table_bytes({"a": column}) == b"a\n\n100.0\n"

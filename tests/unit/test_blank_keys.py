@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from gearcam.design import GearPairDesign, loads
+from gearcam.designs import loads
 from gearcam.errors import DesignError, Problem
+from gearcam.kinds.gear_pair.design import GearPairDesign
 
 GOOD = """\
 kind = "gear-pair"

@@ -11,13 +11,16 @@ from typing import Any
 
 import pytest
 
+from claims.of_rises import RISE_CLAIMS
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.design import CamDesign, CamOutputSpec, document_of, load, loads, with_meshing
-from gearcam.design.kinds import KINDS
-from gearcam.design.models import faults_of
-from gearcam.design.motion import phase_table, rise_table
-from gearcam.design.template import template
+from gearcam.designs import document_of, load, loads
+from gearcam.designs.kind import KINDS
+from gearcam.designs.template import template
+from gearcam.designs.validate import faults_of
 from gearcam.errors import DesignError
+from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
+from gearcam.kinds.cam.motion import phase_table, rise_table
+from gearcam.kinds.gear_pair.commands import with_meshing
 from gearcam.laws.phases_of_lift import (
     PHASES,
     DwellPhase,
@@ -90,10 +93,10 @@ def test_a_segment_carries_its_end_in_the_units_of_the_lift() -> None:
 
 @pytest.mark.parametrize("name", ["rise", "return"])
 def test_every_law_is_read_with_its_parameters(name: str) -> None:
-    for law, entry in RISES.items():
+    for law, claims in RISE_CLAIMS.items():
         assert not set(phase_table(name).entries) & set(rise_table(law).entries), law
         assert not {"type", "law"} & set(rise_table(law).entries), law
-        for claim in entry.claims():
+        for claim in claims:
             document = tomllib.loads(ROLLER)
             number = 0 if name == "rise" else 2
             own = rise_table(law).document(claim.parameters)
@@ -185,7 +188,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     design = CamDesign(**{**good, "phases": list(good["phases"]), "blank": WheelBlank(bolts=0)})
     assert design.phases == good["phases"]
     assert not design.blank.timing_marks
-    with pytest.raises(DesignError, match="nothing meshes"):
+    with pytest.raises(DesignError, match="for designs of kind gear-pair"):
         with_meshing(design, {"steps": 3})
 
 

@@ -14,7 +14,7 @@ from gearcam.findings import CHECKS, Finding
 from gearcam.gears.centrode_checks import remote_cutter
 from gearcam.gears.checks import KIND, Subject, undercut
 from gearcam.gears.spec import Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -26,20 +26,20 @@ HALF = (0.0, math.pi, 2 * math.pi)
 UNEVEN = (0.0, math.radians(160), 2 * math.pi)
 
 
-def codes(made: GearPairJob) -> dict[str, Finding]:
+def codes(made: GearPairResult) -> dict[str, Finding]:
     return {finding.code: finding for finding in made.findings}
 
 
-def nearly_closed(miss: float) -> GearPairJob:
+def nearly_closed(miss: float) -> GearPairResult:
     return job(Phases(knots=HALF, ratios=(1.2, 0.8 + miss / math.pi, 1.2)), (30, 30))
 
 
-def swing(smallest: float) -> GearPairJob:
+def swing(smallest: float) -> GearPairResult:
     e = (1 - smallest) / (1 + smallest)
     return job(Ellipse(eccentricity=e), (200, 200))
 
 
-def bending(radius_in_modules: float) -> GearPairJob:
+def bending(radius_in_modules: float) -> GearPairResult:
     """An ellipse's smallest radius is a(1 - e^2); the module follows from the perimeter."""
     made = job(Ellipse(eccentricity=0.8), (30, 30))
     current = made.gear1.convex_radius / made.pair.module
@@ -50,20 +50,20 @@ def bending(radius_in_modules: float) -> GearPairJob:
     )
 
 
-def concave(limit: float) -> GearPairJob:
+def concave(limit: float) -> GearPairResult:
     return job(Formula(r1="1 + 0.25*cos(2*phi1)"), (40, 40), limits={"concave_radius": limit})
 
 
-def tips(addendum: float) -> GearPairJob:
+def tips(addendum: float) -> GearPairResult:
     return job(Constant(), (12, 60), rack=Rack(addendum=addendum, dedendum=2.0, tip_radius=0.08))
 
 
-def rim(extra: float) -> GearPairJob:
+def rim(extra: float) -> GearPairResult:
     """Root radius of z = 40, m = 1 is 18.75 mm; a bore of 32.1 mm leaves a rim of 2.7 modules."""
     return job(Constant(), (40, 40), bores=(2 * (18.75 - 2.7) + extra, 10.0))
 
 
-def overlap_of(ratio: float) -> GearPairJob:
+def overlap_of(ratio: float) -> GearPairResult:
     """Circular wheels z = 40: the contact ratio follows from the addendum in closed form."""
     alpha = math.radians(20)
     half = 0.5 * ratio * math.pi * math.cos(alpha) + 20 * math.sin(alpha)
@@ -71,11 +71,11 @@ def overlap_of(ratio: float) -> GearPairJob:
     return job(Constant(), (40, 40), rack=Rack(addendum=addendum))
 
 
-def heights(limit: float) -> GearPairJob:
+def heights(limit: float) -> GearPairResult:
     return job(Formula(r1="1 + 0.25*cos(2*phi1)"), (60, 60), limits={"tip_height": limit})
 
 
-def shaped(over: float) -> GearPairJob:
+def shaped(over: float) -> GearPairResult:
     """The limit of cutter teeth over what fits: 2*R/(1.15*m) with the concave radius R.
 
     r = 1 + 0.25*cos(2*phi) has kappa = (r - r'')/r^2 = -4/9 at 90 deg, and a length of pi*m*z.
@@ -88,7 +88,7 @@ def shaped(over: float) -> GearPairJob:
     return job(law, (80, 80), limits={"cutter_teeth": teeth * over})
 
 
-def door(more: float) -> GearPairJob:
+def door(more: float) -> GearPairResult:
     """The furnace door, its limit of the gap `more` rad than what is left, by hand.
 
     Half a pitch beyond its ends the driven wheel is a circle of radius A/2 and A/3.
@@ -102,8 +102,8 @@ def door(more: float) -> GearPairJob:
 class Case(NamedTuple):
     code: str
     severity: str
-    beyond: Callable[[], GearPairJob]
-    within: Callable[[], GearPairJob]
+    beyond: Callable[[], GearPairResult]
+    within: Callable[[], GearPairResult]
 
 
 CASES = [

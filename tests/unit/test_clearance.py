@@ -10,24 +10,24 @@ import pytest
 import shapely
 
 from gearcam.errors import InfeasibleError
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Opening, Part
 from gearcam.parts.make import finished, make_part
-from gearcam.parts.openings import Place
-from gearcam.parts.part import Opening, Part
+from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_pairs import profile
 
-SLOTTED = Place(wheel=1, module=2.0, travel=1.5)
+SLOTTED = Workpiece(wheel=1, module=2.0, travel=1.5)
 
 
 def blank(**sizes: Any) -> WheelBlank:
     return WheelBlank(**{"timing_marks": False, **sizes})
 
 
-def made(contour: Contour, sizes: WheelBlank, place: Place = SLOTTED) -> Part:
+def made(contour: Contour, sizes: WheelBlank, place: Workpiece = SLOTTED) -> Part:
     return make_part("g", [finished(contour, sizes, place)], 10.0, sizes, place)
 
 
@@ -109,6 +109,6 @@ def test_timing_marks_keep_their_gap_from_the_root_as_made() -> None:
     """Root and mark go inwards together; a bore that follows pushes nothing while there is room."""
     plain = profile("ellipse").design
     clear = replace(plain, blank=replace(plain.blank, clearance=(0.1, 0.1)))
-    marks = [GearPairJob(design).parts[0].marks[0] for design in (plain, clear)]
+    marks = [GearPairResult(design).parts[0].marks[0] for design in (plain, clear)]
     (before, _), (after, _) = (mark.center for mark in marks)
     assert before - after == pytest.approx(0.1, abs=1e-9)

@@ -6,18 +6,19 @@ import json
 import os
 import subprocess
 import sys
-import types
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
 
+from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
-from gearcam.design import KINDS, GearPairDesign, load
+from gearcam.designs import KINDS, load
 from gearcam.errors import InfeasibleError, WriteError
+from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
-from gearcam.jobs.remedies import Remedies, Remedy
+from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.base import LAWS
 from gearcam.laws.rises import RISES
 
@@ -34,11 +35,15 @@ files = ["csv"]
 """
 
 
+TREE = {"size_mm": Fact(40.0, "centre distance"), "module_mm": 2.0, "teeth": [20, 20]}
+
+
 @dataclass
 class Written:
     directory: Path
     files: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
+    facts: Facts = field(default_factory=lambda: Facts(TREE, list(TREE)))
     summary: dict[str, Any] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     complete: bool = True
@@ -47,7 +52,7 @@ class Written:
 CURED = Remedies(found=(Remedy(changes={"law.ratios[1]": 1.06}, design=None),))  # type: ignore[arg-type]
 
 
-class Job:
+class Result:
     """Stands for the real job: does what the design's name says."""
 
     calls: ClassVar[list[tuple[Any, ...]]] = []
@@ -87,9 +92,7 @@ class Job:
         folder.mkdir(parents=True, exist_ok=True)
         for name in names:
             (folder / name).write_text("x" * 1234)
-        pair = {"center_distance_mm": 40.0, "module_mm": 2.0, "teeth": [20, 20]}
-        summary = {"name": self.design.name, "pair": pair}
-        return Written(folder, names, ("old.stl",), summary, self.findings)
+        return Written(folder, names, ("old.stl",), findings=self.findings)
 
     def write(self, directory: str, files: Any = None, progress: Any = None) -> Written:
         self.calls.append(("write", directory, files, progress))
@@ -102,13 +105,11 @@ class Job:
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    module = types.ModuleType("gearcam.jobs")
-    module.make_job = Job  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "gearcam.jobs", module)
+    monkeypatch.setattr("gearcam.cli.build", Result)
     monkeypatch.setattr("gearcam.cli.remedies", lambda *_: CURED)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("GEARCAM_DEBUG", raising=False)
-    Job.calls.clear()
+    Result.calls.clear()
     return tmp_path
 
 
@@ -134,13 +135,13 @@ def test_every_outcome_has_its_exit_code(command: str, outcome: str, code: int) 
 def test_all_files_are_tried_and_the_largest_code_is_returned(
     desk: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (desk / "bad.toml").write_text("kind = 3\n")
+    (desk / "bad.toml").write_text("kind = 3\n[law]\n[pair]\n")
     files = [design("impossible"), "bad.toml", design("error"), design("good")]
     assert main(["build", *files]) == 3
     assert (desk / "output" / "good" / "summary.json").exists()
     out, err = capsys.readouterr()
     assert "4 files: 2 built, 2 refused" in out
-    assert err.index("impossible.toml: cannot be made") < err.index("bad.toml: 3 problems")
+    assert err.index("impossible.toml: cannot be made") < err.index("bad.toml: ")
     assert main(["build", "bad.toml", design("fault"), design("good")]) == 4
     capsys.readouterr()
     assert main(["build", design("fault"), design("stop"), design("good-2")]) == 130
@@ -184,7 +185,7 @@ def test_what_was_built_is_told_with_sizes_time_and_findings(
     table = lines[3:7:2]
     assert table == [
         "    error    tips              0.1 mm",
-        "    warning  undercut  gear 2  4.92 mm  limit 3.4259 mm",
+        "    warning  undercut  gear 2  4.92 mm  at most 3.4259 mm",
     ]
     assert lines[6] == "        Teeth are undercut."
     assert f"  written to {Path('there/error')}" in lines
@@ -230,13 +231,13 @@ def test_only_overrides_the_files_of_the_design(capsys: pytest.CaptureFixture[st
     file = design("good")
     assert main(["build", file, "--only", "dxf, csv", "--only", "csv"]) == 0
     assert main(["build", file]) == 0
-    assert [call[2] for call in Job.calls] == [("dxf", "csv"), None]
+    assert [call[2] for call in Result.calls] == [("dxf", "csv"), None]
     capsys.readouterr()
-    Job.calls.clear()
+    Result.calls.clear()
     assert main(["build", file, "--only", "dfx"]) == 2
     assert "did you mean dxf?" in capsys.readouterr().err
     assert main(["build", file, "--only", ","]) == 2
-    assert Job.calls == []
+    assert Result.calls == []
 
 
 def test_two_designs_of_one_name_do_not_overwrite_each_other(
@@ -252,7 +253,7 @@ def test_two_designs_of_one_name_do_not_overwrite_each_other(
 @pytest.mark.usefixtures("desk")
 def test_no_progress_is_drawn_where_nobody_looks() -> None:
     assert main(["build", design("good")]) == 0
-    assert Job.calls[0][3] is None
+    assert Result.calls[0][3] is None
     assert "rich" not in sys.modules or not hasattr(sys.stderr, "isatty") or not sys.stderr.isatty()
 
 
@@ -260,7 +261,7 @@ def test_no_progress_is_drawn_where_nobody_looks() -> None:
 def test_progress_is_drawn_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert main(["build", design("good")]) == 0
-    advance = Job.calls[0][3]
+    advance = Result.calls[0][3]
     assert callable(advance)
 
 

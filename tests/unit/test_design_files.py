@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from gearcam.design import GearPairDesign, OutputSpec, load, loads
-from gearcam.design.template import template
+from gearcam.designs import load, loads
+from gearcam.designs.template import template
 from gearcam.errors import DesignError, Problem
 from gearcam.gears.spec import Rack
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.parts.blank import Blank
 
 PROFILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))
@@ -77,7 +78,7 @@ def test_angles_become_radians_and_lengths_stay_millimetres() -> None:
 
 def test_what_is_left_out_takes_its_default() -> None:
     design = read(GOOD.replace('[output]\nfiles = ["csv"]\n', ""))
-    assert design.output.files == OutputSpec().files
+    assert design.output.files == PairOutputSpec().files
     assert design.rack == Rack()
     assert design.blank == Blank()
     assert design.limits == {}
@@ -311,7 +312,7 @@ def test_tables_of_another_kind_are_named_as_such() -> None:
 @pytest.mark.parametrize(
     ("text", "wrong"),
     [
-        ("", {"kind", "law", "pair"}),
+        ("", {"kind"}),
         ("[pair]\nteeth = [20, 20]\nmodule_mm = 2\n", {"kind", "law"}),
         ('kind = "cams"', {"kind", "motion", "follower", "cam"}),
         ("[cam]\nprime_radius_mm = 2\n", {"kind", "motion", "follower"}),
@@ -321,7 +322,7 @@ def test_without_a_kind_the_likeliest_one_is_judged(text: str, wrong: set[str]) 
     found = problems(text)
     assert {problem.key for problem in found} == wrong
     (kind,) = [problem for problem in found if problem.key == "kind"]
-    assert kind.allowed == '"gear-pair" or "cam"'
+    assert kind.allowed == '"cam" or "gear-pair"'
 
 
 def test_splines_are_refused_in_r12_only() -> None:

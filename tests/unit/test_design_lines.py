@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearcam.design import load, loads
-from gearcam.design.locate import line_at, lines_of
+from gearcam.designs import load, loads
+from gearcam.designs.faults import nearest
+from gearcam.designs.lines import line_at, lines_of
 from gearcam.errors import DesignError, Problem
 
 GOOD = """\
@@ -55,6 +56,28 @@ def test_a_slip_of_syntax_is_told_by_line_in_plain_words(text: str, line: int, w
     problem = only(text)
     assert problem.line == line
     assert words in problem.message
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "hint"),
+    [
+        ("a = 2,5\n", 1, "use a decimal point: 2.5"),
+        ("a = 1\r\nb.c = -0,25  # as at home\r\n", 2, "use a decimal point: -0.25"),
+        ("a = 2,5,\n", 1, ""),
+        ("a = 1 2\n", 1, ""),
+        ("a = 2.5,5\n", 1, ""),
+    ],
+)
+def test_a_decimal_comma_is_noticed(text: str, line: int, hint: str) -> None:
+    problem = only(text)
+    assert (problem.line, problem.hint) == (line, hint)
+
+
+def test_what_is_not_near_is_not_meant() -> None:
+    known = ["arm", "arm_mm", "pivot_distance_mm", "radius_mm"]
+    assert [nearest(word, known) for word in ("rpm", "tip", "raduis_mm", "Arm_mm")] == [
+        "", "", "radius_mm", "arm_mm",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("text", ["a = " + "[" * 5000, "a = " + "9" * 5000, "a = 2020-13-45\n"])

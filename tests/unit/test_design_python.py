@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearcam.design import GearPairDesign, OutputSpec, document_of, loads
+from gearcam.designs import document_of, loads
 from gearcam.errors import DesignError
 from gearcam.gears.spec import PairSpec
+from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.phases import Phases
 
@@ -42,7 +43,7 @@ def test_a_design_made_in_python_equals_the_one_read() -> None:
         law_type="phases",
         law=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
         pair=PairSpec(center_distance=180.0, teeth=(36, 36)),
-        output=OutputSpec(files=("csv",)),
+        output=PairOutputSpec(files=("csv",)),
     )
     assert (made.law, made.pair, made.rack, made.output) == (
         read.law,

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.designs import document_of
 from gearcam.errors import InfeasibleError
 from gearcam.gears.rolling import Centrode
 from gearcam.gears.spec import Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -27,13 +28,15 @@ TOP = [
     "name",
     "kind",
     "pair",
+    "mesh",
     "gears",
-    "design",
+    "accuracy",
+    "hash",
     "files",
     "findings",
-    "accuracy",
     "timings_s",
     "versions",
+    "design",
 ]
 """Keys of every summary; ``solids`` comes with meshes, ``stale`` with old files."""
 
@@ -45,14 +48,14 @@ OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}
 ACCURACY = {"law", "closure_rad", "arc_length_mm", "flank_mm", "chord_mm"}
 
 
-def small(**given: Any) -> GearPairJob:
+def small(**given: Any) -> GearPairResult:
     """A small pair, quick to cut."""
     law = given.pop("law", Ellipse(eccentricity=0.2))
     sizes = {} if "distance" in given or "module" in given else {"module": 2.0}
     return job(law, given.pop("teeth", (22, 22)), **{"tolerance": 0.01, **sizes, **given})
 
 
-def computed(made: GearPairJob) -> set[str]:
+def computed(made: GearPairResult) -> set[str]:
     """What a job has computed so far."""
     return {name for name in vars(made) if name not in ("design", "tolerances", "timings")}
 
@@ -123,15 +126,16 @@ def test_a_job_with_a_bad_law_says_so_when_asked_and_not_before() -> None:
 # Summary
 
 
-def test_a_summary_holds_what_is_promised() -> None:
+def test_a_summary_holds_what_is_promised(tmp_path: Path) -> None:
     made = small()
-    summary = made.summary({"a.csv": made.design_hash})
+    summary = made.write(tmp_path, files=["csv"]).summary
     assert list(summary) == TOP
-    assert summary["format"] == 2
+    assert summary["format"] == 3
     assert (summary["name"], summary["kind"]) == ("sample", "gear-pair")
     assert set(summary["pair"]) == PAIR
     assert summary["pair"]["teeth"] == [22, 22]
-    assert summary["files"] == {"a.csv": summary["design"]}
+    assert summary["design"] == document_of(made.design)
+    assert set(summary["files"].values()) == {made.design_hash} == {summary["hash"]}
     assert [gear["name"] for gear in summary["gears"]] == ["gear1", "gear2"]
     for gear in summary["gears"]:
         assert set(gear["centrode"]) == CENTRODE
@@ -151,7 +155,7 @@ def test_a_summary_holds_what_is_promised() -> None:
 
 def test_a_summary_is_json_without_nan_and_reads_back_the_same() -> None:
     for made in (small(), small(law=Constant(), teeth=(5, 40))):
-        summary = made.summary()
+        summary = made.facts.document
         text = json.dumps(summary, allow_nan=False)
         assert json.loads(text) == summary
 
@@ -161,7 +165,7 @@ def test_a_summary_is_json_without_nan_and_reads_back_the_same() -> None:
     [({"module": 2.0}, "center_distance_mm"), ({"distance": 44.0}, "module_mm")],
 )
 def test_what_was_left_to_the_program_is_named(given: dict[str, float], solved: str) -> None:
-    pair = small(**given).summary()["pair"]
+    pair = small(**given).facts.document["pair"]
     assert set(pair["solved"]) == {solved, "center_distance_over_semi_latus_rectum"}
     assert pair["solved"][solved] == pair[solved]
 
@@ -171,15 +175,15 @@ def test_a_solved_ratio_and_a_factor_are_named() -> None:
     phases = Phases(
         knots=(0.0, math.radians(160), 1.5 * math.pi, turn), ratios=(1.2, 0.8, "solve", 1.2)
     )
-    solved = small(law=phases).summary()["pair"]["solved"]
+    solved = small(law=phases).facts.document["pair"]["solved"]
     # 160/360*(1.2 + 0.8)/2 + 110/360*(0.8 + x)/2 + 90/360*(x + 1.2)/2 = 1
     assert solved["ratios[2]"] == pytest.approx((720 - 320 - 88 - 108) / 200, rel=1e-14)
-    factor = small(law=Formula(ratio="2 + 0.4*cos(phi1)")).summary()["pair"]["solved"]
+    factor = small(law=Formula(ratio="2 + 0.4*cos(phi1)")).facts.document["pair"]["solved"]
     assert factor["ratio_factor"] == pytest.approx(0.5, rel=1e-14)
 
 
 def test_the_chord_error_in_the_summary_is_the_larger_of_both_wheels() -> None:
-    summary = small().summary()
+    summary = small().facts.document
     errors = [gear["outline"]["chord_error_mm"] for gear in summary["gears"]]
     assert summary["accuracy"]["chord_mm"] == max(errors)
     assert 0.0 < max(errors) <= 0.01

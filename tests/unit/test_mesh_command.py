@@ -11,9 +11,11 @@ import pytest
 
 import gearcam
 from gearcam.cli import main
-from gearcam.design import GearPairDesign, loads, with_meshing
+from gearcam.designs import loads
 from gearcam.errors import DesignError
-from gearcam.jobs import gear_pair
+from gearcam.kinds.gear_pair import build as gear_pair
+from gearcam.kinds.gear_pair.commands import with_meshing
+from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.meshing import study as room
 
 TEXT = """
@@ -46,7 +48,8 @@ def test_rows_and_numbers_are_written(design: str, capsys: pytest.CaptureFixture
     code, folder = run(design)
     assert code == 0
     told = capsys.readouterr().out
-    assert "12 phases at centre distance" in told
+    assert "phases studied" in told
+    assert "centre distance as mounted" in told
     assert "meshing.csv" in told
     found = summary(folder)["meshing"]
     assert isinstance(found, dict)
@@ -196,6 +199,6 @@ def test_settings_from_python_meet_the_same_rules() -> None:
 
 def test_progress_is_told(design: str) -> None:
     calls: list[tuple[str, int, int]] = []
-    job = gear_pair.GearPairJob(gearcam.load(design))
+    job = gear_pair.GearPairResult(gearcam.load(design))
     job.mesh(Path(design).parent / "out", progress=lambda *call: calls.append(call))
     assert calls[0] == ("meshing", 0, 12)

@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 
 from gearcam.cli import main
-from gearcam.design import CamDesign, GearPairDesign, load, loads
-from gearcam.design.migrate import migrate
+from gearcam.designs import load, loads
+from gearcam.designs.migrate import migrate
 from gearcam.errors import DesignError, Problem, WriteError
 from gearcam.export.rewrite import rewrite
+from gearcam.kinds.cam.design import CamDesign
+from gearcam.kinds.gear_pair.design import GearPairDesign
 from helpers_cam_files import ROLLER
 
 HEAD = """\
@@ -171,6 +173,21 @@ def test_a_cam_is_rewritten_too(tmp_path: Path) -> None:
     file.write_text(f"{ROLLER}[blank]\noffset_mm = -0.02\n")
     content, _ = migrate(str(file))
     assert content.decode() == f"{ROLLER}[blank]\nclearance_mm = 0.02\nclearance_bores = true\n"
+
+
+def test_the_way_of_a_rack_is_its_travel_now(tmp_path: Path) -> None:
+    text = HEAD.replace('"constant"', '"rack"').replace("[pair]", 'way = "3*phi1"  # y\n[pair]')
+    (found,) = problems(text)
+    assert (found.line, found.key) == (6, "law.way")
+    assert found.message == 'is now travel: that of the rack (its value is "3*phi1")'
+    assert found.allowed == 'travel = "3*phi1"'
+    file = tmp_path / "x.toml"
+    file.write_text(text)
+    content, changes = migrate(str(file))
+    assert content.decode() == text.replace("way =", "travel =")
+    assert changes == ('law.way -> travel = "3*phi1"',)
+    (other,) = problems(HEAD.replace("[pair]", 'way = "3*phi1"\n[pair]'))
+    assert not other.message.startswith("is now")
 
 
 @pytest.fixture

@@ -14,10 +14,10 @@ import shapely
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.make import finished, make_part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.openings import Place, bore, openings
-from gearcam.parts.part import Mark, Opening, Part
+from gearcam.parts.openings import Workpiece, bore, openings
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import disc_contour, gear_contour
 from helpers_distance import distances
@@ -26,14 +26,14 @@ from helpers_pairs import profile
 FINE = 1e-6
 """Chords of openings in these tests, mm."""
 
-PLACE = Place(wheel=1, module=2.0)
+PLACE = Workpiece(wheel=1, module=2.0)
 
 
 def blank(**sizes: Any) -> WheelBlank:
     return WheelBlank(**{"timing_marks": False, **sizes})
 
 
-def made(contour: Contour, sizes: WheelBlank, place: Place = PLACE, **rest: Any) -> Part:
+def made(contour: Contour, sizes: WheelBlank, place: Workpiece = PLACE, **rest: Any) -> Part:
     return make_part("g", [finished(contour, sizes, place)], 10.0, sizes, place, **rest)
 
 
@@ -203,7 +203,7 @@ def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> Non
     Turned back into the wheel's frame it is at +phi1, or at pi - phi2.
     """
     pin = 5.0
-    place = Place(wheel=wheel, module=2.0, travel=travel)
+    place = Workpiece(wheel=wheel, module=2.0, travel=travel)
     part = made(disc_contour(50.0), blank(bore_diameter=20.0, stop_pin=pin), place)
     slot = next(o for o in part.openings if o.kind == "SLOT")
     assert isinstance(slot.shape, Loop)
@@ -235,7 +235,7 @@ def test_the_slot_of_an_open_pair_takes_its_own_travel(wheel: int) -> None:
     assert not lobes.closed
     travel = lobes.period if wheel == 1 else float(job.law.phi2(lobes.period))
     contour = (job.gear1, job.gear2)[wheel - 1].profile.contour
-    place = Place(wheel=wheel, module=2.0, travel=travel)
+    place = Workpiece(wheel=wheel, module=2.0, travel=travel)
     (slot,) = openings(blank(stop_pin=2.0), [contour], place)
     angles = np.angle(slot.shape.points(1e-4) @ [1, 1j] * (1 if wheel == 1 else -1))
     middle = travel / 2 if wheel == 1 else math.pi - travel / 2
@@ -244,7 +244,7 @@ def test_the_slot_of_an_open_pair_takes_its_own_travel(wheel: int) -> None:
     assert inside.max() > travel / 2
 
 
-SLOTTED = Place(wheel=1, module=2.0, travel=1.5)
+SLOTTED = Workpiece(wheel=1, module=2.0, travel=1.5)
 
 REFUSED: list[tuple[str, dict[str, Any], str, float, float, str]] = [
     ("bolt and outline", {"bolts": 3, "bolt_circle": 80.0}, "bolt_diameter", 19.9, 20.1,
@@ -310,7 +310,7 @@ def test_a_closed_wheel_has_no_stop() -> None:
 def test_a_bore_goes_through_its_hub_however_thin(wall: float) -> None:
     reach = 2 * KEYED.bore_reach
     part = made(disc_contour(50.0), replace(KEYED, hub_diameter=reach + wall, hub_front=5.0))
-    assert [opening.name for opening in part.in_hub] == ["bore"]
+    assert [opening.name for opening in part.bosses[0].openings] == ["bore"]
 
 
 def test_a_mark_must_lie_on_metal() -> None:

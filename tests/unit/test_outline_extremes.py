@@ -15,7 +15,7 @@ from gearcam.gears.checks import largest_module
 from gearcam.gears.flank import trace
 from gearcam.gears.outline import Outline
 from gearcam.gears.spec import Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
@@ -45,7 +45,7 @@ def gaps(outline: Outline) -> float:
     return float(np.abs(ends - np.roll(starts, -1)).max()) * math.pi / outline.toothing.pitch
 
 
-def built_or_refused(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairJob | None:
+def built_or_refused(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairResult | None:
     """The job, proved; None if the design was refused in a way that helps."""
     start = time.process_time()
     made = job(law, teeth, **given)  # advice is proved in test_families
@@ -72,14 +72,14 @@ def built_or_refused(law: Any, teeth: tuple[int, int], **given: Any) -> GearPair
     return made
 
 
-def json_clean(made: GearPairJob) -> bool:
+def json_clean(made: GearPairResult) -> bool:
     """Whether no number of the summary is infinite or not a number."""
     import json
 
     return bool(json.dumps(made.summary(), allow_nan=False))
 
 
-def built(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairJob:
+def built(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairResult:
     """The job, proved; a refusal fails the test."""
     made = built_or_refused(law, teeth, **given)
     assert made is not None
@@ -277,7 +277,7 @@ def test_undercut_is_no_reason_to_refuse_a_wheel() -> None:
 # What must not pass unsaid
 
 
-def errors_of(made: GearPairJob) -> list[str]:
+def errors_of(made: GearPairResult) -> list[str]:
     """Codes of the findings at error level."""
     return [finding.code for finding in made.findings if finding.severity == "error"]
 

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 
 from gearcam.findings import Finding
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
 
 def found(code: str, name: str = "ellipse", limits: Any = None, **blank: Any) -> list[Finding]:
     design = replace(profile(name).design, blank=Blank(**blank), limits=limits or {})
-    return [finding for finding in GearPairJob(design).findings if finding.code == code]
+    return [finding for finding in GearPairResult(design).findings if finding.code == code]
 
 
 BOLTS = {"bolts": (3, 0), "bolt_diameter": (4.0, 0.0), "bolt_circle": (16.0, 0.0)}
@@ -41,7 +41,7 @@ def test_the_limit_of_walls_can_be_set() -> None:
 
 def test_the_tool_at_hand_is_compared_with_the_sharpest_fillet() -> None:
     """The smallest fillet of a rack-cut wheel lies between the tip radius and the root's."""
-    small = GearPairJob(replace(profile("ellipse").design, blank=Blank(density=(1.0, 1.0))))
+    small = GearPairResult(replace(profile("ellipse").design, blank=Blank(density=(1.0, 1.0))))
     limits = small.parts_subject.tools[0]
     assert 2 * 0.38 < limits.diameter < 2.0
     for part, speaks in ((0.999, False), (1.001, True)):
@@ -54,9 +54,9 @@ def test_the_tool_at_hand_is_compared_with_the_sharpest_fillet() -> None:
 def test_a_kerf_wider_than_the_sharpest_fillet_is_reported(part: float, speaks: bool) -> None:
     """The largest tool that reaches every place is the widest kerf that does."""
     plain = replace(profile("ellipse").design, blank=Blank(density=(1.0, 1.0)))
-    widest = GearPairJob(plain).parts_subject.tools[0].diameter
+    widest = GearPairResult(plain).parts_subject.tools[0].diameter
     output = replace(plain.output, kerf=part * widest)
-    heard = [one for one in GearPairJob(replace(plain, output=output)).findings
+    heard = [one for one in GearPairResult(replace(plain, output=output)).findings
              if one.code == "wide-kerf" and one.where == "wheel 1"]  # fmt: skip
     assert bool(heard) == speaks
     if speaks:

@@ -12,8 +12,8 @@ from gearcam.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.blank import Blank
+from gearcam.parts.body import Mark, Part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.part import Mark, Part
 from gearcam.parts.shapes import Loop, circle_points
 from gearcam.quantities import params_of
 from helpers_contour import bore, gear_contour, square_contour

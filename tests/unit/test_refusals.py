@@ -12,7 +12,7 @@ import shapely
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import Rack
-from gearcam.jobs.gear_pair import GearPairJob
+from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.laws.phases import Phases
 from gearcam.laws.programs import Fourier, Multispeed, ThreePhasePolynomial
@@ -24,12 +24,12 @@ from helpers_pairs import job
 TURN = 2 * math.pi
 
 
-def build(made: GearPairJob) -> None:
+def build(made: GearPairResult) -> None:
     for gear in made.gears:
         assert shapely.LinearRing(gear.outline).is_simple
 
 
-def refusal(made: GearPairJob) -> InfeasibleError:
+def refusal(made: GearPairResult) -> InfeasibleError:
     with pytest.raises(InfeasibleError) as caught:
         _ = made.gears
     return caught.value

@@ -13,8 +13,8 @@ from gearcam.registry import Registry
 
 HOME = """
 from registry_of_sizes import SIZES, Size
-SIZES.hang(Size(name="{0}"))
-SIZES.hang(Size(name="{0}er"))
+SIZES.register(Size(name="{0}"))
+SIZES.register(Size(name="{0}er"))
 """
 
 
@@ -61,7 +61,7 @@ def test_unknown_names_are_key_errors(sizes: Registry[Size]) -> None:
     assert sizes.get("huge") is None
     with pytest.raises(KeyError, match="huge"):
         sizes["huge"]
-    sizes.hang(Size("huge"))  # one without a home
+    sizes.register(Size("huge"))  # one without a home
     assert sizes["huge"] == Size("huge")
     assert list(sizes)[-1] == "huge"
     assert len(sizes) == 5
@@ -70,5 +70,5 @@ def test_unknown_names_are_key_errors(sizes: Registry[Size]) -> None:
 def test_a_name_is_given_once(sizes: Registry[Size]) -> None:
     first = sizes["small"]
     with pytest.raises(ValueError, match="size 'small' is registered twice"):
-        sizes.hang(Size("small"))
+        sizes.register(Size("small"))
     assert sizes["small"] is first

@@ -13,12 +13,12 @@ from typing import Any
 import pytest
 
 import gearcam
+from gearcam.advice import Remedies
 from gearcam.cli import main
 from gearcam.console import remedy_lines
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.gears.bound import contact_bound
 from gearcam.gears.checks import Subject, largest_module
-from gearcam.jobs.remedies import Remedies
 from gearcam.laws.constant import Constant
 from helpers_documents import followed, job_of, written
 from helpers_pairs import job
@@ -155,7 +155,7 @@ def test_a_search_that_takes_too_long_is_given_up_and_says_so(folder: Path) -> N
 
 
 def test_a_refusal_comes_without_a_search(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gearcam.jobs.remedies.remedies", None)
+    monkeypatch.setattr("gearcam.advice.remedies", None)
     with pytest.raises(InfeasibleError):
         _ = job_of(DESIGNS["concave part too tight"][0], folder).findings
 

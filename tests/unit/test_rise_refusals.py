@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
-from gearcam.design.models import faults_of
-from gearcam.design.tables import table_of
+from claims.of_rises import RISE_CLAIMS
+from gearcam.designs.table import table_of
+from gearcam.designs.validate import faults_of
 from gearcam.errors import InfeasibleError
-from gearcam.laws.columns import ColumnsError, read_columns
+from gearcam.laws.columns import ColumnsError, read_rows
 from gearcam.laws.rise_formula import FormulaRise
-from gearcam.laws.rise_points import BSpline, Table
+from gearcam.laws.rise_points import BSplineRise, TableRise
 from gearcam.laws.rise_polynomials import Polynomial
 from gearcam.laws.rise_scca import Scca
 from gearcam.laws.rises import RISES
@@ -53,7 +54,7 @@ def test_numbers_out_of_range_are_told(law: str, key: str, value: float, allowed
 def test_every_rise_can_be_read_from_a_file() -> None:
     for entry in RISES.values():
         known = table_of("motion", entry.parameters)
-        for claim in entry.claims():
+        for claim in RISE_CLAIMS[entry.name]:
             written = known.outward(vars(claim.parameters))
             assert list(faults_of(known, written, home=lambda _: "")) == []
             again = entry.parameters(**known.inward(written))
@@ -79,14 +80,14 @@ def test_polynomials_have_an_end() -> None:
 
 
 def test_control_values_run_from_corner_to_corner() -> None:
-    field, index, message, rule = only(BSpline(control=(0.1, 0.0, 0.0, 1.0, 1.0)))
+    field, index, message, rule = only(BSplineRise(control=(0.1, 0.0, 0.0, 1.0, 1.0)))
     assert (field, index, rule) == ("control", 0, "0")
     assert message == "the first control value is not 0"
-    assert only(BSpline(control=(0.0, 0.0, 0.0, 1.0, 0.9)))[1:3] == (
+    assert only(BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 0.9)))[1:3] == (
         4,
         "the last control value is not 1",
     )
-    assert only(BSpline(control=EVEN, degree=5))[2:] == (
+    assert only(BSplineRise(control=EVEN, degree=5))[2:] == (
         "5 control values are given",
         "6 to 500 control values for degree 5",
     )
@@ -95,21 +96,21 @@ def test_control_values_run_from_corner_to_corner() -> None:
 @pytest.mark.parametrize(
     ("table", "field", "index", "message"),
     [
-        (Table(x=EVEN, y=EVEN, file="a.csv"), "file", None, "the points are given twice"),
-        (Table(), "x", None, "no points are given"),
-        (Table(x=EVEN), "y", None, "no points are given"),
-        (Table(x=EVEN, y=EVEN[1:]), "y", None, "4 values for 5 places"),
-        (Table(x=(0.0, 1.0), y=(0.0, 1.0)), "x", None, "has 2 points"),
-        (Table(x=(0.1, 0.5, 1.0), y=(0.0, 0.5, 1.0)), "x", 0, "the first x is 0.1, not 0"),
-        (Table(x=(0.0, 0.5, 0.9), y=(0.0, 0.5, 1.0)), "x", 2, "the last x is 0.9, not 1"),
-        (Table(x=(0.0, 0.5, 1.0), y=(0.2, 0.5, 1.0)), "y", 0, "the first y is 0.2, not 0"),
-        (Table(x=(0.0, 0.5, 1.0), y=(0.0, 0.5, 2.0)), "y", 2, "the last y is 2, not 1"),
-        (Table(x=(0.0, 0.5, 0.5, 1.0), y=(0.0, 0.5, 0.6, 1.0)), "x", 2, "x does not rise"),
-        (Table(x=(0.0, 0.5, 0.5000001, 1.0), y=EVEN[1:]), "y", 0, "the first y is 0.25, not 0"),
+        (TableRise(x=EVEN, y=EVEN, file="a.csv"), "file", None, "the points are given twice"),
+        (TableRise(), "x", None, "no points are given"),
+        (TableRise(x=EVEN), "y", None, "no points are given"),
+        (TableRise(x=EVEN, y=EVEN[1:]), "y", None, "4 values for 5 places"),
+        (TableRise(x=(0.0, 1.0), y=(0.0, 1.0)), "x", None, "has 2 points"),
+        (TableRise(x=(0.1, 0.5, 1.0), y=(0.0, 0.5, 1.0)), "x", 0, "the first x is 0.1, not 0"),
+        (TableRise(x=(0.0, 0.5, 0.9), y=(0.0, 0.5, 1.0)), "x", 2, "the last x is 0.9, not 1"),
+        (TableRise(x=(0.0, 0.5, 1.0), y=(0.2, 0.5, 1.0)), "y", 0, "the first y is 0.2, not 0"),
+        (TableRise(x=(0.0, 0.5, 1.0), y=(0.0, 0.5, 2.0)), "y", 2, "the last y is 2, not 1"),
+        (TableRise(x=(0.0, 0.5, 0.5, 1.0), y=(0.0, 0.5, 0.6, 1.0)), "x", 2, "x does not rise"),
+        (TableRise(x=(0.0, 0.5, 0.5000001, 1.0), y=EVEN[1:]), "y", 0, "the first y is 0.25, not 0"),
     ],
 )
 def test_points_that_make_no_rise_are_told(
-    table: Table, field: str, index: int | None, message: str
+    table: TableRise, field: str, index: int | None, message: str
 ) -> None:
     assert told(table)[0][:3] == (field, index, message)
     where = f"motion.{field}" + ("" if index is None else f"[{index}]")
@@ -119,7 +120,7 @@ def test_points_that_make_no_rise_are_told(
 
 
 def test_typed_digits_of_the_corners_are_overlooked() -> None:
-    rise = Table(x=(0.0, 0.5, 1.0 - 1e-10), y=(1e-10, 0.4, 1.0)).build(DEFAULT)
+    rise = TableRise(x=(0.0, 0.5, 1.0 - 1e-10), y=(1e-10, 0.4, 1.0)).build(DEFAULT)
     assert float(rise.function(0.0)) == 0.0
     assert rise.function.knots[-1] == 1.0
 
@@ -141,18 +142,18 @@ def test_typed_digits_of_the_corners_are_overlooked() -> None:
 def test_files_that_hold_no_rise_are_told(tmp_path: Path, text: str, message: str) -> None:
     file = tmp_path / "points.csv"
     file.write_text(text)
-    field, index, found, _ = told(Table(file=str(file)))[0]
+    field, index, found, _ = told(TableRise(file=str(file)))[0]
     assert (field, index, found) == ("file", None, message)
     with pytest.raises(InfeasibleError, match=r"motion\.file"):
-        Table(file=str(file)).build(DEFAULT)
+        TableRise(file=str(file)).build(DEFAULT)
 
 
 def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
     with pytest.raises(ColumnsError, match="cannot be read: No such file"):
-        read_columns(str(tmp_path / "none.csv"), ("x", "y"))
+        read_rows(str(tmp_path / "none.csv"))
     (tmp_path / "picture.csv").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(ColumnsError, match="not a text file in UTF-8"):
-        read_columns(str(tmp_path / "picture.csv"), ("x", "y"))
+        read_rows(str(tmp_path / "picture.csv"))
 
 
 def test_a_formula_that_cannot_be_read_is_told() -> None:

@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 from mpmath import mp
 from numpy.typing import NDArray
 
+from claims.shown_rise import ShownRise, shown
 from gearcam.laws.rise_formula import FormulaRise
 from gearcam.laws.rise_pieces import from_both_ends, lag
-from gearcam.laws.rise_points import BSpline, Table
+from gearcam.laws.rise_points import BSplineRise, TableRise
 from gearcam.laws.rise_polynomials import (
     Polynomial,
     Polynomial23,
@@ -34,20 +35,15 @@ from gearcam.laws.rise_trapezoids import (
     TrapezoidalAcceleration,
     TrapezoidalVelocity,
 )
-from gearcam.laws.rises import ClosedForm, Rise
+from gearcam.laws.rises import ClosedForm
 from gearcam.numeric.jets import Jet, polynomial, sin
-from gearcam.tolerances import DEFAULT
 
 Array = NDArray[np.float64]
 Number = Any
 PHI = np.linspace(0.0, 1.0, 1001)
 
 
-def rise(parameters: Any) -> Rise:
-    return parameters.build(DEFAULT)
-
-
-def at(made: Rise, phi: float, order: int = 0) -> float:
+def at(made: ShownRise, phi: float, order: int = 0) -> float:
     return float(made.function.derivatives(phi, order)[order])
 
 
@@ -70,7 +66,7 @@ EXACT: dict[str, tuple[ClosedForm, Callable[[Number], Number]]] = {
 @pytest.mark.parametrize("name", EXACT)
 def test_all_digits_are_right_near_both_ends(name: str) -> None:
     parameters, formula = EXACT[name]
-    made = rise(parameters)
+    made = shown(parameters)
     places = [1e-9, 1e-6, 1e-3, 0.1, 0.35, 0.65, 0.9, 1 - 2**-10, 1 - 2**-20, 1 - 2**-30]
     with mp.workdps(60):
         for phi in places:
@@ -81,11 +77,11 @@ def test_all_digits_are_right_near_both_ends(name: str) -> None:
 
 def test_sectors_of_a_millionth_keep_their_digits() -> None:
     q = 1e-6
-    made = rise(SineTrapezoidalVelocity(q=q))
+    made = shown(SineTrapezoidalVelocity(q=q))
     assert at(made, q) == pytest.approx(q / (2 * (1 - q)), rel=1e-14)
     assert made.continuity == 2
     assert made.peak_acceleration == pytest.approx(math.pi / (2 * q * (1 - q)), rel=1e-12)
-    made = rise(Scca(b=q, c=1.0 - 2 * q, d=q))
+    made = shown(Scca(b=q, c=1.0 - 2 * q, d=q))
     assert made.continuity == 2
     assert made.peak_velocity == pytest.approx(2.0, rel=1e-12)
 
@@ -117,12 +113,14 @@ def test_pieces_can_be_put_into_other_functions() -> None:
 @pytest.mark.parametrize(
     ("parameters", "degree"),
     [
-        (Table(x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.05, 0.3, 0.25, 0.9, 1.0)), 5),
-        (BSpline(control=(0.0, 0.0, 0.2, 0.9, 0.4, 1.0, 1.0), degree=3), 3),
+        (TableRise(x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.05, 0.3, 0.25, 0.9, 1.0)), 5),
+        (BSplineRise(control=(0.0, 0.0, 0.2, 0.9, 0.4, 1.0, 1.0), degree=3), 3),
     ],
 )
-def test_all_pieces_at_once_are_those_one_by_one(parameters: Table | BSpline, degree: int) -> None:
-    made = rise(parameters).function
+def test_all_pieces_at_once_are_those_one_by_one(
+    parameters: TableRise | BSplineRise, degree: int
+) -> None:
+    made = shown(parameters).function
     order = 6
     for number, piece in enumerate(made.pieces):
         places = np.linspace(made.knots[number], made.knots[number + 1], 11)
@@ -183,7 +181,7 @@ ACCELERATIONS: dict[str, tuple[ClosedForm, Callable[[Number], Number], tuple[flo
 def test_laws_are_the_integrals_of_their_accelerations(name: str) -> None:
     """``S = integral of (phi - t)*a(t)``, over its value at phi = 1; nothing else is known."""
     parameters, shape, knots = ACCELERATIONS[name]
-    made = rise(parameters)
+    made = shown(parameters)
     breaks = [0.0, *knots, 0.5, *(1.0 - k for k in reversed(knots)), 1.0]
 
     def lift(phi: float, power: int) -> Number:
@@ -211,7 +209,7 @@ MEMBERS: dict[str, tuple[tuple[float, float, float], ClosedForm]] = {
 @pytest.mark.parametrize("name", MEMBERS)
 def test_known_laws_are_members_of_the_family(name: str) -> None:
     (b, c, d), other = MEMBERS[name]
-    member, own = rise(Scca(b=b, c=c, d=d)), rise(other)
+    member, own = shown(Scca(b=b, c=c, d=d)), shown(other)
     for order in range(4):
         inner = PHI[(PHI % 0.125) > 1e-9]
         found, expected = (v.function.derivatives(inner, 3)[order] for v in (member, own))
@@ -221,21 +219,21 @@ def test_known_laws_are_members_of_the_family(name: str) -> None:
 
 
 def test_typed_digits_of_the_widths_are_spread() -> None:
-    typed = rise(Scca(b=0.25 + 9e-10, c=0.5, d=0.25))
+    typed = shown(Scca(b=0.25 + 9e-10, c=0.5, d=0.25))
     assert at(typed, 0.5) == pytest.approx(0.5, abs=1e-15)
     assert typed.continuity == 2
 
 
 def test_sectors_without_a_width_make_no_piece() -> None:
     def count(b: float, c: float, d: float) -> int:
-        return len(rise(Scca(b=b, c=c, d=d)).function.pieces)
+        return len(shown(Scca(b=b, c=c, d=d)).function.pieces)
 
     assert count(0.2, 0.5, 0.3) == 5
     assert count(0.5, 0.0, 0.5) == 3
     assert count(0.0, 1.0, 0.0) == 2
     assert count(0.0, 0.0, 1.0) == 1
-    assert len(rise(TrapezoidalVelocity(q=0.5)).function.pieces) == 2
-    assert len(rise(TrapezoidalAcceleration(q=0.25)).function.pieces) == 3
+    assert len(shown(TrapezoidalVelocity(q=0.5)).function.pieces) == 2
+    assert len(shown(TrapezoidalAcceleration(q=0.25)).function.pieces) == 3
 
 
 # --- polynomials --------------------------------------------------------------------------------
@@ -252,7 +250,7 @@ def test_textbook_polynomials_have_their_whole_coefficients() -> None:
 
 def test_the_rise_return_goes_on_down_the_same_curve() -> None:
     """``phi^3*(2 - phi)^3`` over [0, 2]: the return is the rise run backwards."""
-    made = rise(Polynomial3456())
+    made = shown(Polynomial3456())
     assert made.mirrored
     phi = np.linspace(1.0, 2.0, 11)
     np.testing.assert_allclose(made.function(2.0 - phi), phi**3 * (2.0 - phi) ** 3, atol=1e-15)
@@ -264,7 +262,7 @@ CONDITIONS = st.lists(st.floats(-50.0, 50.0, allow_subnormal=False), max_size=8)
 @settings(max_examples=80, derandomize=True, database=None, deadline=None)
 @given(CONDITIONS, CONDITIONS)
 def test_polynomials_keep_any_conditions(start: list[float], end: list[float]) -> None:
-    made = rise(Polynomial(start=tuple(start), end=tuple(end)))
+    made = shown(Polynomial(start=tuple(start), end=tuple(end)))
     for knot, side, asked in ((0, 1, [0.0, *start]), (1, -1, [1.0, *end])):
         found = made.function.side(knot, side, 8)[: len(asked)]
         assert found == pytest.approx(asked, rel=1e-10, abs=1e-13)
@@ -285,7 +283,7 @@ def test_sectors_of_any_width_join(share: float, rest: float, which: int) -> Non
     widths = [share, (1.0 - share) * rest, (1.0 - share) * (1.0 - rest)]
     b, c, d = (0.0 if v < 1e-6 else v for v in widths[which:] + widths[:which])
     total = b + c + d
-    made = rise(Scca(b=b / total, c=c / total, d=d / total))
+    made = shown(Scca(b=b / total, c=c / total, d=d / total))
     assert at(made, 0.0) == 0.0
     assert at(made, 1.0) == 1.0
     assert made.continuity == (2 if b > 0.0 and d > 0.0 else 1)
@@ -303,7 +301,7 @@ def test_parts_of_any_width_join(q: float) -> None:
         (TrapezoidalAcceleration(q=0.25 * max(q, 4e-6)), 2, 2.0),
     ]
     for parameters, continuity, velocity in cases:
-        made = rise(parameters)
+        made = shown(parameters)
         assert at(made, 0.0) == 0.0
         assert at(made, 1.0) == 1.0
         assert made.continuity == continuity
@@ -329,7 +327,7 @@ def basis(knots: list[float], degree: int, index: int, x: float) -> float:
 @pytest.mark.parametrize("degree", [3, 4, 5])
 def test_b_splines_are_sums_of_their_basis(degree: int) -> None:
     control = (0.0, 0.0, 0.1, 0.7, -0.2, 0.4, 1.3, 1.0, 1.0)
-    made = rise(BSpline(control=control, degree=degree))
+    made = shown(BSplineRise(control=control, degree=degree))
     spans = len(control) - degree
     knots = [0.0] * degree + [k / spans for k in range(spans + 1)] + [1.0] * degree
     for phi in (0.0, 0.11, 0.3, 0.52, 0.77, 0.999):
@@ -340,7 +338,7 @@ def test_b_splines_are_sums_of_their_basis(degree: int) -> None:
 
 def test_a_table_is_the_spline_of_least_jerk() -> None:
     """Three points: 3-4-5 and a tenth of the even quintic bump that is 1 at the middle."""
-    made = rise(Table(x=(0.0, 0.5, 1.0), y=(0.0, 0.6, 1.0)))
+    made = shown(TableRise(x=(0.0, 0.5, 1.0), y=(0.0, 0.6, 1.0)))
     for phi in (0.1, 0.25, 0.4, 0.6, 0.9):
         u = 2.0 * min(phi, 1.0 - phi)
         bump = u**3 * (20.0 - 25.0 * u + 8.0 * u * u) / 3.0
@@ -351,7 +349,7 @@ def test_a_table_is_the_spline_of_least_jerk() -> None:
 def test_a_table_passes_its_points_with_four_derivatives_and_the_ends_given() -> None:
     x = (0.0, 0.03, 0.2, 0.25, 0.6, 0.61, 1.0)
     y = (0.0, 0.1, -0.2, 0.5, 1.4, 1.3, 1.0)
-    made = rise(Table(x=x, y=y, start=(0.5, -3.0), end=(2.0, 7.0)))
+    made = shown(TableRise(x=x, y=y, start=(0.5, -3.0), end=(2.0, 7.0)))
     np.testing.assert_allclose(made.function(x), y, atol=1e-14)
     assert made.start[:2] == pytest.approx((0.5, -3.0), rel=1e-13)
     assert made.end[:2] == pytest.approx((2.0, 7.0), rel=1e-13)
@@ -364,20 +362,20 @@ def test_a_table_passes_its_points_with_four_derivatives_and_the_ends_given() ->
 def test_a_table_in_a_file_is_the_same(tmp_path: Any) -> None:
     file = tmp_path / "rise.csv"
     file.write_text("# measured\nplace, y, x\n1, 0, 0\n\n2, 0.2, 0.4\n3, 0.9, 0.7\n4, 1, 1\n")
-    inline = rise(Table(x=(0.0, 0.4, 0.7, 1.0), y=(0.0, 0.2, 0.9, 1.0)))
-    read = rise(Table(file=str(file)))
+    inline = shown(TableRise(x=(0.0, 0.4, 0.7, 1.0), y=(0.0, 0.2, 0.9, 1.0)))
+    read = shown(TableRise(file=str(file)))
     np.testing.assert_array_equal(read.function(PHI), inline.function(PHI))
 
 
 def test_a_formula_with_typed_digits_meets_the_corners() -> None:
-    made = rise(FormulaRise(formula="0.5*(1 - cos(3.141592653*x)) + 1e-12"))
+    made = shown(FormulaRise(formula="0.5*(1 - cos(3.141592653*x)) + 1e-12"))
     assert at(made, 0.0) == 0.0
     assert at(made, 1.0) == 1.0
     assert at(made, 0.5, 1) == pytest.approx(math.pi / 2, abs=1e-8)
 
 
 def test_peaks_between_coarse_samples_are_found() -> None:
-    steep = rise(FormulaRise(formula="(1 + tanh(2000*(x - 0.3137)))/2"))
+    steep = shown(FormulaRise(formula="(1 + tanh(2000*(x - 0.3137)))/2"))
     assert steep.peak_velocity == pytest.approx(1000.0, rel=1e-12)
     assert steep.peak_acceleration == pytest.approx(8e6 / (3 * math.sqrt(3)), rel=1e-12)
     assert steep.peak_jerk == pytest.approx(8e9, rel=1e-12)
@@ -385,6 +383,6 @@ def test_peaks_between_coarse_samples_are_found() -> None:
 
 @pytest.mark.parametrize("formula", ["x", "sqrt(1 + x)**2 - 1", "x + 0*sin(9*x)"])
 def test_a_line_in_disguise_is_smooth(formula: str) -> None:
-    made = rise(FormulaRise(formula=formula))
+    made = shown(FormulaRise(formula=formula))
     assert made.continuity == 0
     assert made.peak_velocity == pytest.approx(1.0, abs=1e-14)

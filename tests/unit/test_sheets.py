@@ -8,22 +8,21 @@ import numpy as np
 import pytest
 
 from gearcam.drawings import OUTLINE, Drawing, Feature, pair_drawing, placed
-from gearcam.parts.part import Mark, Opening, Part
+from gearcam.numerals import decimal
+from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.sheets import (
+from gearcam.sheets import pair_sheet, wheel_sheet
+from gearcam.sheets.board import Board
+from gearcam.sheets.paper import Format, area_of, choose
+from gearcam.sheets.sheet import (
     LinearDimension,
     RoundDimension,
     Sheet,
     Text,
-    number,
-    pair_sheet,
-    strokes,
+    as_drawn,
+    fine,
     text_box,
-    wheel_sheet,
 )
-from gearcam.sheets.board import Board
-from gearcam.sheets.paper import Format, area_of, choose
-from gearcam.sheets.sheet import fine
 from helpers_contour import disc_contour, gear_contour, square_contour
 
 
@@ -41,7 +40,7 @@ def hole(x: float, y: float, diameter: float) -> Opening:
     [(180.0, "180"), (0.5, "0.5"), (1.23456, "1.235"), (-0.0001, "0"), (100.0, "100")],
 )
 def test_numbers_have_no_idle_digits(value: float, text: str) -> None:
-    assert number(value) == text
+    assert decimal(value) == text
 
 
 def test_tolerances_are_never_rounded_to_nothing() -> None:
@@ -171,7 +170,7 @@ def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
     board = Board(scale=1.0, area=area)
     board.linear((0.0, 0.0), (2.0, 0.0), -10.0)
     board.linear((0.0, 0.0), (40.0, 0.0), -20.0)
-    narrow, wide = (strokes(one, 1.0) for one in board.dimensions)
+    narrow, wide = (as_drawn(one, 1.0) for one in board.dimensions)
     assert text_box(narrow.text, 1.0)[0][0] > 2.0
     assert narrow.heads[0][1, 0] < 0.0
     assert wide.text.place == pytest.approx([20.0, -20.0 + 0.8])
@@ -187,7 +186,7 @@ def test_dimensions_know_their_values() -> None:
     ring = RoundDimension(center=at, radius=2.5, angle=math.pi / 2, suffix=" max")
     assert (ring.value, ring.label) == (5.0, "Ø5 max")
     assert ring.edge == pytest.approx([3.0, 6.5])
-    inside = strokes(ring, 1.0)
+    inside = as_drawn(ring, 1.0)
     assert len(inside.heads) == 2
     assert inside.lines[0] == pytest.approx(np.array([[3.0, 1.5], [3.0, 6.5]]))
 

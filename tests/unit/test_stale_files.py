@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import gearcam
+from gearcam import build
 from gearcam.cli import main
-from gearcam.design import GearPairDesign, hash_of, loads
+from gearcam.designs import hash_of, loads
 from gearcam.errors import InfeasibleError
-from gearcam.jobs import make_job
+from gearcam.kinds.gear_pair.design import GearPairDesign
 
 PAIR = """
 kind = "gear-pair"
@@ -93,7 +95,7 @@ MEANS_ANOTHER = {
     "module": ("module_mm = 2\n", "module_mm = 2.0000000000000004\n"),
     "rack": ("pressure_angle_deg = 20", "pressure_angle_deg = 20.00000001"),
     "blank": ("[rack]", "[blank]\nbore_diameter_mm = [0, 8]\n[rack]"),
-    "helix": ("[rack]", "[helix]\nsteps = 2\n[rack]"),
+    "steps": ("[rack]", "[steps]\ncount = 2\n[rack]"),
     "tolerance": ("chord_tolerance_mm = 0.01", "chord_tolerance_mm = 0.02"),
     "curves": ("chord_tolerance_mm = 0.01", 'dxf_curves = "lines"'),
 }
@@ -153,11 +155,12 @@ def test_a_table_counts_by_its_rows_not_by_its_place(tmp_path: Path) -> None:
 def test_files_are_told_by_the_table_that_their_law_has_read(tmp_path: Path) -> None:
     design = with_table(tmp_path, TABLE)
     before = hash_of(design)
-    job = make_job(design)
+    job = build(design)
     assert job.law is not None  # type: ignore[union-attr]
     (tmp_path / "points.csv").write_text(TABLE.replace("1.1", "1.2"), encoding="utf-8")
-    assert job.write(tmp_path, files=["csv"]).summary["design"] == before
-    assert set(make_job(design).check(tmp_path).summary["stale"].values()) == {before}
+    assert job.write(tmp_path, files=["csv"]).summary["hash"] == before
+    again = gearcam.load(tmp_path / "sample.toml")
+    assert set(build(again).check(tmp_path).summary["stale"].values()) == {before}
 
 
 def test_a_cam_is_told_by_the_points_that_its_rise_has_read(tmp_path: Path) -> None:
@@ -168,15 +171,19 @@ def test_a_cam_is_told_by_the_points_that_its_rise_has_read(tmp_path: Path) -> N
     (tmp_path / "rise.csv").write_text(points, encoding="utf-8")
     design = gearcam.load(file)
     before = hash_of(design)
-    job = make_job(design)
+    job = build(design)
     assert job.program is not None  # type: ignore[union-attr]
     (tmp_path / "rise.csv").write_text(points.replace("0.35", "0.36"), encoding="utf-8")
-    assert job.check(tmp_path).summary["design"] == before != hash_of(design)
+    assert job.check(tmp_path).summary["hash"] == before != hash_of(gearcam.load(file))
 
 
 def test_a_table_that_is_gone_is_named(tmp_path: Path) -> None:
     design = with_table(tmp_path, TABLE)
+    before = hash_of(design)
+    unread = replace(design, law=replace(design.law))
     (tmp_path / "points.csv").unlink()
+    assert hash_of(design) == before
+    design = unread
     with pytest.raises(InfeasibleError, match=r"cannot be read.*points\.csv"):
         hash_of(design)
 
@@ -199,7 +206,7 @@ class Desk:
     def run(self, command: str, *options: str) -> dict[str, Any]:
         assert main([command, str(self.file), *options, "-o", str(self.out)]) == 0
         found = json.loads((self.folder / "summary.json").read_text("utf-8"))
-        assert found["design"] == design_hash(self.text)
+        assert found["hash"] == design_hash(self.text)
         there = {place.name for place in self.folder.iterdir()} - {"summary.json", "mine.txt"}
         assert {*found["files"], *found.get("stale", {})} == there
         return found
@@ -238,16 +245,16 @@ def test_a_check_names_the_files_of_another_state(
 
 def test_a_study_is_new_and_the_build_stale_and_later_the_study_too(tmp_path: Path) -> None:
     desk = Desk(tmp_path, PAIR)
-    first = desk.run("build", "--only", "csv")["design"]
+    first = desk.run("build", "--only", "csv")["hash"]
     desk.edit("eccentricity = 0.2", "eccentricity = 0.21")
     meshed = desk.run("mesh")
-    assert meshed["files"] == {"meshing.csv": meshed["design"]}
+    assert meshed["files"] == {"meshing.csv": meshed["hash"]}
     assert meshed["stale"] == dict.fromkeys(OUTLINES, first)
     desk.edit("eccentricity = 0.21", "eccentricity = 0.22")
-    stale = {**dict.fromkeys(OUTLINES, first), "meshing.csv": meshed["design"]}
+    stale = {**dict.fromkeys(OUTLINES, first), "meshing.csv": meshed["hash"]}
     assert desk.run("check")["stale"] == stale
     again = desk.run("mesh")
-    assert again["files"] == {"meshing.csv": again["design"]}
+    assert again["files"] == {"meshing.csv": again["hash"]}
     assert again["stale"] == dict.fromkeys(OUTLINES, first)
     built = desk.run("build", "--only", "csv")
     assert "stale" not in built
@@ -261,7 +268,7 @@ def test_a_followed_profile_is_new_and_the_cam_stale(tmp_path: Path) -> None:
     profile.write_bytes((desk.folder / "profile.csv").read_bytes())
     desk.edit("prime_radius_mm = 40", "prime_radius_mm = 41")
     followed = desk.run("follow", str(profile))
-    assert followed["files"] == {"followed.csv": followed["design"]}
+    assert followed["files"] == {"followed.csv": followed["hash"]}
     assert followed["stale"] == first["files"]
 
 

@@ -18,11 +18,14 @@ from typing import Final
 
 from gearcam.quantities import LENGTH, TEXT, param
 
-KIND: Final = "cam"
-"""The kind of design, and that of its checks."""
+KIND: Final = "cams"
+"""The checks of cams."""
 
 Problem = tuple[str, int | None, str, str]
 """Field, number of an item, what is wrong, what is allowed."""
+
+POINTED: Final = ("knife-edge", "point")
+"""Two words for a follower without a radius."""
 
 _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
 """The sizes of round followers."""
@@ -33,7 +36,9 @@ class FollowerSpec:
     """A follower: what touches the cam, and how it is guided."""
 
     type: str = param(
-        TEXT, choices=("point", "roller", "flat", "domed"), doc="what touches the cam"
+        TEXT,
+        choices=(*POINTED, "roller", "flat", "domed"),
+        doc="what touches the cam; a knife edge is a point",
     )
     motion: str = param(
         TEXT, default="translating", choices=("translating", "oscillating"), doc="how it moves"

@@ -20,9 +20,21 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import INNER, LABEL, MARK, OUTER, Circle, Drawing, Feature, Loop, Path, reach
+from gearcam.drawings import (
+    LABEL,
+    MARK,
+    OUTER,
+    THROUGH,
+    Circle,
+    Drawing,
+    Feature,
+    Loop,
+    Path,
+    reach,
+)
 from gearcam.export.dxf import CURVE_PART
-from gearcam.export.svg import arc_data, number
+from gearcam.export.svg import arc_data
+from gearcam.numerals import decimal, shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
 
@@ -39,7 +51,7 @@ MARGIN: Final = 1.0
 
 GROUPS: Final = (
     ("engrave", (MARK, LABEL), ENGRAVED),
-    ("cut-inner", INNER, CUT),
+    ("cut-inner", THROUGH, CUT),
     ("cut-outer", OUTER, CUT),
 )
 """What is drawn, in this order: name, kinds, colour."""
@@ -71,16 +83,16 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
         If there is nothing to cut.
     """
     features = [feature for drawing in drawings for feature in drawing.features]
-    shown = [one for one in features if any(one.kind in kinds for _, kinds, _ in GROUPS)]
-    if not any(one.kind in OUTER for one in shown):
+    kept = [one for one in features if any(one.kind in kinds for _, kinds, _ in GROUPS)]
+    if not any(one.kind in OUTER for one in kept):
         raise ValueError(f"{title}: nothing to cut")
     tolerance = min(one.tolerance for drawing in drawings for one in drawing.contours)
     decimals = max(4, math.ceil(-math.log10(_FINER * tolerance)))
-    corners = np.vstack([reach(one.shape) for one in shown])
+    corners = np.vstack([reach(one.shape) for one in kept])
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
-    wide, tall = (number(float(size)) for size in np.ceil((high - low) * 1e4) / 1e4)
+    wide, tall = (decimal(float(size), 4) for size in np.ceil((high - low) * 1e4) / 1e4)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
-    told = f"; the paths are moved by half a kerf of {kerf:.6g} mm" if kerf else ""
+    told = f"; the paths are moved by half a kerf of {shown(kerf)} mm" if kerf else ""
     # of the paths y = 0 is the sheet's upper edge
     shift = complex(-float(low[0]), -float(high[1]))
     lines = [
@@ -88,15 +100,15 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
         f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
         f"<title>{escape(title)}</title>",
         f"<desc>1:1 in mm: engrave what is blue, then cut what is red{told}</desc>",
-        *_groups(shown, shift, decimals),
+        *_groups(kept, shift, decimals),
         "</svg>",
     ]
     return ("\n".join(lines) + "\n").encode()
 
 
-def _groups(shown: Sequence[Feature], shift: complex, decimals: int) -> Iterator[str]:
+def _groups(kept: Sequence[Feature], shift: complex, decimals: int) -> Iterator[str]:
     for name, kinds, colour in GROUPS:
-        inside = [one for one in shown if one.kind in kinds]
+        inside = [one for one in kept if one.kind in kinds]
         if inside:
             yield f'<g id="{name}" fill="none" stroke="{colour}" stroke-width="{HAIRLINE}">'
             for one in inside:
@@ -118,7 +130,7 @@ def _data(feature: Feature, shift: complex, decimals: int) -> str:
         case Loop(vertices=vertices, bulges=bulges):
             return arc_data(vertices + by, bulges, decimals)
         case Path(points=points):
-            steps = (f"{number(x, decimals)} {number(-y, decimals)}" for x, y in points + by)
+            steps = (f"{decimal(x, decimals)} {decimal(-y, decimals)}" for x, y in points + by)
             return f"M{'L'.join(steps)}"
         case shape:
             raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")

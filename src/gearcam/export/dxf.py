@@ -13,7 +13,7 @@ Depends on drawings and numeric; ezdxf only inside the functions.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -25,8 +25,10 @@ from gearcam.drawings import (
     BORE,
     CENTER,
     CENTRODE,
+    DASHED,
     FOLLOWER,
     HOLE,
+    INNER,
     MARK,
     OUTLINE,
     PITCH,
@@ -42,6 +44,7 @@ from gearcam.drawings import (
     Shape,
     reach,
 )
+from gearcam.numerals import shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.splines import DEGREE, fit_spline
@@ -63,23 +66,10 @@ CURVE_PART: Final = 0.96
 dense points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
 
 COLORS: Final = {
-    OUTLINE: 7,
-    BORE: 5,
-    HOLE: 4,
-    SLOT: 6,
-    MARK: 1,
-    CENTRODE: 3,
-    CENTER: 8,
-    PROFILE: 7,
-    PITCH: 3,
-    PRIME: 8,
-    FOLLOWER: 8,
-    TOOL: 1,
-}
+    OUTLINE: 7, BORE: 5, HOLE: 4, SLOT: 6, INNER: 7, MARK: 1, CENTRODE: 3, CENTER: 8, PROFILE: 7,
+    PITCH: 3, PRIME: 8, FOLLOWER: 8, TOOL: 1,
+}  # fmt: skip
 """Colour numbers: 7 black or white, blue, cyan, magenta, red, green, 8 grey."""
-
-DASHED: Final = (CENTRODE, PITCH, PRIME)
-"""Kinds that are drawn dashed."""
 
 MILLIMETRES: Final = 4
 """$INSUNITS."""
@@ -130,23 +120,42 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     bytes
         The file, UTF-8; the same for the same drawing.
     """
+    text = document_text(style.version, lambda document: _fill(document, drawing, style))
+    return text.encode("utf-8")
+
+
+def document_text(version: str, fill: Callable[[Document], None]) -> str:
+    """Return the text of a DXF file in millimetres.
+
+    Parameters
+    ----------
+    version : {"R2010", "R12"}
+        Of the format.
+    fill : callable
+        Puts into the new document what it shall hold.
+
+    Returns
+    -------
+    str
+        Without dates: the same for the same content.
+    """
     from ezdxf.filemanagement import new
 
-    with fixed_dates():
-        document = new(style.version, units=MILLIMETRES)
-        document.linetypes.add("DASHED", [3.0, 2.0, -1.0], description="_ _ _ _ _")
-        _fill(document, drawing, style)
+    with _fixed_dates():
+        document = new(version, units=MILLIMETRES)
+        fill(document)
         # The library would register these classes in the order of a set, which changes from run to
         # run.
         for kind in sorted(document.entitydb.dxf_types_in_use()):
             document.classes.add_class(kind)
         stream = io.StringIO()
         document.write(stream)
-    return stream.getvalue().encode("utf-8")
+    return stream.getvalue()
 
 
 def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
     """Make the layers and put each feature on its own."""
+    document.linetypes.add("DASHED", [3.0, 2.0, -1.0], description="_ _ _ _ _")
     for feature in drawing.features:
         if feature.layer not in document.layers:
             dashed = "DASHED" if feature.kind in DASHED else "Continuous"
@@ -223,7 +232,7 @@ def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]
         poles = spline.poles.copy()
         gap = float(np.hypot(*(poles[-1] - following.poles[0])))
         if gap > style.tolerance:
-            raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
+            raise ValueError(f"runs do not join: a gap of {shown(gap, 3)} mm")
         poles[-1] = following.poles[0]
         yield poles, spline.knots
 
@@ -243,7 +252,7 @@ def _bounds(drawing: Drawing) -> tuple[tuple[float, float], tuple[float, float]]
 
 
 @contextmanager
-def fixed_dates() -> Iterator[None]:
+def _fixed_dates() -> Iterator[None]:
     """Keep dates and random identifiers out of the file; the library's option is process-wide."""
     import ezdxf
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import INNER, LABEL, MARK, OUTER, Drawing, Feature, Path, place, reach
+from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, place, reach
 from gearcam.export.lettering import strokes, text_width
 
 if TYPE_CHECKING:
@@ -70,10 +70,10 @@ def _roomiest(drawing: Drawing) -> tuple[tuple[float, float], float]:
 
     def points(feature: Feature) -> Array:
         shape: Any = feature.shape
-        return shape.vertices if hasattr(shape, "tolerance") else shape.points(_SAGITTA)
+        return shape.points(_SAGITTA)
 
     (outer,) = (points(one) for one in drawing.features if one.kind in OUTER)
-    inner = [points(one) for one in drawing.features if one.kind in (*INNER, MARK)]
+    inner = [points(one) for one in drawing.features if one.kind in (*THROUGH, MARK)]
     free: Any = Polygon(outer, inner).simplify(_COARSE)
     spoke: Any = maximum_inscribed_circle(free, tolerance=_COARSE)
     (x, y), _ = spoke.coords

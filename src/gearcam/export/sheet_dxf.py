@@ -11,28 +11,33 @@ Depends on sheets, drawings and export.dxf; ezdxf only inside the functions.
 
 from __future__ import annotations
 
-import io
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.drawings import BORE, HOLE, OUTLINE, SLOT
+from gearcam.drawings import DASHED, OUTLINE, THROUGH
 from gearcam.export import dxf
-from gearcam.export.dxf import COLORS, DASHED, MILLIMETRES, DxfStyle
-from gearcam.sheets import (
+from gearcam.export.dxf import COLORS, DxfStyle
+from gearcam.sheets.sheet import (
+    ARROW,
     CENTERLINE,
     DIMENSION,
     EDGE,
     FRAME,
+    GAP,
+    GLYPH,
+    HEIGHT,
     HIDDEN,
+    LEAST_GAP,
+    PAST,
     TEXT,
+    Dimension,
+    DrawnDimension,
     LinearDimension,
     RoundDimension,
     Sheet,
-    Strokes,
     Text,
-    strokes,
+    as_drawn,
 )
-from gearcam.sheets.sheet import ARROW, GAP, GLYPH, HEIGHT, LEAST_GAP, PAST, Dimension
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -47,7 +52,7 @@ LINETYPES: Final = {
 }
 """Lengths of the pattern, its dashes and gaps, mm of paper."""
 
-HEAVY: Final = (OUTLINE, BORE, HOLE, SLOT, EDGE)
+HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
 """Kinds that are drawn thick."""
 
 THICK: Final = 50
@@ -73,32 +78,25 @@ def sheet_dxf(sheet: Sheet, style: DxfStyle) -> bytes:
     bytes
         The file, UTF-8, of R12 ASCII; the same for the same sheet.
     """
-    from ezdxf.filemanagement import new
 
-    with dxf.fixed_dates():
-        document = new(style.version, units=MILLIMETRES)
+    def fill(document: Document) -> None:
         _prepare(document, sheet, style)
         space = document.modelspace()
         for feature in sheet.features:
             dxf.add_shape(space, feature.shape, {"layer": feature.layer}, style)
         for dimension in sheet.dimensions:
             if style.version == "R12":
-                _exploded(space, sheet, strokes(dimension, sheet.unit))
+                _exploded(space, sheet, as_drawn(dimension, sheet.unit))
             else:
                 _measured(space, dimension)
         for text in sheet.texts:
             _text(space, sheet, text, TEXT)
-        # The library would register these classes in the order of a set, which changes from run to
-        # run.
-        for kind in sorted(document.entitydb.dxf_types_in_use()):
-            document.classes.add_class(kind)
-        stream = io.StringIO()
-        document.write(stream)
+
+    text = dxf.document_text(style.version, fill)
     if style.version == "R12":
         # Old readers know one code page only: other letters are written as the format's escapes.
-        written = (char if char.isascii() else f"\\U+{ord(char):04X}" for char in stream.getvalue())
-        return "".join(written).encode("ascii")
-    return stream.getvalue().encode("utf-8")
+        text = "".join(char if char.isascii() else f"\\U+{ord(char):04X}" for char in text)
+    return text.encode("utf-8")
 
 
 def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
@@ -169,7 +167,7 @@ def _round(space: Modelspace, dimension: RoundDimension, rest: dict[str, Any]) -
     return add(**circle, **rest)
 
 
-def _exploded(space: Modelspace, sheet: Sheet, drawn: Strokes) -> None:
+def _exploded(space: Modelspace, sheet: Sheet, drawn: DrawnDimension) -> None:
     """Add a dimension as lines, solid arrow heads and a text."""
     there = {"layer": DIMENSION}
     for line in drawn.lines:

@@ -15,9 +15,9 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import BORE, CENTRODE, HOLE, OUTLINE, SLOT, Circle, Cross, Feature, Loop, Path
-from gearcam.numeric.contour import Contour
-from gearcam.sheets import CENTERLINE, EDGE, HIDDEN, Sheet, Strokes, Text
+from gearcam.drawings import CENTRODE, OUTLINE, THROUGH, Circle, Feature, chains
+from gearcam.numerals import decimal
+from gearcam.sheets.sheet import CENTERLINE, EDGE, HIDDEN, DrawnDimension, Sheet, Text
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ THICK: Final = 0.5
 THIN: Final = 0.25
 """Line widths, mm."""
 
-HEAVY: Final = (OUTLINE, BORE, HOLE, SLOT, EDGE)
+HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
 """Kinds that are drawn thick."""
 
 DASHES: Final = {HIDDEN: "3 1.5", CENTRODE: "4 1.5", CENTERLINE: "8 1.5 1 1.5"}
@@ -42,7 +42,7 @@ SAGITTA: Final = 0.005
 
 def sheet_svg(sheet: Sheet) -> bytes:
     """Write a `sheet` as SVG, UTF-8; the same sheet gives the same bytes."""
-    wide, tall = (_number(value) for value in sheet.size)
+    wide, tall = (decimal(value) for value in sheet.size)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
     font = f'font-family="sans-serif" fill="{INK}"'
     lines = [
@@ -83,34 +83,24 @@ def _feature(sheet: Sheet, feature: Feature) -> str:
     style += f' stroke-width="{width}"'
     if kind in DASHES:
         style += f' stroke-dasharray="{DASHES[kind]}"'
-    shape = feature.shape
-    match shape:
-        case Circle(center=center, diameter=diameter):
-            ((x, y),) = _on_page(sheet, center[None, :])
-            radius = _number(0.5 * diameter * sheet.scale)
-            return f'<circle {style} cx="{_number(x)}" cy="{_number(y)}" r="{radius}"/>'
-        case Cross(center=center, size=size):
-            flat = np.array([[-0.5 * size, 0.0], [0.5 * size, 0.0]])
-            arms = [_data(sheet, center + arm, closed=False) for arm in (flat, flat[:, ::-1])]
-            return f'<path {style} d="{"".join(arms)}"/>'
-        case Path(points=points, closed=closed):
-            return f'<path {style} d="{_data(sheet, points, closed=closed)}"/>'
-        case Contour(vertices=points):
-            return f'<path {style} d="{_data(sheet, points, closed=True)}"/>'
-        case Loop():
-            points = shape.points(SAGITTA / sheet.scale)
-            return f'<path {style} d="{_data(sheet, points, closed=True)}"/>'
+    if isinstance(circle := feature.shape, Circle):
+        ((x, y),) = _on_page(sheet, circle.center[None, :])
+        radius = decimal(0.5 * circle.diameter * sheet.scale)
+        return f'<circle {style} cx="{decimal(x)}" cy="{decimal(y)}" r="{radius}"/>'
+    drawn = chains(feature.shape, SAGITTA / sheet.scale)
+    data = "".join(_data(sheet, points, closed=closed) for points, closed in drawn)
+    return f'<path {style} d="{data}"/>'
 
 
 def _data(sheet: Sheet, points: Array, *, closed: bool) -> str:
     """Path data; neighbours that fall together are written once."""
     page = np.round(_on_page(sheet, points), 2)
     kept = np.append(True, (np.diff(page, axis=0) != 0.0).any(axis=1))
-    steps = " ".join(f"{_number(x)} {_number(y)}" for x, y in page[kept].tolist())
+    steps = " ".join(f"{decimal(x)} {decimal(y)}" for x, y in page[kept].tolist())
     return f"M{steps}" + ("Z" if closed else "")
 
 
-def _dimension(sheet: Sheet, one: Strokes) -> str:
+def _dimension(sheet: Sheet, one: DrawnDimension) -> str:
     data = "".join(_data(sheet, line, closed=False) for line in one.lines)
     return f'<path class="dimension" d="{data}"/>'
 
@@ -121,13 +111,7 @@ def _head(sheet: Sheet, head: Array) -> str:
 
 def _text(sheet: Sheet, text: Text, name: str) -> str:
     ((x, y),) = _on_page(sheet, text.place[None, :])
-    place = f'x="{_number(x)}" y="{_number(y)}"'
-    size = f'font-size="{_number(text.height / CAPITAL)}" text-anchor="{text.anchor}"'
-    turn = f' transform="rotate(-90 {_number(x)} {_number(y)})"' if text.upright else ""
+    place = f'x="{decimal(x)}" y="{decimal(y)}"'
+    size = f'font-size="{decimal(text.height / CAPITAL)}" text-anchor="{text.anchor}"'
+    turn = f' transform="rotate(-90 {decimal(x)} {decimal(y)})"' if text.upright else ""
     return f'<text class="{name}" {place} {size}{turn}>{escape(text.text)}</text>'
-
-
-def _number(value: float) -> str:
-    """Three decimals, no idle zeros."""
-    text = f"{value:.3f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import MissingExtraError
 from gearcam.export.step_shapes import occt, properties, solids_of, subshapes
-from gearcam.parts.part import Part
+from gearcam.parts.body import Part
 from gearcam.solids import SolidError
 
 DATE: Final = "1970-01-01T00:00:00"

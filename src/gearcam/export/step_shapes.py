@@ -23,10 +23,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearcam.numerals import shown
 from gearcam.numeric.bulges import as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
-from gearcam.parts.part import Part
+from gearcam.parts.body import Edge, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.solids import OVERSHOOT, SolidError
 
@@ -91,7 +92,7 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
         If one comes out empty, in pieces or invalid, or their volume is not that of the part.
     """
     try:
-        made = [_step(part, number, tolerance) for number in range(len(part.contours))]
+        made = [_step(part, number, tolerance) for number in range(len(part.steps))]
     except SolidError as error:
         raise SolidError(f"{part.name}: {error}") from error
     except Exception as error:
@@ -105,8 +106,8 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
     allowed = VOLUME_ERROR * part.volume + _explained(part, tolerance)
     if missed > allowed:
         raise SolidError(
-            f"{part.name}: the solid's volume is {missed:.3g} mm3 off,"
-            f" {allowed:.3g} mm3 is explained"
+            f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
+            f" {shown(allowed, 3)} mm3 is explained"
         )
     return made
 
@@ -140,46 +141,35 @@ def subshapes(shape: Any, kind: str) -> list[Any]:
 
 def _explained(part: Part, tolerance: float) -> float:
     """Return the volume between the true outlines and curves within the tolerance, mm^3."""
-    total = 0.0
-    for contour, low, high in part.plates:
-        steps = np.diff(contour.vertices, axis=0, append=contour.vertices[:1])
-        total += float(np.hypot(*steps.T).sum()) * tolerance * (high - low)
-    return total
+    return sum(
+        edge.length * tolerance * layer.height
+        for layer in part.steps
+        for edge in (layer.edge, *(opening.shape for opening in layer.openings))
+        if isinstance(edge, Contour)
+    )
 
 
 def _step(part: Part, number: int, tolerance: float) -> Any:
     """Return the solid of a step: its plate, with what of the hub stands on it."""
-    contour, low, high = list(part.plates)[number]
-    lowest, topmost = number == 0, number == len(part.contours) - 1
-    hubs = [
-        _prism(_round(0j, part.hub.diameter), [], bottom, top)
-        for bottom, top in part.bosses
-        if part.hub is not None and (lowest if bottom < 0.0 else topmost)
-    ]
+    step = part.steps[number]
+    lowest, topmost = number == 0, number == len(part.steps) - 1
+    bosses = [boss for boss in part.bosses if (lowest if boss.low < 0.0 else topmost)]
     # what goes through a hub is cut at last: its face must not end where the plate does
-    late = part.in_hub if hubs else ()
-    holes = [_opening(o.shape) for o in part.openings if o not in late]
-    body = _prism(_outline(contour, tolerance), holes, low, high)
-    if hubs:
+    late = bosses[0].openings if bosses else ()
+    holes = [_pieces(o.shape, tolerance) for o in step.openings if o not in late]
+    body = _prism(_pieces(step.edge, tolerance), holes, step.low, step.high)
+    if bosses:
+        hubs = [_prism(_pieces(boss.edge, tolerance), [], boss.low, boss.high) for boss in bosses]
         body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
-    cutters = [_cutter(part, opening.shape) for opening in late]
+    low = min(layer.low for layer in part.layers) - CLEARANCE
+    high = max(layer.high for layer in part.layers) + CLEARANCE
+    cutters = [_prism(_pieces(opening.shape, tolerance), [], low, high) for opening in late]
     if topmost:
         cutters += [
-            _prism(
-                _round(complex(*mark.center), mark.diameter),
-                [],
-                part.width - mark.depth,
-                part.width + OVERSHOOT * mark.depth,
-            )
-            for mark in part.marks
+            _prism(_pieces(one.edge, tolerance), [], one.low, one.high + OVERSHOOT * one.height)
+            for one in part.pockets
         ]
     return _combined(occt.BRepAlgoAPI_Cut(), body, cutters) if cutters else body
-
-
-def _cutter(part: Part, shape: Circle | Loop) -> Any:
-    """Return what takes an opening out of a plate and its hubs."""
-    ends = [0.0, part.width, *(end for boss in part.bosses for end in boss)]
-    return _prism(_opening(shape), [], min(ends) - CLEARANCE, max(ends) + CLEARANCE)
 
 
 def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
@@ -295,11 +285,16 @@ def _line(start: complex, end: complex) -> _Piece:
     return _Piece(curve=curve, first=0.0, last=abs(way), start=start)
 
 
-def _opening(shape: Circle | Loop) -> list[_Piece]:
-    """Return the exact edge of an opening."""
-    if isinstance(shape, Circle):
-        return _round(complex(*shape.center), shape.diameter)
-    return list(_loop(shape))
+def _pieces(edge: Edge, tolerance: float) -> list[_Piece]:
+    """Return the curves of an edge: exact ones, or those of a contour within the tolerance."""
+    match edge:
+        case Circle(center=center, diameter=diameter):
+            centre = complex(*center)
+            return [_circle(centre, centre + 0.5 * diameter, 2.0 * math.pi)]
+        case Loop():
+            return list(_loop(edge))
+        case Contour():
+            return _outline(edge, tolerance)
 
 
 def _loop(shape: Loop) -> Iterator[_Piece]:
@@ -314,10 +309,6 @@ def _loop(shape: Loop) -> Iterator[_Piece]:
         else:
             centre = start + 0.5 * chord * (1.0 + 1j / math.tan(half))
             yield _circle(complex(centre), complex(start), 2.0 * half)
-
-
-def _round(centre: complex, diameter: float) -> list[_Piece]:
-    return [_circle(centre, centre + 0.5 * diameter, 2.0 * math.pi)]
 
 
 def _circle(centre: complex, start: complex, sweep: float) -> _Piece:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
@@ -19,21 +20,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import (
-    CENTRODE,
+    DASHED,
     FOLLOWER,
     MARK,
-    PITCH,
-    PRIME,
+    OUTLINE,
+    PROFILE,
     Circle,
     Cross,
     Drawing,
     Feature,
     Loop,
     Path,
+    chains,
     reach,
 )
+from gearcam.numerals import decimal, shown
 from gearcam.numeric.bulges import as_complex
-from gearcam.numeric.contour import Contour
 
 Array = NDArray[np.float64]
 
@@ -52,9 +54,12 @@ INKS: Final = ("#27598c", "#a35f22")
 
 CENTRODE_INK: Final = "#5a5a5a"
 TEXT_INK: Final = "#222222"
+GROUND: Final = "#ffffff"
 
 DECIMALS: Final = 4
 """Of the picture's numbers."""
+
+_number: Final = partial(decimal, decimals=DECIMALS)
 
 _ROUNDING: Final = 1e-12
 
@@ -96,18 +101,18 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     left, top = float(low[0]) - margin, -float(high[1]) - margin
     whole = width + 2 * margin
     tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
-    box = " ".join(number(value) for value in (left, top, whole, tall))
+    box = " ".join(_number(value) for value in (left, top, whole, tall))
     base = -float(low[1]) + margin + size
-    ground = f'x="{number(left)}" y="{number(top)}"'
-    ground += f' width="{number(whole)}" height="{number(tall)}" fill="#ffffff"'
+    ground = f'x="{_number(left)}" y="{_number(top)}"'
+    ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="{GROUND}"'
     sheet = f'viewBox="{box}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
     elements = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<svg xmlns="http://www.w3.org/2000/svg" {sheet} role="img">',
         f"<title>{escape(title)}</title>",
         f"<rect {ground}/>",
-        f'<g stroke-linejoin="round" stroke-width="{number(1.2 * pixel)}">',
-        *(line for feature in drawing.features for line in _element(feature, pixel)),
+        f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
+        *(_element(feature, pixel) for feature in drawing.features),
         "</g>",
         *_caption(lines, float(low[0]), base, size),
         "</svg>",
@@ -118,8 +123,8 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
 def pair_notes(center_distance: float, module: float, teeth: tuple[int, int]) -> tuple[str, ...]:
     """Return the caption's facts: `center_distance` (0 on a rack) and `module` in mm, `teeth`."""
     return (
-        f"centre distance {center_distance:.6g} mm" if center_distance else "wheel and rack",
-        f"module {module:.6g} mm",
+        f"centre distance {shown(center_distance)} mm" if center_distance else "wheel and rack",
+        f"module {shown(module)} mm",
         f"teeth {teeth[0]} : {teeth[1]}",
     )
 
@@ -127,45 +132,37 @@ def pair_notes(center_distance: float, module: float, teeth: tuple[int, int]) ->
 def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
     made = []
     for row, line in enumerate(line for line in lines if line):
-        place = f'x="{number(left)}" y="{number(base + 1.4 * size * row)}"'
-        font = f'font-family="sans-serif" font-size="{number(size)}" fill="{TEXT_INK}"'
+        place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * row)}"'
+        font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
         weight = ' font-weight="bold"' if row == 0 else ""
         made.append(f"<text {place} {font}{weight}>{escape(line)}</text>")
     return made
 
 
-def _element(feature: Feature, pixel: float) -> list[str]:
-    """Return the SVG elements of one feature; the class is its layer."""
+def _element(feature: Feature, pixel: float) -> str:
+    """Return the SVG element of one feature; the class is its layer."""
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
     wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
-    dash = f'stroke-dasharray="{number(7 * pixel)} {number(4 * pixel)}"'
+    inside = {MARK: ink, FOLLOWER: fill, OUTLINE: fill, PROFILE: fill}.get(feature.kind, GROUND)
+    line = f'stroke="{ink}"'
+    if feature.kind in DASHED:
+        dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
+        line = f'stroke="{CENTRODE_INK}" stroke-dasharray="{dash}"'
+    elif isinstance(shape, Cross):
+        line = f'stroke="{TEXT_INK}"'
+    if feature.kind in DASHED or isinstance(shape, Path | Cross):
+        inside = "none"
+    style = f'class={name} fill="{inside}" {line}'
     match shape:
-        case Contour(vertices=points) if feature.kind == PITCH:
-            style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
-            return [f'<path class={name} {style} d="{_data(points, True)}"/>']
-        case Contour(vertices=points):
-            style = f'fill="{fill}" stroke="{ink}"'
-            return [f'<path class={name} {style} d="{_data(points, True)}"/>']
-        case Path(points=points, closed=closed):
-            style = f'fill="none" stroke="{ink}"'
-            if feature.kind == CENTRODE:
-                style = f'fill="none" stroke="{CENTRODE_INK}" {dash}'
-            return [f'<path class={name} {style} d="{_data(points, closed)}"/>']
         case Circle(center=center, diameter=diameter):
-            inside = {MARK: ink, PRIME: "none", FOLLOWER: fill}.get(feature.kind, "#ffffff")
-            line = f'{CENTRODE_INK}" {dash}' if feature.kind == PRIME else f'{ink}"'
-            place = f'cx="{number(center[0])}" cy="{number(-center[1])}"'
-            size = f'r="{number(0.5 * diameter)}"'
-            return [f'<circle class={name} {place} {size} fill="{inside}" stroke="{line}/>']
+            place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'
+            return f'<circle {style} {place} r="{_number(0.5 * diameter)}"/>'
         case Loop():
             data = arc_data(shape.vertices, shape.bulges)
-            return [f'<path class={name} fill="#ffffff" stroke="{ink}" d="{data}"/>']
-        case Cross(center=center, size=size):
-            x, y, arm = float(center[0]), -float(center[1]), number(size)
-            start = f"M{number(x - 0.5 * size)} {number(y)}h{arm}"
-            upright = f"M{number(x)} {number(y - 0.5 * size)}v{arm}"
-            return [f'<path class={name} fill="none" stroke="{TEXT_INK}" d="{start}{upright}"/>']
+        case _:
+            data = "".join(_data(points, closed) for points, closed in chains(shape, THINNING))
+    return f'<path {style} d="{data}"/>'
 
 
 def _data(points: Array, closed: bool) -> str:
@@ -175,7 +172,7 @@ def _data(points: Array, closed: bool) -> str:
     line = LineString(np.vstack([points, points[:1]]) if closed else points)
     kept = get_coordinates(simplify(line, THINNING, preserve_topology=False))
     kept = kept[:-1] if closed else kept
-    steps = " ".join(f"{number(x)} {number(-y)}" for x, y in kept.tolist())
+    steps = " ".join(f"{_number(x)} {_number(-y)}" for x, y in kept.tolist())
     return f"M{steps}" + ("Z" if closed else "")
 
 
@@ -202,18 +199,12 @@ def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
     for start, end, bulge in zip(points.tolist(), ends.tolist(), bulges.tolist(), strict=True):
         half = 2.0 * math.atan(bulge)  # half of the arc's angle
         count = max(1, math.ceil(abs(half) / (0.25 * math.pi + _ROUNDING)))
-        radius = number(0.5 * abs(end - start) / abs(math.sin(half)), decimals) if half else ""
+        radius = decimal(0.5 * abs(end - start) / abs(math.sin(half)), decimals) if half else ""
         for k in range(1, count + 1):
             part = math.sin(half * k / count) / math.sin(half) if half else 1.0
             place = start + (end - start) * part * cmath.exp(1j * half * (k / count - 1.0))
             # y is turned downwards: what turns left stays so for the eye, which SVG calls 0
             arc = f"A{radius} {radius} 0 0 {int(bulge < 0.0)} " if half else "L"
-            steps.append(f"{arc}{number(place.real, decimals)} {number(-place.imag, decimals)}")
+            steps.append(f"{arc}{decimal(place.real, decimals)} {decimal(-place.imag, decimals)}")
     x, y = points[0].real, -points[0].imag
-    return f"M{number(x, decimals)} {number(y, decimals)}{''.join(steps)}Z"
-
-
-def number(value: float, decimals: int = DECIMALS) -> str:
-    """Return a `value` with up to as many `decimals`, no idle zeros."""
-    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
+    return f"M{decimal(x, decimals)} {decimal(y, decimals)}{''.join(steps)}Z"

@@ -1,6 +1,7 @@
-r"""Tables: columns of numbers as CSV, exact to the last bit.
+r"""Tables: columns of numbers as CSV.
 
-Numbers are written with the fewest digits that read back as the same double; an infinite number
+Numbers are written as `numerals.exact` gives them, with the fewest digits that read back as the
+same double; an infinite number
 (the radius of a straight part) is ``inf``; what a masked array masks does not exist and is left
 empty; lines end in ``\n``. Refused: not-a-number, columns of different lengths, names that would
 need quotes.
@@ -12,6 +13,8 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from gearcam.numerals import exact
 
 Array = NDArray[np.float64]
 
@@ -50,8 +53,10 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
         if bad_rows.size:
             raise ValueError(f"column {name} is not a number in row {bad_rows[0]}")
         # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
-        tidy = np.where(np.isinf(plain), np.inf, plain + 0.0)
-        cells = [repr(value) for value in tidy.tolist()]
+        # What is missing may be anything, and adding to it may warn.
+        there = np.where(missing, 0.0, plain) + 0.0
+        tidy = np.where(np.isinf(there), np.inf, there)
+        cells = [repr(exact(value)) for value in tidy.tolist()]
         for row in np.flatnonzero(missing).tolist():
             cells[row] = ""
         texts.append(cells)

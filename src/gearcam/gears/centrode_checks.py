@@ -74,7 +74,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
 def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
     """Warn at knots where a derivative jumps that the limit wants continuous."""
     law = subject.pair.law
-    for number, order in law.continuity:
+    for jump in law.jumps:
+        order = jump.order - 2  # of the ratio, which is a derivative itself
         if order < limit:
             yield Finding(
                 code="ratio-continuity",
@@ -82,7 +83,7 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
                 message=f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
                 value=float(order),
                 limit=limit,
-                where=angle_text(float(law.ratio.knots[number])),
+                where=angle_text(jump.theta or law.period),
             )
 
 
@@ -178,27 +179,21 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
     ),
 )
 def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
-    """Warn where the tooth force pushes the shafts apart rather than turn the wheel.
-
-    The rack's angle and the slope of the centrode add up: on the flanks that drive forward it is
-    ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
-    """
-    places, slopes = subject.slopes
-    for side, sign in (("forward", -1.0), ("backward", 1.0)):
-        angles = subject.pair.rack.pressure_angle + sign * slopes
-        worst = int(np.argmax(angles))
-        if angles[worst] > limit:
-            yield Finding(
-                code="pressure-angle",
-                severity="warning",
-                message="The tooth force stands so steep that it mostly loads the bearings: the "
-                f"rack's {math.degrees(subject.pair.rack.pressure_angle):.6g} deg and the slope of "
-                "the centrode add up.",
-                value=math.degrees(float(angles[worst])),
-                limit=math.degrees(limit),
-                unit="deg",
-                where=f"driving {side}, {angle_text(float(places[worst]))}",
-            )
+    """Warn where the tooth force pushes the shafts apart rather than turn the wheel."""
+    found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
+    if found:
+        where = (f"driving {way}, {angle_text(place)}" for way, (place, _) in found.items())
+        yield Finding(
+            code="pressure-angle",
+            severity="warning",
+            message="The tooth force stands so steep that it mostly loads the bearings: the "
+            f"rack's {math.degrees(subject.pair.rack.pressure_angle):.6g} deg and the slope of "
+            "the centrode add up.",
+            value=math.degrees(max(angle for _, angle in found.values())),
+            limit=math.degrees(limit),
+            unit="deg",
+            where="; ".join(where),
+        )
 
 
 @check(

@@ -16,7 +16,8 @@ from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject
-from gearcam.quantities import LENGTH, NUMBER, Param, rounded_down
+from gearcam.numerals import rounded_down
+from gearcam.quantities import LENGTH, NUMBER, Param
 
 __all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
 

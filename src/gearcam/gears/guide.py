@@ -47,7 +47,7 @@ class Guide(ABC):
 
     def rate(self, phi1: Array) -> Array:
         """Return the nominal turns' derivative by the driver angle at driver angles, rad."""
-        return self.scale * self.law.derivatives(phi1, 0)[0]
+        return self.scale * self.law.derivatives(phi1, 1)[1]
 
     @abstractmethod
     def stand(self, phi1: Array, lead: Array | float) -> tuple[Plane, Plane]:

@@ -167,7 +167,7 @@ class Centrode(Track):
         i, *radius = _radii(law, w, x, 2 if curved else 1)
         r, dr, *more = (size * v for v in radius)
         speed = np.sqrt(r * r + dr * dr)
-        moved = phi if self.wheel == 1 else law.motion(x) + turns * law.lobes.advance
+        moved = phi if self.wheel == 1 else law.driven(x) + turns * law.lobes.advance
         if self.slides:
             pole, point = _complex(np.ones(r.shape), np.zeros(r.shape)), _complex(r, size * moved)
         else:

@@ -74,7 +74,7 @@ class BasicRack:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HelixSpec:
+class StepsSpec:
     """Stepped wheels: each step is cut for itself, its teeth moved along the pitch curve.
 
     The teeth of a non-circular wheel cannot follow a helix by twisting: every place of the
@@ -82,7 +82,7 @@ class HelixSpec:
     along both centrodes, take turns in the mesh as those of a helical wheel do.
     """
 
-    steps: int = param(
+    count: int = param(
         COUNT, default=1, ge=1, le=100, doc="steps over the width; 1 for spur wheels"
     )
     offset: float | None = param(

@@ -14,7 +14,8 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import extremes
 from gearcam.quantities import NUMBER, Param
 
-KIND = "gear-pair"
+KIND = "teeth"
+"""The checks of a pair's teeth and centrodes."""
 
 CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 """Limit of the contact ratio, for all checks that ask for it."""
@@ -59,6 +60,21 @@ class Subject:
 
         ((places, values),) = extremes(slope, self.pair.law.knots)
         return places, values
+
+    @cached_property
+    def pressure_angles(self) -> dict[str, tuple[float, float]]:
+        """Largest pressure angle of the flanks that drive each way: phi1 and angle, rad.
+
+        The rack's angle and the slope of the centrode add up: on the flanks that drive forward it
+        is ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
+        """
+        places, slopes = self.slopes
+        alpha = self.pair.rack.pressure_angle
+        first, last = int(slopes.argmin()), int(slopes.argmax())
+        return {
+            "forward": (float(places[first]), alpha - float(slopes[first])),
+            "backward": (float(places[last]), alpha + float(slopes[last])),
+        }
 
     @cached_property
     def accelerations(self) -> tuple[Array, Array]:

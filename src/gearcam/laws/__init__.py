@@ -1,4 +1,4 @@
-"""Transmission-ratio laws and rises: what motion is wanted, as piecewise analytic functions.
+"""Transmission-ratio laws, rises and lift programs: what displacement is wanted.
 
 The registries `gearcam.laws.base.LAWS` and `gearcam.laws.rises.RISES` load a law when it is asked
 for. Depends on numpy alone.

@@ -3,8 +3,7 @@
 A law gives ``i21 = dphi2/dphi1 > 0`` and its integral ``phi2`` over one *period* of the driver:
 the driver has `n1` equal lobes, the driven wheel `n2`, so that one period turns the driver by
 ``2*pi/n1`` and the driven wheel by ``2*pi/n2``. A law is made from its *parameters*, a frozen
-dataclass with the method ``build(lobes, tolerances)``; ``LAWS.hang`` puts it into the
-registry together with its claims, which one parametrised test proves for all laws.
+dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` puts it into the registry.
 """
 
 from __future__ import annotations
@@ -13,14 +12,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.entry import Entry
-from gearcam.laws.span import ONE_LOBE, Feed, Lobes, Span, angle_text, continued, rough
+from gearcam.laws.displacement import Displacement, Jump
+from gearcam.laws.entry import LawEntry
+from gearcam.laws.span import RackTravel, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
@@ -30,43 +30,65 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RatioLaw:
-    """A transmission ratio over one lobe, continued periodically, or over the way of an open pair.
+class RatioLaw(Displacement):
+    """A ratio over one lobe or over the travel of an open pair, and phi2, its integral.
 
     Parameters
     ----------
     lobes : Lobes or Travel
         Periods of driver and driven wheel, or how far both turn.
     ratio : Piecewise
-        i21 over ``[0, lobes.period]``; of an open pair also beyond both ends.
-    motion : Piecewise or Expansion
-        phi2 over the same interval, rad, zero at zero.
+        i21 over ``[0, lobes.period]``; of an open pair also beyond both ends; of a rack r1.
+    driven : Piecewise or Expansion
+        phi2 over the same interval, rad, zero at zero; of a rack its travel.
     solved : mapping of str to float
         What was left to the program, by name.
     """
 
     lobes: Span
     ratio: Piecewise
-    motion: Piecewise | Expansion
+    driven: Piecewise | Expansion
     solved: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def feeds(self) -> bool:
-        """Whether the driven element is a rack: the ratio is then r1, the motion its way."""
-        return isinstance(self.lobes, Feed)
+        """Whether the driven element is a rack: the ratio is then r1, phi2 its travel."""
+        return isinstance(self.lobes, RackTravel)
 
     @property
     def knots(self) -> Array:
-        """Knots over one lobe or the way of an open pair, rad, ends included."""
+        """Knots over one lobe or the travel of an open pair, rad, ends included."""
         knots = self.ratio.knots
         return knots if self.lobes.closed else knots[1:-1]
 
-    def within(self, phi1: Array) -> tuple[Array, Array]:
-        """Return how many lobes lie before driver angles, and the angles within theirs, rad."""
-        if not self.lobes.closed:
-            return np.zeros(np.shape(phi1)), phi1
-        turns = np.floor(phi1 / self.lobes.period)
-        return turns, phi1 - turns * self.lobes.period
+    @property
+    def period(self) -> float:
+        """Driver's angle of one lobe, or of the travel of an open pair, rad."""
+        return self.lobes.period
+
+    @property
+    def advance(self) -> float:
+        """Driven angle over the period, rad; of a rack its travel in a turn."""
+        return self.lobes.advance
+
+    @property
+    def closed(self) -> bool:
+        """Whether the pair turns for ever."""
+        return self.lobes.closed
+
+    @cached_property
+    def jumps(self) -> tuple[Jump, ...]:
+        """The knots where the ratio or one of its derivatives to the third jumps."""
+        last, found = len(self.ratio.knots) - 1, []
+        for knot, continuity in enumerate(self.ratio.continuity, start=1):
+            inner = knot < last if self.closed else 1 < knot < last - 1
+            if continuity < 3 and (inner or (self.closed and knot == last)):
+                order = continuity + 1
+                before = self.ratio.side(knot, -1, order)[order]
+                after = self.ratio.side(knot % last, 1, order)[order]
+                place = float(self.ratio.knots[knot % last])
+                found.append(Jump(theta=place, order=order + 1, before=before, after=after))
+        return tuple(found)
 
     def knots_near(self, phi1: Array) -> Array:
         """Return for each angle the place of every knot that is nearest to it: (..., n), rad.
@@ -79,33 +101,23 @@ class RatioLaw:
         knots, period = self.knots[:-1], self.lobes.period
         return knots + period * np.round((phi1 - knots) / period)
 
-    def derivatives(self, phi1: ArrayLike, order: int) -> list[Array]:
-        """Return ``[i, i', ..., i^(order)]`` at any driver angles `phi1`, rad."""
-        return self.ratio.derivatives(self.within(np.asarray(phi1, dtype=float))[1], order)
+    def in_period(self, x: Array, order: int) -> list[Array]:
+        """Return ``[phi2, i, i', ...]`` (see `Displacement.in_period`)."""
+        return [self.driven(x), *(self.ratio.derivatives(x, order - 1) if order else ())]
 
     def phi2(self, phi1: ArrayLike) -> Array:
         """Return the driven angle, rad, at any driver angles, rad (turns are counted)."""
-        turns, x = self.within(np.asarray(phi1, dtype=float))
-        return self.motion(x) + turns * self.lobes.advance
+        return self.derivatives(phi1, 0)[0]
 
     @property
     def travelled(self) -> float:
-        """Driven angle over a lobe, or over the way of an open pair, rad."""
-        return self.motion.last if self.lobes.closed else float(self.motion(self.lobes.period))
+        """Driven angle over a lobe, or over the travel of an open pair, rad."""
+        return self.driven.last if self.closed else float(self.driven(self.period))
 
     @property
     def closure_error(self) -> float:
         """Miss of the driven angle over a lobe, rad."""
         return self.travelled - self.lobes.advance
-
-    @property
-    def continuity(self) -> list[tuple[int, int]]:
-        """Knots by their number in ``ratio.knots``, with the ratio's order of continuity there.
-
-        The ends of an open pair are no knots.
-        """
-        found = list(enumerate(self.ratio.continuity, start=1))
-        return found if self.lobes.closed else found[1:-2]
 
     @cached_property
     def ratio_range(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -127,62 +139,26 @@ class RatioLaw:
         half = 0.5 * np.diff(grid)
         x = 0.5 * (grid[:-1] + grid[1:]) + half * nodes[:, None]
         second = np.concatenate([[0.0], np.cumsum(half * (weights @ self.ratio(x)))])
-        first = np.append(self.motion(grid[:-1]), self.travelled)
+        first = np.append(self.driven(grid[:-1]), self.travelled)
         return float(np.abs(first - second).max()) + np.finfo(float).eps * self.lobes.advance
 
 
-class LawParameters(Protocol):
-    """What the parameters of a law can do."""
-
-    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return the law for `lobes`, to `tolerances`, or raise `InfeasibleError`."""
-        ...
-
-
-@dataclass(frozen=True, kw_only=True)
-class Claim:
-    """What a law must give for an example, known in closed form and independently of the code.
-
-    Parameters
-    ----------
-    parameters : LawParameters
-        The example.
-    lobes : Lobes
-        Its lobes.
-    ratio : mapping of float to float
-        i21 by driver angle, rad.
-    motion : mapping of float to float
-        phi2, rad, by driver angle, rad.
-    continuity : int
-        Least order of continuity over all knots (3 means at least 3).
-    """
-
-    parameters: LawParameters
-    lobes: Lobes = ONE_LOBE
-    ratio: Mapping[float, float]
-    motion: Mapping[float, float]
-    continuity: int
-
-
-class LawEntry(Entry[Claim]):
-    """A law in the registry; its name is that of ``law.type``."""
-
+_HOMES: Final = {
+    "phases": ("phases",),
+    "programs": ("three-phase-polynomial", "multispeed", "fourier"),
+    "constant": ("constant",),
+    "ellipse": ("ellipse",),
+    "centrodes": ("eccentric-circle", "limacon", "lobed"),
+    "shapes": ("bspline", "rounded-polygon"),
+    "spiral": ("log-spiral",),
+    "formula": ("formula",),
+    "table": ("table",),
+    "motion": ("motion",),
+    "rack": ("rack",),
+}
 
 LAWS: Final[Registry[LawEntry]] = Registry(
-    "law",
-    {
-        "gearcam.laws.phases": ("phases",),
-        "gearcam.laws.programs": ("three-phase-polynomial", "multispeed", "fourier"),
-        "gearcam.laws.constant": ("constant",),
-        "gearcam.laws.ellipse": ("ellipse",),
-        "gearcam.laws.centrodes": ("eccentric-circle", "limacon", "lobed"),
-        "gearcam.laws.shapes": ("bspline", "rounded-polygon"),
-        "gearcam.laws.spiral": ("log-spiral",),
-        "gearcam.laws.formula": ("formula",),
-        "gearcam.laws.table": ("table",),
-        "gearcam.laws.motion": ("motion",),
-        "gearcam.laws.rack": ("rack",),
-    },
+    "law", {f"gearcam.laws.{home}": names for home, names in _HOMES.items()}
 )
 """The laws by name."""
 
@@ -220,21 +196,23 @@ def make_law(
         Where the ratio is not finite, smooth, positive or periodic, or where it does not close.
     """
     try:
-        motion = integrate(knots, pieces, tolerances.expansion)
+        driven = integrate(knots, pieces, tolerances.expansion)
         ratio = piecewise(knots, pieces)
         _demand_positive(ratio)
         if not lobes.closed:
             longer, more = continued(ratio, pieces)
-            ratio, motion = piecewise(longer, more), integrate(longer, more, tolerances.expansion)
-            motion = motion.shifted(-float(motion(0.0)))
+            ratio, driven = piecewise(longer, more), integrate(longer, more, tolerances.expansion)
+            driven = driven.shifted(-float(driven(0.0)))
     except NotSmoothError as error:
         raise rough("the ratio", error) from error
-    law = RatioLaw(lobes=lobes, ratio=ratio, motion=motion, solved=dict(solved or {}))
+    law = RatioLaw(lobes=lobes, ratio=ratio, driven=driven, solved=dict(solved or {}))
     _demand_smooth(law)
     if abs(law.closure_error) > tolerances.refusal:
         asks = "the tooth counts ask" if lobes.closed else "driven_travel_deg asks"
         raise InfeasibleError(
-            "the law does not close" if lobes.closed else "the law misses the driven wheel's way",
+            "the law does not close"
+            if lobes.closed
+            else "the law misses the driven wheel's travel",
             value=math.degrees(law.travelled),
             limit=math.degrees(lobes.advance),
             unit="deg",
@@ -256,17 +234,15 @@ def _demand_positive(ratio: Piecewise) -> None:
 
 
 def _demand_smooth(law: RatioLaw) -> None:
-    for number, order in law.continuity:
-        if order < 1:
-            ends = number == len(law.ratio.knots) - 1
-            before = law.ratio.side(number, -1, 1)
-            after = law.ratio.side(0 if ends else number, 1, 1)
-            name, k = ("ratio", 0) if order < 0 else ("slope of the ratio", 1)
-            place = angle_text(law.ratio.knots[number])
-            if not math.isfinite(before[k] + after[k]):
+    for jump in law.jumps:
+        if jump.order <= 2:
+            name = "ratio" if jump.order == 1 else "slope of the ratio"
+            ends = jump.theta == 0.0
+            place = angle_text(jump.theta or law.period)
+            if not math.isfinite(jump.before + jump.after):
                 raise InfeasibleError(f"the {name} has no value", where=place)
             raise InfeasibleError(
-                f"the {name} {'is not periodic' if ends else 'jumps'}: it is {before[k]:.6g} "
-                f"before {place} and {after[k]:.6g} {'at 0 deg' if ends else 'after it'}",
+                f"the {name} {'is not periodic' if ends else 'jumps'}: it is {jump.before:.6g} "
+                f"before {place} and {jump.after:.6g} {'at 0 deg' if ends else 'after it'}",
                 where=place,
             )

@@ -9,8 +9,9 @@ import math
 from dataclasses import dataclass
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.driver import LOBES, demand_lobes, law_of_centrode
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
@@ -98,12 +99,12 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
     def ratio(x: Jet) -> Jet:
         return c / (b - e * cos(count * x)) - 1.0
 
-    def motion(x: Jet) -> Jet:
+    def phi2(x: Jet) -> Jet:
         # 2*atan(tan(x/2)*sqrt((b + e)/(b - e))) without its poles
         turn = 2.0 * atan(e * sin(count * x) / (b + root - e * cos(count * x)))
         return (c / root) * (x + turn / count) - x
 
-    piece = Piece(ratio, motion)
+    piece = Piece(ratio, phi2)
     solved = {"center_distance_over_scale": c}
     return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 
@@ -119,82 +120,26 @@ def _demand_one_lobe(lobes: Lobes, name: str) -> None:
         )
 
 
-def _claims_eccentric() -> tuple[Claim, ...]:
-    # A/R = 2.04379288568712 by high-precision quadrature; at phi1 = 90 deg r1 = sqrt(1 - e^2)
-    a, b = 2.04379288568712, math.sqrt(1 - 0.3**2)
-    return (
-        Claim(
-            parameters=EccentricCircle(eccentricity=0.3),
-            ratio={0.0: 1.3 / (a - 1.3), math.pi: 0.7 / (a - 0.7), math.pi / 2: b / (a - b)},
-            motion={math.pi: math.pi, 2 * math.pi: 2 * math.pi},
-            continuity=3,
-        ),
-    )
-
-
-def _claims_limacon() -> tuple[Claim, ...]:
-    # with k = 2: b = (1 + 2*sqrt(1 + 3*e^2))/3
-    b = (1 + 2 * math.sqrt(1 + 3 * 0.4**2)) / 3
-    half = 2 * math.atan(math.sqrt((b + 0.4) / (b - 0.4)))
-    return (
-        Claim(
-            parameters=Limacon(eccentricity=0.4),
-            ratio={0.0: 1.4 / (b - 0.4), math.pi: 0.6 / (b + 0.4), math.pi / 2: 1 / b},
-            motion={math.pi: math.pi, math.pi / 2: 2 * half - math.pi / 2},
-            continuity=3,
-        ),
-    )
-
-
-def _claims_lobed() -> tuple[Claim, ...]:
-    # with k = 1 + 2/3 the centre distance is (1 + b) = k*sqrt(b^2 - e^2)
-    k, e = 5 / 3, 0.2
-    b = (1 + math.sqrt(1 + (k * k - 1) * (1 + k * k * e * e))) / (k * k - 1)
-    return (
-        Claim(
-            parameters=Lobed(eccentricity=e),
-            lobes=Lobes(2, 3),
-            ratio={0.0: 1.2 / (b - 0.2), math.pi / 2: 0.8 / (b + 0.2), math.pi / 4: 1 / b},
-            motion={math.pi / 2: math.pi / 3, 2 * math.pi: 4 * math.pi / 3},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Lobed(eccentricity=0.1, lobes=(3, 3)),
-            lobes=Lobes(1, 1),
-            ratio={0.0: 1.1 / ((1 + 2 * math.sqrt(1.03)) / 3 - 0.1)},
-            motion={math.pi / 3: math.pi / 3, 2 * math.pi: 2 * math.pi},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="eccentric-circle",
-        parameters=EccentricCircle,
+        example=EccentricCircle(eccentricity=0.3),
         doc="a circle with its shaft off its middle, far side at phi1 = 0",
         continuity="analytic",
         source="classical; circle in polar form, centre distance by closure",
-        claims=_claims_eccentric,
-    )
-)
-LAWS.hang(
+    ),
     LawEntry(
         name="limacon",
-        parameters=Limacon,
+        example=Limacon(eccentricity=0.4),
         doc="limacon r1 = 1 + e*cos(phi1), far side at phi1 = 0",
         continuity="analytic",
         source="classical; Pascal's limacon, closure in closed form",
-        claims=_claims_limacon,
-    )
-)
-LAWS.hang(
+    ),
     LawEntry(
         name="lobed",
-        parameters=Lobed,
+        example=Lobed(eccentricity=0.2),
         doc="r1 = 1 + e*cos(n1*phi1): wheels with any numbers of lobes",
         continuity="analytic",
         source="classical; closure in closed form",
-        claims=_claims_lobed,
-    )
+    ),
 )

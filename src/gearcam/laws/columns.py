@@ -1,14 +1,22 @@
-"""Columns of numbers in CSV files."""
+"""Columns of numbers in CSV files, read once for each parameters that name one."""
 
 from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+_COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+_POINT_NUMBER: Final = re.compile(r"[+-]?\d*\.\d*([eE][+-]?\d+)?")
+_HINT: Final = "; use a decimal point"
 
 
 class ColumnsError(ValueError):
@@ -18,52 +26,114 @@ class ColumnsError(ValueError):
 Names = Sequence[str] | Callable[[list[str]], Sequence[str]]
 
 
-def read_columns(file: str, names: Names) -> tuple[NDArray[np.float64], list[int]]:
-    """Read columns of numbers by their names.
+@dataclass(frozen=True, kw_only=True)
+class CsvRows:
+    """What a CSV file holds, without comments and empty lines.
+
+    Parameters
+    ----------
+    lines : tuple of n int
+        Number of each row in the file.
+    cells : tuple of n lists of str
+        Without the spaces around them; the names of the columns first.
+    note : str
+        How it was read where that is not the usual way, for people; else empty.
+    """
+
+    lines: tuple[int, ...]
+    cells: tuple[list[str], ...]
+    note: str = ""
+
+    def columns(self, names: Names) -> tuple[NDArray[np.float64], list[int]]:
+        """Return columns of numbers by their names.
+
+        Parameters
+        ----------
+        names : sequence of k str, or callable
+            The columns; or what chooses them from all that the file has, and gives none if these
+            are not enough. Other columns are left aside.
+
+        Returns
+        -------
+        columns : (n, k) array
+            In the order of `names`.
+        lines : list of n int
+            The number of each row in the file.
+
+        Raises
+        ------
+        ColumnsError
+            With the line that is wrong.
+        """
+        head, *rows = self.cells
+        names = names(head) if callable(names) else names
+        if not names or any(head.count(name) != 1 for name in names):
+            raise ColumnsError(f"line {self.lines[0]}: the columns are {', '.join(head)}")
+        places = [head.index(name) for name in names]
+        lines = list(self.lines[1:])
+        for line, row in zip(lines, rows, strict=True):
+            if any(row[len(head) :]):
+                state = f"line {line}: {len(row)} values for {len(head)} columns"
+                raise ColumnsError(state + _HINT)
+        found = [_numbers(row, places, line) for line, row in zip(lines, rows, strict=True)]
+        return np.array(found).reshape(-1, len(names)), lines
+
+
+class FromFile:
+    """Parameters that may name a CSV file: it is read at the first question and never again."""
+
+    file: str | None
+
+    @cached_property
+    def rows(self) -> CsvRows | None:
+        """What the file holds; None without one. It raises `ColumnsError` (see `read_rows`)."""
+        return None if self.file is None else read_rows(self.file)
+
+
+def rows_of(file: str, part: Any) -> CsvRows | None:
+    """Return what parameters hold that name a file.
 
     Parameters
     ----------
     file : str
-        Path of a CSV file in UTF-8: a line of names, then lines of numbers. Lines that begin with
-        # are comments; other columns are left aside.
-    names : sequence of k str, or callable
-        The columns; or what chooses them from all that the file has, and gives none if these are
-        not enough.
+        As they name it.
+    part : object
+        The parameters, or a dataclass or tuple with these at any depth.
 
     Returns
     -------
-    columns : (n, k) array
-        In the order of `names`.
-    lines : list of n int
-        The number of each row in the file.
+    CsvRows or None
+        None where there are none.
 
     Raises
     ------
     ColumnsError
-        With the line that is wrong.
+        If they have not read it yet and it cannot be read.
     """
-    rows = read_rows(file)
-    first, head = rows[0]
-    names = names(head) if callable(names) else names
-    if not names or any(head.count(name) != 1 for name in names):
-        raise ColumnsError(f"line {first}: the columns are {', '.join(head)}")
-    places = [head.index(name) for name in names]
-    found = [_numbers(row, places, line) for line, row in rows[1:]]
-    return np.array(found).reshape(-1, len(names)), [line for line, _ in rows[1:]]
+    if isinstance(part, FromFile) and part.file == file:
+        return part.rows
+    if is_dataclass(part):
+        part = tuple(getattr(part, field.name) for field in fields(part))
+    inside = (rows_of(file, item) for item in part) if isinstance(part, tuple) else ()
+    return next((rows for rows in inside if rows is not None), None)
 
 
-def read_rows(file: str) -> list[tuple[int, list[str]]]:
-    """Read the rows of a CSV file, without comments and empty lines.
+def read_rows(file: str) -> CsvRows:
+    """Read a CSV file.
+
+    Cells stand between commas, or between semicolons where the line of names has these and no
+    comma; numbers may then have decimal commas, unless others in the file have points.
 
     Parameters
     ----------
     file : str
-        Path of a CSV file in UTF-8.
+        Path of a file in UTF-8: a line of names, then lines of numbers. Lines that begin with #
+        are comments.
 
     Returns
     -------
-    list of (int, list of str)
-        One row or more: its number in the file, and its cells without the spaces around them.
+    CsvRows
+        One row or more.
 
     Raises
     ------
@@ -78,7 +148,24 @@ def read_rows(file: str) -> list[tuple[int, list[str]]]:
     rows = [(k, row) for k, row in enumerate(text, start=1) if row.strip() and row[0] != "#"]
     if not rows:
         raise ColumnsError("is empty")
-    return [(line, [cell.strip() for cell in next(csv.reader([row]))]) for line, row in rows]
+    semicolons = ";" in rows[0][1] and "," not in rows[0][1]
+    found = (next(csv.reader([row], delimiter=";" if semicolons else ",")) for _, row in rows)
+    cells = tuple([cell.strip() for cell in row] for row in found)
+    made = CsvRows(lines=tuple(line for line, _ in rows), cells=cells)
+    return _with_points(made) if semicolons else made
+
+
+def _with_points(rows: CsvRows) -> CsvRows:
+    """Return the rows of a file with semicolons, decimal commas turned where they are that."""
+    cells = [cell for row in rows.cells[1:] for cell in row]
+    commas = any(_COMMA_NUMBER.fullmatch(cell) for cell in cells)
+    if not commas or any(_POINT_NUMBER.fullmatch(cell) for cell in cells):
+        return replace(rows, note="read with semicolons between columns")
+    turned = tuple(
+        [cell.replace(",", ".") if _COMMA_NUMBER.fullmatch(cell) else cell for cell in row]
+        for row in rows.cells
+    )
+    return replace(rows, cells=turned, note="read with semicolons and decimal commas")
 
 
 def _numbers(cells: Sequence[str], places: Sequence[int], line: int) -> list[float]:
@@ -88,7 +175,8 @@ def _numbers(cells: Sequence[str], places: Sequence[int], line: int) -> list[flo
         try:
             found.append(float(text))
         except ValueError:
-            raise ColumnsError(f"line {line}: {text!r} is not a number") from None
+            hint = _HINT if _COMMA_NUMBER.fullmatch(text) else ""
+            raise ColumnsError(f"line {line}: {text!r} is not a number{hint}") from None
         if not math.isfinite(found[-1]):
             raise ColumnsError(f"line {line}: {text!r} is not finite")
     return found

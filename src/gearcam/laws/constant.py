@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes
 from gearcam.numeric.piecewise import Piece
 from gearcam.tolerances import Tolerances
@@ -22,25 +22,12 @@ class Constant:
         return make_law(lobes, [0.0, lobes.period], [piece], tolerances)
 
 
-def _claims() -> tuple[Claim, ...]:
-    return (
-        Claim(
-            parameters=Constant(),
-            lobes=Lobes(2, 3),
-            ratio={0.0: 2 / 3, 1.0: 2 / 3},
-            motion={3 * math.pi: 2 * math.pi, 1.5: 1.0},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="constant",
-        parameters=Constant,
+        example=Constant(),
         doc="constant ratio z1/z2: circular wheels",
         continuity="analytic",
         source="definition",
-        claims=_claims,
-    )
+    ),
 )

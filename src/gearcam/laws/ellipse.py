@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.driver import LOBES, demand_lobes
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin
 from gearcam.numeric.piecewise import Piece
@@ -43,58 +44,22 @@ class Ellipse:
         def ratio(x: Jet) -> Jet:
             return 1.0 / (swing * cos(count * x) + b)
 
-        def motion(x: Jet) -> Jet:
+        def phi2(x: Jet) -> Jet:
             # tan(n2*phi2/2) = sqrt((b - A*e)/(b + A*e))*tan(n1*phi1/2) without its poles
             turn = 2.0 * atan(swing * sin(count * x) / (swing * cos(count * x) + (b + k)))
             return (x - turn / count) / k
 
         solved = {"center_distance_over_semi_latus_rectum": distance}
-        piece = Piece(ratio, motion)
+        piece = Piece(ratio, phi2)
         return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 
 
-def _claims() -> tuple[Claim, ...]:
-    half = 2.0 * math.atan(0.25 / 1.75 * math.tan(0.5))
-    # two lobes on three: A from the quadratic, then tan(3*phi2/2) = q*tan(phi1)
-    distance = (1 + math.sqrt(0.09 + 0.91 * 2.25)) / 0.91
-    q = math.sqrt((0.7 * distance - 1) / (1.3 * distance - 1))
-    return (
-        Claim(
-            parameters=Ellipse(eccentricity=0.5),
-            ratio={0.0: 1 / 3, math.pi: 3.0, math.pi / 2: 0.6},
-            motion={math.pi: math.pi, math.pi / 2: 2 * math.atan(1 / 3), 2 * math.pi: 2 * math.pi},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Ellipse(eccentricity=0.75),
-            ratio={0.0: 1 / 7, math.pi: 7.0},
-            motion={1.0: half, 2 * math.pi + 1.0: 2 * math.pi + half},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Ellipse(eccentricity=0.3, lobes=(2, 3)),
-            lobes=Lobes(2, 3),
-            ratio={0.0: 1 / (1.3 * distance - 1), math.pi / 2: 1 / (0.7 * distance - 1)},
-            motion={math.pi / 2: math.pi / 3, 0.6: 2 / 3 * math.atan(q * math.tan(0.6))},
-            continuity=3,
-        ),
-        Claim(
-            # equal two-lobed wheels: b = sqrt(1 + (A*e)^2) gives A = 2/(1 - e^2)
-            parameters=Ellipse(eccentricity=0.3, lobes=(2, 2)),
-            ratio={0.0: 0.7 / 1.3, math.pi / 2: 1.3 / 0.7, math.pi: 0.7 / 1.3},
-            motion={math.pi / 2: math.pi / 2, math.pi / 4: math.atan(0.7 / 1.3)},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="ellipse",
-        parameters=Ellipse,
+        example=Ellipse(eccentricity=0.5),
         doc="ellipses about their foci, or of more lobes, phi1 = 0 at the driver's near vertex",
         continuity="analytic",
         source="classical; polar equation of the ellipse about its focus, closure in closed form",
-        claims=_claims,
-    )
+    ),
 )

@@ -1,33 +1,33 @@
-"""What the entries of laws and of rises have in common."""
+"""What a registry knows of a law: of the ratio of a pair, or of a follower's rise."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
-
-C = TypeVar("C")
+from typing import Any
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entry(Generic[C]):
+class LawEntry:
     """A law in a registry.
 
     Parameters
     ----------
     name : str
         As in a design file.
-    parameters : type
-        Dataclass with a ``build`` method.
+    example : object
+        Parameters of the law that show how a design file gives them: a dataclass with a ``build``
+        method.
     doc, continuity, source : str
         One line each, for people.
-    claims : callable
-        Returns examples with what they must give.
     """
 
     name: str
-    parameters: type[Any]
+    example: Any
     doc: str
     continuity: str
     source: str
-    claims: Callable[[], tuple[C, ...]]
+
+    @property
+    def parameters(self) -> type[Any]:
+        """The class of its parameters."""
+        return type(self.example)

@@ -9,15 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.driver import demand_positive, law_of_centrode
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.laws.span import (
     Lobes,
     Span,
     angle_text,
-    driven_way,
-    driver_way,
+    open_travel,
     rough,
     span_of,
     travel_problems,
@@ -41,8 +41,8 @@ class Formula:
     phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
     ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
     r1: str | None = param(TEXT, default=None, doc="driver centrode's radius at any scale")
-    driver_travel: float | None = driver_way()
-    driven_travel: float | None = driven_way()
+    driver_travel: float | None = open_travel("driver")
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -64,7 +64,7 @@ class Formula:
         """
         span = span_of(lobes, self.driver_travel, self.driven_travel)
         if self.phi2 is not None:
-            return from_motion(compiled(self.phi2), span, tolerances)
+            return from_phi2(compiled(self.phi2), span, tolerances)
         name = "ratio" if self.ratio is not None else "r1"
         function = compiled(getattr(self, name) or "1")
         x = np.linspace(0.0, span.period, 2049)
@@ -121,13 +121,13 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
             )
 
 
-def derivative(motion: Callable[..., Jet]) -> Callable[..., Jet]:
+def derivative(function: Callable[..., Jet]) -> Callable[..., Jet]:
     """Return the derivative of a function of jets, itself one.
 
     Parameters
     ----------
-    motion : callable
-        ``motion(jet, *parameters) -> jet``.
+    function : callable
+        ``function(jet, *parameters) -> jet``.
 
     Returns
     -------
@@ -135,15 +135,15 @@ def derivative(motion: Callable[..., Jet]) -> Callable[..., Jet]:
     """
 
     def slope(x: Jet, *parameters: Value) -> Jet:
-        one_more = motion(Jet.variable(x.c[0], x.order + 1), *parameters)
+        one_more = function(Jet.variable(x.c[0], x.order + 1), *parameters)
         slopes = [(k + 1) * value for k, value in enumerate(one_more.c[1:])]
         return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
 
     return slope
 
 
-def from_motion(
-    motion: Callable[[Jet], Jet],
+def from_phi2(
+    phi2: Callable[[Jet], Jet],
     lobes: Span,
     tolerances: Tolerances,
     solved: dict[str, float] | None = None,
@@ -152,7 +152,7 @@ def from_motion(
 
     Parameters
     ----------
-    motion : callable
+    phi2 : callable
         ``phi2(jet) -> jet``, rad, any constant.
     lobes : Lobes or Travel
         Over whose period.
@@ -170,9 +170,9 @@ def from_motion(
     InfeasibleError
         Where phi2 is not finite, smooth or rising, or does not close.
     """
-    ratio = derivative(motion)
+    ratio = derivative(phi2)
     x = np.linspace(0.0, lobes.period, 2049)
-    values, slopes = motion(Jet.variable(x, 1)).derivatives()
+    values, slopes = phi2(Jet.variable(x, 1)).derivatives()
     bad = ~np.isfinite(values) | ~np.isfinite(slopes)
     if bad.any():
         raise InfeasibleError("phi2 is not finite", where=angle_text(x[bad][0]))
@@ -193,7 +193,7 @@ def from_motion(
         )
     except NotSmoothError as error:
         raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
-    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, motion)], tolerances, solved)
+    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, phi2)], tolerances, solved)
 
 
 def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances) -> RatioLaw:
@@ -208,38 +208,12 @@ def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances
     return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn = 2 * math.pi
-    root = math.sqrt(1 - 0.3**2)
-    return (
-        Claim(
-            parameters=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
-            ratio={0.0: 0.84, math.pi / 2: 1.16, math.pi / 4: 1.0},
-            motion={math.pi / 4: math.pi / 4 - 0.08, math.pi: math.pi, turn: turn},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Formula(ratio="1/(1 + 0.3*cos(phi1))"),
-            ratio={0.0: root / 1.3, math.pi: root / 0.7, math.pi / 2: root},
-            motion={math.pi: math.pi, turn: turn, math.pi / 2: 2 * math.atan(math.sqrt(7 / 13))},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Formula(r1="1/(1 + 0.5*cos(phi1))"),
-            ratio={0.0: 1 / 3, math.pi: 3.0, math.pi / 2: 0.6},
-            motion={math.pi: math.pi, math.pi / 2: 2 * math.atan(1 / 3), turn: turn},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="formula",
-        parameters=Formula,
+        example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
         doc="one formula in phi1: phi2 (closes by itself), ratio (scaled), or r1 (any scale)",
         continuity="analytic where the formula is",
         source="003 Table 1.1, the three hypotheses",
-        claims=_claims,
-    )
+    ),
 )

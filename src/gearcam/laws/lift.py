@@ -1,4 +1,4 @@
-"""Lift programs: the motion of a follower over a turn of the cam, as a piecewise analytic function.
+"""Lift programs: the displacement of a follower over a turn of the cam.
 
 A program is made from phases. Every phase is scaled from the unit square; a segment is the quintic
 that leaves with the state in which the phase before it ends. The program repeats every turn, and
@@ -15,9 +15,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.laws.displacement import JUMP, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
     DwellPhase,
     Phase,
@@ -27,7 +28,7 @@ from gearcam.laws.phases_of_lift import (
     levels,
     program_problems,
 )
-from gearcam.laws.placed import Place, PlacedLaws, placed
+from gearcam.laws.placed import PlacedLaws, PlacedPiece, placed
 from gearcam.laws.rises import Rise, RiseParameters
 from gearcam.numeric.jets import polynomial
 from gearcam.numeric.piecewise import (
@@ -41,11 +42,8 @@ from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
 
-_JUMP = 1e-9
-"""Jump of a derivative that counts, in its largest value: far above rounding."""
-
 _INNER = slice(5, -5, 6)
-"""Surveyed places at which the size of derivatives is known well enough for that."""
+"""Surveyed places at which the size of derivatives is known well enough to judge jumps."""
 
 _TURN = 2.0 * math.pi
 
@@ -54,32 +52,12 @@ _KNOT = 4.0 * np.finfo(float).eps * _TURN
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stretch:
+class PlacedPhase:
     """A phase in its place: its `kind` (rise, return or dwell), `start` and `end` in rad."""
 
     kind: str
     start: float
     end: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Jump:
-    """A place where a derivative jumps.
-
-    Parameters
-    ----------
-    theta : float, rad
-        Where.
-    order : int
-        Of the derivative: 1 velocity, 2 acceleration, 3 jerk.
-    before, after : float
-        Its values on both sides, per rad^order.
-    """
-
-    theta: float
-    order: int
-    before: float
-    after: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,27 +81,42 @@ class Survey:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Program:
+class Program(Displacement):
     """The lift over a turn, repeated.
 
     Parameters
     ----------
     lift : PlacedLaws
         s over ``[0, 2*pi]``, mm or rad.
-    stretches : tuple of Stretch
+    stretches : tuple of PlacedPhase
         Its phases; a segment counts as a rise or return by its direction.
     cuts : (m,) array, rad
         The knots, and more places where a law bends sharply: between them extremes are sought.
     """
 
     lift: PlacedLaws
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[PlacedPhase, ...]
     cuts: Array
 
     @property
     def knots(self) -> Array:
         """Knots of the lift over a turn, rad, both ends included."""
         return self.lift.knots
+
+    @property
+    def period(self) -> float:
+        """A turn of the cam, rad."""
+        return _TURN
+
+    @property
+    def advance(self) -> float:
+        """Nothing: the follower comes back."""
+        return 0.0
+
+    @property
+    def closed(self) -> bool:
+        """Always: the cam turns for ever."""
+        return True
 
     def cuts_between(self, low: float, high: float) -> Array:
         """Return the cuts between two cam angles, with both of these.
@@ -144,10 +137,9 @@ class Program:
         """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
         return [(s.start, s.end) for s in self.stretches if s.kind == kind]
 
-    def derivatives(self, theta: ArrayLike, order: int) -> list[Array]:
-        """Return ``[s, s', ..., s^(order)]`` at any cam angles `theta`, rad."""
-        theta = np.asarray(theta, dtype=float)
-        return self.lift.derivatives(theta - _TURN * np.floor(theta / _TURN), order)
+    def in_period(self, x: Array, order: int) -> list[Array]:
+        """Return ``[s, s', ...]`` over the turn (see `Displacement.in_period`)."""
+        return self.lift.derivatives(x, order)
 
     @cached_property
     def peaks(self) -> tuple[float, float, float]:
@@ -197,7 +189,7 @@ class Program:
         at_knots = np.abs([survey.before, survey.after]).max(axis=(0, 1))
         scales = np.maximum(inside, at_knots)[:4]
         # a knot is rounded, and a derivative seen on the wrong side of it by its own slope
-        limits = _JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
+        limits = JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
         return tuple(
             Jump(
@@ -255,8 +247,8 @@ def make_program(
     shapes = [phase.shape for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     frame = _Frame(phases=phases, angles=angles, heights=heights, rises=rises)
-    places: list[Place] = []
-    stretches: list[Stretch] = []
+    places: list[PlacedPiece] = []
+    stretches: list[PlacedPhase] = []
     cuts: list[float] = []
     for number, phase in enumerate(phases):
         match phase:
@@ -271,13 +263,13 @@ def make_program(
                 places += frame.law(number, rises[phase.shape])
                 cuts += _cuts(places[-1], rises[phase.shape])
         start, end = float(angles[number]), float(angles[number + 1])
-        stretches.append(Stretch(kind=kind, start=start, end=end))
+        stretches.append(PlacedPhase(kind=kind, start=start, end=end))
     lift = placed(places)
     sharp = np.array(sorted({*lift.knots.tolist(), *cuts}))
     return Program(lift=lift, stretches=tuple(stretches), cuts=sharp)
 
 
-def _cuts(place: Place, rise: Rise) -> list[float]:
+def _cuts(place: PlacedPiece, rise: Rise) -> list[float]:
     """Return where a law bends sharply in its place."""
     cuts = np.array([]) if rise.cuts is None else rise.cuts
     return (place.origin + place.width * cuts[(cuts > 0.0) & (cuts < 1.0)]).tolist()
@@ -302,13 +294,15 @@ class _Frame:
         """Whether a law comes down by running backwards."""
         return rise.mirrored and self.rise(number) < 0.0
 
-    def whole(self, number: int, law: Piecewise | None, scale: float) -> Place:
+    def whole(self, number: int, law: Piecewise | None, scale: float) -> PlacedPiece:
         """Return a law without knots that begins where a phase does."""
         start, end = self.angles[number : number + 2].tolist()
         base, width = self.heights[number], self.width(number)
-        return Place(law=law, part=0, end=end, origin=start, width=width, base=base, scale=scale)
+        return PlacedPiece(
+            law=law, part=0, end=end, origin=start, width=width, base=base, scale=scale
+        )
 
-    def law(self, number: int, rise: Rise) -> list[Place]:
+    def law(self, number: int, rise: Rise) -> list[PlacedPiece]:
         """Return the pieces of a law in the place of a phase."""
         place = self.whole(number, rise.function, self.rise(number))
         parts = range(len(rise.function.pieces))

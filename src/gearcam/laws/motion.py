@@ -1,4 +1,4 @@
-"""Laws of motion: the driven element's way is given, and the ratio follows."""
+"""Position laws: that of the driven element or of its slide is given, and the ratio follows."""
 
 from __future__ import annotations
 
@@ -9,19 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
-from gearcam.laws.formula import compiled, formula_problems, from_motion
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
+from gearcam.laws.formula import compiled, formula_problems, from_phi2
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.slider import crank_angle, make_slide
-from gearcam.laws.span import Lobes, Span, driven_way, driver_way, span_of, travel_problems
+from gearcam.laws.span import Lobes, Span, open_travel, span_of, travel_problems
 from gearcam.numeric.jets import Jet
 from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion:
-    """Either y(x) of the driven element, or the way of a slide that the driven wheel's crank moves.
+class MotionLaw:
+    """Either y(x) of the driven element, or the position of a slide that its crank moves.
 
     With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =
     k1*(x - x_from)``, ``phi2 = k2*(y - y(x_from))``, so that ``i21 = k2*y'/k1``. Both scales follow
@@ -33,13 +34,15 @@ class Motion:
     x_from: float | None = param(NUMBER, default=None, doc="x at the start")
     x_to: float | None = param(NUMBER, default=None, doc="x at the end")
     slide: str | None = param(
-        TEXT, default=None, doc="way of a slide over phi1, towards the crank's shaft, at any scale"
+        TEXT,
+        default=None,
+        doc="position of a slide over phi1, towards the crank, at any scale",
     )
     rod: float | None = param(
         NUMBER, default=None, gt=1, le=1e6, doc="length of the slide's rod, in crank radii"
     )
-    driver_travel: float | None = driver_way()
-    driven_travel: float | None = driven_way()
+    driver_travel: float | None = open_travel("driver")
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -65,7 +68,7 @@ class Motion:
         Raises
         ------
         InfeasibleError
-            Where the motion is not finite, smooth, monotonic or periodic.
+            Where y or the slide is not finite, smooth, monotonic or periodic.
         """
         if self.slide is not None:
             return self._from_slide(lobes, tolerances)
@@ -88,7 +91,7 @@ class Motion:
             "k1_deg_per_x": math.degrees(1.0 / per_angle),
             "k2_deg_per_y": math.degrees(scale),
         }
-        return from_motion(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
+        return from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         if lobes.n2 != 1:
@@ -108,44 +111,14 @@ class Motion:
         return make_law(lobes, knots, pieces, tolerances, solved)
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn = 2 * math.pi
-    # a slide that moves as its crank moves it when turning evenly: i = 1
-    even = "1 - cos(phi1) + 3*(1 - sqrt(1 - (sin(phi1)/3)**2))"
-    # the same crank led by phi1 - 0.2*sin(phi1)
-    led = even.replace("phi1", "(phi1 - 0.2*sin(phi1))")
-    return (
-        Claim(
-            # y = x + x^2/10 from 0 to 2 over half a turn each: i = (1 + x/5)/1.2
-            parameters=Motion(
-                y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
-            ),
-            ratio={0.0: 1 / 1.2, math.pi / 2: 1.0, math.pi: 1.4 / 1.2},
-            motion={math.pi: math.pi, math.pi / 2: math.pi * 1.1 / 2.4},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Motion(slide=even, rod=3.0),
-            ratio={0.0: 1.0, 1.0: 1.0, math.pi: 1.0, 5.0: 1.0},
-            motion={1.0: 1.0, math.pi: math.pi, 6.0: 6.0, turn: turn},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Motion(slide=led, rod=3.0),
-            ratio={0.0: 0.8, math.pi: 1.2, math.pi / 2: 1.0},
-            motion={math.pi: math.pi, 1.0: 1 - 0.2 * math.sin(1.0), turn: turn},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="motion",
-        parameters=Motion,
-        doc="the driven element's way y(x), or that of a slide moved by the driven wheel's crank",
-        continuity="analytic where the way is",
+        example=MotionLaw(
+            y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
+        ),
+        doc="the driven element's position y(x), or that of a slide moved by its crank",
+        continuity="analytic where y or the slide is",
         source="003 Table 1.1, second hypothesis; section 1.4.1",
-        claims=_claims,
-    )
+    ),
 )

@@ -1,4 +1,4 @@
-"""Ratio in phases: values at knots, joined by arcs, closed or over the way of an open pair."""
+"""Ratio in phases: values at knots, joined by arcs, closed or over the travel of an open pair."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
-from gearcam.laws.span import Lobes, Span, Travel, demand_equal, driven_way
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
+from gearcam.laws.span import Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.laws.transitions import ARCS, Arc
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
@@ -36,7 +37,7 @@ class Phases:
     ratios: tuple[float | Solve, ...] = param(
         NUMBER, gt=0, min_length=2, doc='i21 at the knots; one may be "solve"'
     )
-    driven_travel: float | None = driven_way()
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -87,11 +88,11 @@ class Phases:
             knots, ratios = one_lobe(_angles(self.knots), self.ratios, lobes)
             return arcs_law(ARCS[self.shape], knots, ratios, lobes, tolerances)
         demand_equal(lobes)
-        knots, ratios, solved = _solve_way(
+        knots, ratios, solved = _solve_knot(
             ARCS[self.shape], self.knots, self.ratios, self.driven_travel
         )
-        way = Travel(knots[-1], self.driven_travel)
-        return arcs_law(ARCS[self.shape], np.array(knots), ratios, way, tolerances, solved)
+        span = Travel(knots[-1], self.driven_travel)
+        return arcs_law(ARCS[self.shape], np.array(knots), ratios, span, tolerances, solved)
 
 
 def _angles(knots: tuple[float | Solve, ...]) -> np.ndarray:
@@ -252,7 +253,7 @@ def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> str:
 
 
 def _closing_ways(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[Way, ...]:
-    """Return a way for each ratio whose closing value is positive."""
+    """Return a span for each ratio whose closing value is positive."""
     values = [float(value) for value in given + change]
     places = [[index] for index in range(len(values))]
     if closed:
@@ -264,7 +265,7 @@ def _closing_ways(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[
     )
 
 
-def _solve_way(
+def _solve_knot(
     arc: Arc, knots: Sequence[float | Solve], ratios: Sequence[float | Solve], travel: float
 ) -> tuple[list[float], list[float | Solve], dict[str, float]]:
     """Solve the knot left open by an open pair: the driven angle is linear in it."""
@@ -287,7 +288,7 @@ def _solve_way(
         ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
         key = "law.driven_travel_deg"
         raise InfeasibleError(
-            "no knot between its neighbours gives the driven wheel its way",
+            "no knot between its neighbours gives the driven wheel its travel",
             where=f"law.knots_deg[{index}]",
             value=math.degrees(travel),
             limit=ways[0] if math.degrees(travel) < ways[0] else ways[1],
@@ -303,69 +304,13 @@ def _solve_way(
     return filled, list(ratios), {f"knots_deg[{index}]": math.degrees(place)}
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn, mid = 2 * math.pi, math.radians(160)
-    two = (0.0, mid, turn)
-    three = (0.0, mid, 1.5 * math.pi, turn)
-    return (
-        Claim(
-            parameters=Phases(shape="cosine", knots=two, ratios=(1.6, 0.4, 1.6)),
-            ratio={0.0: 1.6, mid: 0.4, mid / 2: 1.0, mid / 3: 1.3},
-            motion={mid: mid, turn: turn, mid / 2: mid / 2 + 0.6 * mid / math.pi},
-            continuity=1,
-        ),
-        Claim(
-            parameters=Phases(shape="cubic", knots=two, ratios=(1.6, 0.4, 1.6)),
-            ratio={0.0: 1.6, mid: 0.4, mid / 2: 1.0, mid / 4: 1.6 - 1.2 * 5 / 32},
-            motion={mid: mid, turn: turn, mid / 2: mid * (0.8 - 1.2 * 3 / 32)},
-            continuity=1,
-        ),
-        Claim(
-            parameters=Phases(shape="cosine", knots=three, ratios=(1.6, 0.4, "solve", 1.6)),
-            ratio={1.5 * math.pi: 1.06, turn: 1.6, mid: 0.4},
-            motion={mid: mid, 1.5 * math.pi: mid + math.radians(110) * 0.73, turn: turn},
-            continuity=1,
-        ),
-        *_open_claims(),
-    )
-
-
-def _open_claims() -> tuple[Claim, ...]:
-    """003 (3.26) and (3.12), which give the driver's way in closed form."""
-    u, v, way = math.radians(10), math.radians(60), math.radians(308.3)
-    three = 0.5 * way + 0.25 * (u + v)
-    two = ((math.pi - 2) * v + math.pi * way) / (2 * math.pi)
-    return (
-        Claim(
-            parameters=Phases(
-                shape="cosine",
-                knots=(0.0, u, v, "solve"),
-                ratios=(1.0, 1.0, 2.0, 2.0),
-                driven_travel=way,
-            ),
-            ratio={0.0: 1.0, u: 1.0, 0.5 * (u + v): 1.5, v: 2.0, 2.0: 2.0},
-            motion={u: u, v: u + 1.5 * (v - u), three: way},
-            continuity=1,
-        ),
-        Claim(
-            parameters=Phases(
-                shape="sine", knots=(0.0, v, "solve"), ratios=(1.0, 2.0, 2.0), driven_travel=way
-            ),
-            ratio={0.0: 1.0, v / 3: 1.5, v: 2.0, 2.5: 2.0},
-            motion={v: v + 2 * v / math.pi, two: way},
-            continuity=1,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="phases",
-        parameters=Phases,
+        example=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
         doc="ratios at knots, joined by arcs with zero slope at each knot; closed or open",
         continuity="C1 at the knots; C2 for quintic arcs",
         source="003 sections 2.2.2.1 to 2.2.2.3, eqs. (2.1), (2.13), (2.17), (2.22); 3.2.2, eqs. "
         "(3.1), (3.12), (3.14), (3.26)",
-        claims=_claims,
-    )
+    ),
 )

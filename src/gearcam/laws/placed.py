@@ -19,7 +19,7 @@ Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
+class PlacedPiece:
     """A piece of a law in its place: ``base + scale*S((theta - origin)/width)``.
 
     Parameters
@@ -56,7 +56,7 @@ class PlacedLaws(Pieces):
     law, part : (n,) arrays of int
         Number of the law, and of its piece, that counts between two knots.
     origin, per_width, base, scale : (n,) arrays
-        How it is placed (see `Place`); the width's reciprocal.
+        How it is placed (see `PlacedPiece`); the width's reciprocal.
     """
 
     laws: tuple[Piecewise | None, ...]
@@ -84,12 +84,12 @@ class PlacedLaws(Pieces):
         return result
 
 
-def placed(places: Sequence[Place]) -> PlacedLaws:
+def placed(places: Sequence[PlacedPiece]) -> PlacedLaws:
     """Return the function that laws make in their places.
 
     Parameters
     ----------
-    places : sequence of Place
+    places : sequence of PlacedPiece
         In rising order, from zero on without gaps.
 
     Returns

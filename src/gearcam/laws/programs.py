@@ -10,9 +10,10 @@ from itertools import zip_longest
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.phases import arcs_law, one_lobe
-from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, driven_way
+from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.laws.transitions import ARCS, SMOOTH
 from gearcam.numeric.jets import Jet, cos, sin
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -36,7 +37,7 @@ class Multispeed:
     )
     transition: float = param(ANGLE, gt=0, le=360, doc="driver angle of each transition")
     shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
-    driven_travel: float | None = driven_way()
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -68,8 +69,8 @@ class Multispeed:
         name = f"ratios[{self.ratios.index('solve')}]" if "solve" in self.ratios else ""
         if self.driven_travel is not None:
             demand_equal(lobes)
-            way = Travel(knots[-1], self.driven_travel)
-            return arcs_law(arc, np.array(knots), values, way, tolerances, name=name)
+            span = Travel(knots[-1], self.driven_travel)
+            return arcs_law(arc, np.array(knots), values, span, tolerances, name=name)
         knots.append(knots[-1] + self.transition)
         values.append(self.ratios[0])
         grid, lobe = one_lobe(np.array(knots), values, lobes, "law.angles_deg with transitions")
@@ -177,7 +178,7 @@ class Fourier:
         else:
             waves = [(k, math.radians(a), math.radians(b)) for k, a, b in self._harmonics()]
 
-        def motion(x: Jet) -> Jet:
+        def phi2(x: Jet) -> Jet:
             total = x
             for k, a, b in waves:
                 total = total + (a * cos((k * n) * x) + b * sin((k * n) * x))
@@ -190,7 +191,7 @@ class Fourier:
                 total = total + ((b * kn) * cos(kn * x) - (a * kn) * sin(kn * x))
             return mean * total
 
-        knots, pieces = [0.0, lobes.period], [Piece(ratio, motion)]
+        knots, pieces = [0.0, lobes.period], [Piece(ratio, phi2)]
         (place, smallest), _ = piecewise(knots, pieces).extremes
         if not smallest > 0.0:
             share = mean / (mean - smallest)
@@ -209,110 +210,30 @@ class Fourier:
         return [(k, a, b) for k, (a, b) in enumerate(pairs, start=1)]
 
 
-def _claims_multispeed() -> tuple[Claim, ...]:
-    degree = math.radians(1)
-    # 150*0.8 + 150*b + 60*(0.8 + b)/2 = 360 gives b = 1.2; quintic at a quarter: 53/512
-    return (
-        Claim(
-            parameters=Multispeed(
-                ratios=(0.8, "solve"),
-                angles=(150 * degree, 150 * degree),
-                transition=30 * degree,
-            ),
-            ratio={
-                0.0: 0.8,
-                2.0: 0.8,
-                165 * degree: 1.0,
-                157.5 * degree: 0.8 + 0.4 * 53 / 512,
-                4.0: 1.2,
-            },
-            motion={
-                150 * degree: 120 * degree,
-                180 * degree: 150 * degree,
-                2 * math.pi: 2 * math.pi,
-            },
-            continuity=2,
-        ),
-        Claim(
-            parameters=Multispeed(
-                ratios=(1.0, "solve"),
-                angles=(40 * degree, 100 * degree),
-                transition=20 * degree,
-                shape="cosine",
-                driven_travel=270 * degree,
-            ),
-            ratio={0.0: 1.0, 50 * degree: 1.5, 2.0: 2.0},
-            motion={40 * degree: 40 * degree, 160 * degree: 270 * degree},
-            continuity=1,
-        ),
-    )
-
-
-def _claims_polynomial() -> tuple[Claim, ...]:
-    """003 Table 2.6 as printed, for the nail machine's knots and a = 0.4."""
-    u, v, turn = math.radians(160), 1.5 * math.pi, 2 * math.pi
-    bottom = 16 * math.pi**2 - 4 * math.pi * v + 2 * u * v - 6 * math.pi * u - u * u
-    p = 24 * math.pi * 0.6 / bottom
-    b, middle = 0.4 + 0.5 * p * (turn - u), 0.4 + 0.5 * p * (v - u)
-    return (
-        Claim(
-            parameters=ThreePhasePolynomial(knots=(0.0, u, v, turn), lowest=0.4),
-            ratio={0.0: b, u: 0.4, v: middle, 0.5 * u: 0.5 * (b + 0.4)},
-            motion={
-                u: 0.5 * u * (b + 0.4),
-                turn: turn,
-                v: 0.5 * u * (b + 0.4) + (v - u) * (0.4 + p * (v - u) / 6),
-            },
-            continuity=1,
-        ),
-    )
-
-
-def _claims_fourier() -> tuple[Claim, ...]:
-    return (
-        Claim(
-            parameters=Fourier(cosines=(0.2, 0.1), sines=(0.05,)),
-            ratio={0.0: 1.3, math.pi: 0.9, math.pi / 2: 0.95},
-            motion={math.pi: math.pi + 0.1, math.pi / 2: math.pi / 2 + 0.25},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Fourier(of="phi2", sines=(-9.0,)),
-            lobes=Lobes(2, 3),
-            ratio={0.0: 2 / 3 * (1 - math.pi / 10), math.pi / 4: 2 / 3},
-            motion={math.pi / 4: 2 / 3 * (math.pi / 4 - math.pi / 20), math.pi: 2 * math.pi / 3},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="multispeed",
-        parameters=Multispeed,
+        example=Multispeed(
+            ratios=(0.8, "solve"), angles=(5 * math.pi / 6, 5 * math.pi / 6), transition=math.pi / 6
+        ),
         doc="constant ratios over given angles, joined by smooth transitions; closed or open",
         continuity="C2 for quintic transitions, else C1",
         source="003 section 1.1.3, fig. 1.6",
-        claims=_claims_multispeed,
-    )
-)
-LAWS.hang(
+    ),
     LawEntry(
         name="three-phase-polynomial",
-        parameters=ThreePhasePolynomial,
+        example=ThreePhasePolynomial(
+            knots=(0.0, math.radians(160), 1.5 * math.pi, 2 * math.pi), lowest=0.4
+        ),
         doc="a cubic down, then two parabolas up; the highest ratio follows from closure",
         continuity="C1 at the knots",
         source="003 section 2.2.2.4, eq. (2.25), Table 2.6",
-        claims=_claims_polynomial,
-    )
-)
-LAWS.hang(
+    ),
     LawEntry(
         name="fourier",
-        parameters=Fourier,
+        example=Fourier(cosines=(0.2, 0.1), sines=(0.05,)),
         doc="harmonics of the ratio or of phi2 over a lobe",
         continuity="analytic",
         source="003 figs. 1.11, 1.17 (centrodes by Fourier series)",
-        claims=_claims_fourier,
-    )
+    ),
 )

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import compiled, derivative, formula_problems
-from gearcam.laws.span import Feed, Lobes, angle_text, rough
+from gearcam.laws.span import Lobes, RackTravel, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, integrate
@@ -20,23 +21,23 @@ from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rack:
-    """The driver's centrode, or the rack's way over a turn; either at any scale.
+class RackLaw:
+    """The driver's centrode, or the rack's travel over a turn; either at any scale.
 
     The rack moves by ``dy = r1*dphi1``, so that ``r1 = y'``; its own centrode is the curve ``(r1,
-    y)``, which is straight for a circular wheel only. The law's ratio is r1, its motion y.
+    y)``, which is straight for a circular wheel only. The law's ratio is r1, its phi2 is y.
     """
 
     r1: str | None = param(TEXT, default=None, doc="driver centrode's radius over phi1")
-    way: str | None = param(TEXT, default=None, doc="way of the rack over phi1")
+    travel: str | None = param(TEXT, default=None, doc="travel of the rack over phi1")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        if (self.r1 is None) == (self.way is None):
-            state = "neither r1 nor way is given" if self.r1 is None else "both are given"
-            yield "r1", None, state, "exactly one of r1, way"
+        if (self.r1 is None) == (self.travel is None):
+            state = "neither r1 nor travel is given" if self.r1 is None else "both are given"
+            yield "r1", None, state, "exactly one of r1, travel"
             return
-        name = "r1" if self.way is None else "way"
+        name = "r1" if self.travel is None else "travel"
         yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:  # noqa: ARG002
@@ -48,9 +49,9 @@ class Rack:
             Where the radius is not finite, smooth, positive or periodic.
         """
         turn = 2.0 * math.pi
-        if self.way is not None:
-            motion = compiled(self.way)
-            piece = Piece(derivative(motion), motion)
+        if self.travel is not None:
+            travel = compiled(self.travel)
+            piece = Piece(derivative(travel), travel)
         else:
             piece = Piece(compiled(self.r1 or "1"))
         values = piece.function(Jet.variable(np.linspace(0.0, turn, 2049), 0)).derivatives()[0]
@@ -60,33 +61,15 @@ class Rack:
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         except NotSmoothError as error:
             raise rough("r1", error) from error
-        return make_law(Feed(turn, advance), [0.0, turn], [piece], tolerances)
+        return make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
 
 
-def _claims() -> tuple[Claim, ...]:
-    return (
-        Claim(
-            parameters=Rack(r1="1 + 0.2*cos(phi1)"),
-            ratio={0.0: 1.2, math.pi: 0.8, math.pi / 2: 1.0},
-            motion={math.pi: math.pi, math.pi / 2: math.pi / 2 + 0.2, 7.0: 7 + 0.2 * math.sin(7)},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Rack(way="3*phi1 - 0.5*sin(2*phi1)"),
-            ratio={0.0: 2.0, math.pi / 2: 4.0},
-            motion={math.pi / 2: 1.5 * math.pi, 2 * math.pi: 6 * math.pi},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="rack",
-        parameters=Rack,
-        doc="a wheel that drives a rack, by its centrode or by the rack's way",
+        example=RackLaw(r1="1 + 0.2*cos(phi1)"),
+        doc="a wheel that drives a rack, by its centrode or by the rack's travel",
         continuity="analytic where the formula is",
         source="003 fig. 1.8; rolling on a translated body",
-        claims=_claims,
-    )
+    ),
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -11,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import compiled, formula_problems
-from gearcam.laws.rises import RISES, Rise, RiseClaim, RiseEntry
+from gearcam.laws.rises import RISES, Rise
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -104,47 +104,12 @@ def _cuts(shape: Callable[[Jet], Jet], order: int, tolerances: Tolerances) -> Ar
         raise InfeasibleError(f"{_NAMES[order]} is not {state}", where=place) from error
 
 
-def _claims() -> tuple[RiseClaim, ...]:
-    quarter = 0.25 - 0.5 / math.pi
-    swing = math.tanh(2.0)
-    return (
-        RiseClaim(
-            parameters=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),
-            values={0.25: quarter, 0.5: 0.5, 0.75: 1.0 - quarter},
-            velocities={0.25: 1.0, 0.5: 2.0},
-            peak_velocity=2.0,
-            peak_acceleration=2 * math.pi,
-            peak_jerk=4 * math.pi**2,
-            continuity=2,
-        ),
-        RiseClaim(
-            parameters=FormulaRise(formula="x**3*(10 - 15*x + 6*x**2)"),
-            values={0.25: 53 / 512, 0.75: 459 / 512},
-            velocities={0.25: 270 / 256, 0.5: 1.875},
-            peak_velocity=1.875,
-            peak_acceleration=10 / math.sqrt(3),
-            peak_jerk=60.0,
-            continuity=2,
-        ),
-        RiseClaim(
-            parameters=FormulaRise(formula="(1 + tanh(4*x - 2)/tanh(2))/2"),
-            values={0.5: 0.5, 0.75: 0.5 + math.tanh(1.0) / (2 * swing)},
-            velocities={0.5: 2.0 / swing, 0.75: 2.0 / (swing * math.cosh(1.0) ** 2)},
-            peak_velocity=2.0 / swing,
-            peak_acceleration=math.inf,
-            peak_jerk=math.inf,
-            continuity=0,
-        ),
-    )
-
-
-RISES.hang(
-    RiseEntry(
+RISES.register(
+    LawEntry(
         name="formula",
-        parameters=FormulaRise,
+        example=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),
         doc="any smooth formula of S in x: a law of your own",
         continuity="smooth inside; at the ends what the formula gives",
         source="000 section 3.3.2, eqs. (3.3), (3.4)",
-        claims=_claims,
-    )
+    ),
 )

@@ -102,7 +102,7 @@ def from_half(sectors: Iterable[tuple[float, Shape]]) -> Piecewise:
     return piecewise(knots, [Piece(shape) for shape in pieces])
 
 
-def shifted(powers: Sequence[Fraction], by: int) -> list[Fraction]:
+def about(powers: Sequence[Fraction], by: int) -> list[Fraction]:
     """Return a polynomial of t as one of ``t - by``: its exact coefficients.
 
     Parameters

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.columns import ColumnsError, read_columns
-from gearcam.laws.rise_pieces import product, shifted, spline, total
+from gearcam.laws.columns import ColumnsError, FromFile
+from gearcam.laws.entry import LawEntry
+from gearcam.laws.rise_pieces import about, product, spline, total
 from gearcam.laws.rises import (
     NARROWEST,
     RISES,
     ClosedForm,
     Rise,
-    RiseClaim,
-    RiseEntry,
 )
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
@@ -41,7 +40,7 @@ _MOST_VALUES: Final = 500
 
 
 @dataclass(frozen=True, kw_only=True)
-class BSpline(ClosedForm):
+class BSplineRise(ClosedForm):
     """A B-spline of S with clamped, evenly spaced knots.
 
     Every control value pulls S towards it over a few knots; as many zeros and ones at the ends as
@@ -76,7 +75,7 @@ class BSpline(ClosedForm):
         left = [_span(values[n : n + p + 1], n, spans) for n in range(spans)]
         both = (
             [[float(value * spans**k) for k, value in enumerate(powers)] for powers in rows]
-            for rows in (left, [shifted(powers, 1) for powers in left])
+            for rows in (left, [about(powers, 1) for powers in left])
         )
         return spline(grid, *both)
 
@@ -100,7 +99,7 @@ def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Table:
+class TableRise(FromFile):
     """A spline through points, of quintics: it goes on up to the fourth derivative.
 
     Of all curves through the points with the given ends it is the one with the least integral of
@@ -138,7 +137,7 @@ class Table:
                 yield "file", None, "the points are given twice", rule
                 return
             try:
-                points, lines = read_columns(self.file, ("x", "y"))
+                points, lines = self.points
             except ColumnsError as error:
                 yield "file", None, str(error), "a CSV file with the columns x and y"
                 return
@@ -151,7 +150,14 @@ class Table:
             message = f"{len(self.y)} values for {len(self.x)} places"
             yield "y", None, message, "one value for each x"
         else:
-            yield from _point_problems(np.array([self.x, self.y]).T)
+            yield from _point_problems(self.points[0])
+
+    @cached_property
+    def points(self) -> tuple[Array, list[int]]:
+        """Rows of x and y, and their lines in the file; it raises `ColumnsError`."""
+        if self.rows is not None:
+            return self.rows.columns(("x", "y"))
+        return np.array([self.x, self.y], dtype=float).T, []
 
     def build(self, tolerances: Tolerances) -> Rise:  # noqa: ARG002  (a spline is in closed form)
         """Return the rise.
@@ -164,10 +170,7 @@ class Table:
         for name, index, message, rule in self.problems():
             where = f"motion.{name}" + ("" if index is None else f"[{index}]")
             raise InfeasibleError(message, where=where, nearest=rule)
-        if self.file is not None:
-            points, _ = read_columns(self.file, ("x", "y"))
-        else:
-            points = np.array([self.x, self.y]).T
+        points = self.points[0].copy()
         points[0], points[-1] = (0.0, 0.0), (1.0, 1.0)
         return Rise(function=_through(points, self.start, self.end))
 
@@ -241,71 +244,21 @@ def _blocks(*entries: Array) -> Array:
     return np.stack(entries, axis=1).reshape(-1, 2, 2)
 
 
-def _claims_bspline() -> tuple[RiseClaim, ...]:
-    """One span is the 3-4-5; two spans of degree 4 have ``S = 8*phi^3*(1 - phi)`` up to 1/2."""
-    one = RiseClaim(
-        parameters=BSpline(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
-        values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
-        velocities={0.25: 270 / 256, 0.5: 1.875},
-        peak_velocity=1.875,
-        peak_acceleration=10 / math.sqrt(3),
-        peak_jerk=60.0,
-        continuity=2,
-    )
-    # velocity 24*phi^2 - 32*phi^3, acceleration 48*phi*(1 - 2*phi), jerk 48 - 192*phi
-    two = RiseClaim(
-        parameters=BSpline(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0)),
-        values={0.25: 3 / 32, 0.5: 0.5, 0.75: 29 / 32},
-        velocities={0.25: 1.0, 0.5: 2.0, 0.75: 1.0},
-        peak_velocity=2.0,
-        peak_acceleration=6.0,
-        peak_jerk=48.0,
-        continuity=2,
-    )
-    return one, two
-
-
-def _claims_table() -> tuple[RiseClaim, ...]:
-    """Return splines that reproduce their curve: a quintic, and a line with its slopes."""
-    places = (0.0, 0.1, 0.3, 0.35, 0.7, 1.0)
-    quintic = RiseClaim(
-        parameters=Table(x=places, y=tuple(x**3 * (10 - 15 * x + 6 * x * x) for x in places)),
-        values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
-        velocities={0.25: 270 / 256, 0.5: 1.875},
-        peak_velocity=1.875,
-        peak_acceleration=10 / math.sqrt(3),
-        peak_jerk=60.0,
-        continuity=2,
-    )
-    line = RiseClaim(
-        parameters=Table(x=(0.0, 0.4, 1.0), y=(0.0, 0.4, 1.0), start=(1.0, 0.0), end=(1.0, 0.0)),
-        values={0.2: 0.2, 0.7: 0.7},
-        velocities={0.2: 1.0, 0.7: 1.0},
-        peak_velocity=1.0,
-        peak_acceleration=math.inf,
-        peak_jerk=math.inf,
-        continuity=0,
-    )
-    return quintic, line
-
-
-RISES.hang(
-    RiseEntry(
+RISES.register(
+    LawEntry(
         name="b-spline",
-        parameters=BSpline,
+        example=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
         doc="a curve pulled by control values: shape a motion by hand, each value near its place",
         continuity="C2 to C4 inside (degree - 1); at the ends by the number of zeros and ones",
         source="C. de Boor, A Practical Guide to Splines",
-        claims=_claims_bspline,
-    )
-)
-RISES.hang(
-    RiseEntry(
+    ),
+    LawEntry(
         name="table",
-        parameters=Table,
+        example=TableRise(
+            x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.00856, 0.16308, 0.235169, 0.83692, 1.0)
+        ),
         doc="measured or computed points, joined with the least jerk; repeats a motion that exists",
         continuity="C4 inside; C2 between dwells, where the jerk jumps at both ends",
         source="C. de Boor, A Practical Guide to Splines; the conditions derived from least jerk",
-        claims=_claims_table,
-    )
+    ),
 )

@@ -16,8 +16,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.rise_pieces import from_half, lag
-from gearcam.laws.rises import NARROWEST, RISES, ClosedForm, RiseClaim, RiseEntry
+from gearcam.laws.rises import NARROWEST, RISES, ClosedForm
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import NUMBER, param
@@ -101,106 +102,26 @@ class ModifiedSine(ClosedForm):
         return scca(0.25, 0.0, 0.75)
 
 
-def _claims_scca() -> tuple[RiseClaim, ...]:
-    """Norton's Ca, Cv, Cj, from another elimination than the code's; and a member of each kind."""
-    pi = math.pi
-    claims = []
-    for b, c, d in ((0.2, 0.5, 0.3), (0.3, 0.6, 0.1), (0.6, 0.0, 0.4)):
-        bottom = (pi**2 - 8) * (b * b - d * d) - 2 * pi * (pi - 2) * b + pi**2
-        peak = 4 * pi**2 / bottom
-        claims.append(
-            RiseClaim(
-                parameters=Scca(b=b, c=c, d=d),
-                values={b / 2: peak * (b / pi) ** 2 * (pi / 2 - 1), 0.5: 0.5},
-                velocities={b / 2: peak * b / pi, (b + c) / 2: peak * (b / pi + c / 2)},
-                peak_velocity=peak * ((b + d) / pi + c / 2),
-                peak_acceleration=peak,
-                peak_jerk=peak * pi / min(b, d),
-                continuity=2,
-            )
-        )
-    parabolas = RiseClaim(
-        parameters=Scca(b=0.0, c=1.0, d=0.0),
-        values={0.25: 0.125, 0.5: 0.5, 0.75: 0.875},
-        velocities={0.25: 1.0, 0.5: 2.0},
-        peak_velocity=2.0,
-        peak_acceleration=4.0,
-        peak_jerk=math.inf,
-        continuity=1,
-    )
-    # all sine: two cycloidal halves that meet with a jump of the acceleration
-    sines = RiseClaim(
-        parameters=Scca(b=1.0, c=0.0, d=0.0),
-        values={0.5: 0.5},
-        velocities={0.5: pi / (pi - 2)},
-        peak_velocity=pi / (pi - 2),
-        peak_acceleration=pi**2 / (pi - 2),
-        peak_jerk=math.inf,
-        continuity=1,
-    )
-    return (*claims, parabolas, sines)
-
-
-def _claims_trapezoid() -> tuple[RiseClaim, ...]:
-    pi = math.pi
-    eighth = (pi - 2) / (4 * pi * (pi + 2))
-    return (
-        RiseClaim(
-            parameters=ModifiedTrapezoid(),
-            values={0.125: eighth, 0.375: eighth + 0.25, 0.5: 0.5, 0.625: 0.75 - eighth},
-            velocities={0.125: 2 / (pi + 2), 0.375: 2 * (pi + 1) / (pi + 2), 0.5: 2.0},
-            peak_velocity=2.0,
-            peak_acceleration=8 * pi / (pi + 2),
-            peak_jerk=32 * pi**2 / (pi + 2),
-            continuity=2,
-        ),
-    )
-
-
-def _claims_sine() -> tuple[RiseClaim, ...]:
-    """``S = (2 + pi*phi - (9/4)*sin((4*phi + 1)*pi/3))/(pi + 4)`` from 1/8 to 7/8."""
-    pi = math.pi
-    quarter = (2 + pi / 4 - 9 * math.sqrt(3) / 8) / (pi + 4)
-    return (
-        RiseClaim(
-            parameters=ModifiedSine(),
-            values={0.125: (pi - 2) / (8 * (pi + 4)), 0.25: quarter, 0.5: 0.5, 0.75: 1 - quarter},
-            velocities={0.125: pi / (pi + 4), 0.25: 2.5 * pi / (pi + 4), 0.5: 4 * pi / (pi + 4)},
-            peak_velocity=4 * pi / (pi + 4),
-            peak_acceleration=4 * pi**2 / (pi + 4),
-            peak_jerk=16 * pi**3 / (pi + 4),
-            continuity=2,
-        ),
-    )
-
-
-RISES.hang(
-    RiseEntry(
+RISES.register(
+    LawEntry(
         name="scca",
-        parameters=Scca,
+        example=Scca(b=0.2, c=0.5, d=0.3),
         doc="one family from harmonic to cycloidal: trade peak speed, acceleration and jerk",
         continuity="C2 where b and d are above zero, else C1: the acceleration jumps",
         source="Norton, Cam Design and Manufacturing Handbook, SCCA family",
-        claims=_claims_scca,
-    )
-)
-RISES.hang(
-    RiseEntry(
+    ),
+    LawEntry(
         name="modified-trapezoid",
-        parameters=ModifiedTrapezoid,
+        example=ModifiedTrapezoid(),
         doc="low peak acceleration without a jump: high speeds with stiff followers",
         continuity="C2: the jerk jumps at both ends",
         source="Neklutin; Norton, Cam Design and Manufacturing Handbook",
-        claims=_claims_trapezoid,
-    )
-)
-RISES.hang(
-    RiseEntry(
+    ),
+    LawEntry(
         name="modified-sine",
-        parameters=ModifiedSine,
+        example=ModifiedSine(),
         doc="low peak speed and gentle torque: heavy loads, indexing tables, soft drives",
         continuity="C2: the jerk jumps at both ends",
         source="Norton, Cam Design and Manufacturing Handbook",
-        claims=_claims_sine,
-    )
+    ),
 )

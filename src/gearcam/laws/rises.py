@@ -1,29 +1,25 @@
-"""Rises of cam followers: laws of motion on the unit square, and their registry.
+"""Rises of cam followers on the unit square, and their registry.
 
 A rise gives the lift over the whole lift, S, over the cam angle over the whole angle, phi, both
 from 0 to 1; S', S'' and S''' are its velocity, acceleration and jerk. A lift program scales it to
 a phase of the cam and turns it over for a return. Every rise is a piecewise analytic function with
 exact derivatives, made from its *parameters*, a frozen dataclass with the method
-``build(tolerances)``; ``RISES.hang`` puts it into the registry together with its claims, which one
-parametrised test proves for all.
+``build(tolerances)``; ``RISES.register`` puts it into the registry.
 
 Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 """
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.laws.entry import Entry
-from gearcam.numeric.piecewise import Piecewise, extremes
+from gearcam.laws.entry import LawEntry
+from gearcam.numeric.piecewise import Piecewise
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
@@ -34,9 +30,6 @@ NARROWEST: Final = 1e-6
 
 It is a second of arc of the cam; the place of a knot in it is still known to 1e-10 of its width.
 """
-
-_JUMP: Final = 1e-9
-"""Jump of a derivative that counts, in its largest value: far above rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,74 +50,15 @@ class Rise:
     mirrored: bool = False
     cuts: Array | None = None
 
-    @cached_property
-    def _sides(self) -> tuple[list[list[float]], list[list[float]]]:
-        """S to S''' before and after every knot, with dwells beyond the ends."""
-        last = len(self.function.knots) - 1
-        before = [self.function.side(knot, -1, 3) for knot in range(1, last + 1)]
-        after = [self.function.side(knot, 1, 3) for knot in range(last)]
-        return [[0.0, 0.0, 0.0, 0.0], *before], [*after, [1.0, 0.0, 0.0, 0.0]]
-
     @property
-    def start(self) -> tuple[float, float, float]:
+    def start(self) -> tuple[float, ...]:
         """Velocity, acceleration and jerk at the start of the rise."""
-        return _derivatives(self._sides[1][0])
+        return tuple(self.function.side(0, 1, 3)[1:])
 
     @property
-    def end(self) -> tuple[float, float, float]:
+    def end(self) -> tuple[float, ...]:
         """Velocity, acceleration and jerk at the end of the rise."""
-        return _derivatives(self._sides[0][-1])
-
-    @cached_property
-    def _largest(self) -> tuple[float, ...]:
-        """Largest absolute S', S'' and S''' between knots."""
-
-        def values(phi: Array) -> tuple[Array, Array]:
-            found = np.array(self.function.derivatives(phi, 4))
-            return found[1:4], found[2:5]
-
-        inside = extremes(values, self.function.knots if self.cuts is None else self.cuts)
-        before, after = self._sides
-        at_knots = np.abs(before[1:] + after[:-1]).max(axis=0)[1:]
-        return tuple(
-            max(float(np.abs(found).max()), float(end))
-            for (_, found), end in zip(inside, at_knots, strict=True)
-        )
-
-    @cached_property
-    def continuity(self) -> int:
-        """Order of continuity between dwells, -1 to 3, where 3 means at least 3.
-
-        It counts over the knots and both ends: 0 where the velocity jumps (hard shock), 1 where the
-        acceleration does (soft shock), 2 where the jerk does.
-        """
-        before, after = np.array(self._sides)
-        scales = np.array([1.0, *self._largest])
-        jumps = (np.abs(after - before) > _JUMP * scales).any(axis=0)
-        return int(np.argmax(np.append(jumps, True))) - 1
-
-    @property
-    def peak_velocity(self) -> float:
-        """Largest absolute velocity; infinite where S jumps."""
-        return self._peak(1)
-
-    @property
-    def peak_acceleration(self) -> float:
-        """Largest absolute acceleration; infinite where the velocity jumps."""
-        return self._peak(2)
-
-    @property
-    def peak_jerk(self) -> float:
-        """Largest absolute jerk; infinite where velocity or acceleration jump."""
-        return self._peak(3)
-
-    def _peak(self, order: int) -> float:
-        return self._largest[order - 1] if self.continuity >= order - 1 else math.inf
-
-
-def _derivatives(side: list[float]) -> tuple[float, float, float]:
-    _, velocity, acceleration, jerk = (value + 0.0 for value in side)  # -0.0 becomes 0.0
-    return velocity, acceleration, jerk
+        return tuple(self.function.side(len(self.function.knots) - 1, -1, 3)[1:])
 
 
 class RiseParameters(Protocol):
@@ -149,60 +83,20 @@ class ClosedForm(ABC):
         return Rise(function=self.function(), mirrored=self.mirrored)
 
 
-@dataclass(frozen=True, kw_only=True)
-class RiseClaim:
-    """What a rise must give for an example, known in closed form and independently of the code.
+_HOMES: Final = {
+    "rise_simple": ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal"),
+    "rise_polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
+    "rise_trapezoids": (
+        "trapezoidal-velocity",
+        "sine-trapezoidal-velocity",
+        "trapezoidal-acceleration",
+    ),
+    "rise_scca": ("modified-trapezoid", "modified-sine", "scca"),
+    "rise_points": ("b-spline", "table"),
+    "rise_formula": ("formula",),
+}
 
-    Parameters
-    ----------
-    parameters : RiseParameters
-        The example.
-    values, velocities : mapping of float to float
-        S and S' by phi.
-    peak_velocity, peak_acceleration, peak_jerk : float
-        Largest absolute values; infinite where a derivative below jumps.
-    continuity : int
-        Order of continuity between dwells (3 means at least 3).
-    """
-
-    parameters: RiseParameters
-    values: Mapping[float, float]
-    velocities: Mapping[float, float] = field(default_factory=dict)
-    peak_velocity: float
-    peak_acceleration: float
-    peak_jerk: float
-    continuity: int
-
-
-class RiseEntry(Entry[RiseClaim]):
-    """A rise in the registry; its name is that of ``motion.law``."""
-
-
-RISES: Final[Registry[RiseEntry]] = Registry(
-    "rise",
-    {
-        "gearcam.laws.rise_simple": (
-            "constant-velocity",
-            "constant-acceleration",
-            "harmonic",
-            "cycloidal",
-        ),
-        "gearcam.laws.rise_polynomials": (
-            "2-3",
-            "3-4-5",
-            "4-5-6-7",
-            "5-6-7-8-9",
-            "3-4-5-6",
-            "polynomial",
-        ),
-        "gearcam.laws.rise_trapezoids": (
-            "trapezoidal-velocity",
-            "sine-trapezoidal-velocity",
-            "trapezoidal-acceleration",
-        ),
-        "gearcam.laws.rise_scca": ("modified-trapezoid", "modified-sine", "scca"),
-        "gearcam.laws.rise_points": ("b-spline", "table"),
-        "gearcam.laws.rise_formula": ("formula",),
-    },
+RISES: Final[Registry[LawEntry]] = Registry(
+    "rise", {f"gearcam.laws.{home}": names for home, names in _HOMES.items()}
 )
 """The rises by name."""

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.driver import law_of_centrode
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -22,7 +23,7 @@ _BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) 
 
 
 @dataclass(frozen=True, kw_only=True)
-class BSpline:
+class BSplineLaw:
     """The radius is a closed uniform cubic B-spline over phi1 with these control values.
 
     Control value k belongs to the angle ``k/n`` of a lobe; the curve stays between its neighbours'
@@ -160,66 +161,19 @@ def _graded(knots: np.ndarray) -> np.ndarray:
     return middle - (middle - knots[1]) * 0.5 ** np.append(np.arange(1, 24), np.inf)
 
 
-def _claims_spline() -> tuple[Claim, ...]:
-    # equal control values give a circle
-    circle = Claim(
-        parameters=BSpline(radii=(2.0, 2.0, 2.0, 2.0)),
-        lobes=Lobes(2, 3),
-        ratio={0.0: 2 / 3, 1.0: 2 / 3},
-        motion={1.5: 1.0, 3 * math.pi: 2 * math.pi},
-        continuity=3,
-    )
-    # r = 1 at 0 and pi, (1 + 4*1.2 + 1)/6 at pi/2; c by quadrature with 30 digits
-    c, top, low = 2.01705534812207634097601527257, 17 / 15, 13 / 15
-    wave = Claim(
-        parameters=BSpline(radii=(1.0, 1.2, 1.0, 0.8)),
-        ratio={
-            0.0: 1 / (c - 1),
-            math.pi: 1 / (c - 1),
-            math.pi / 2: top / (c - top),
-            1.5 * math.pi: low / (c - low),
-        },
-        motion={2 * math.pi: 2 * math.pi},
-        continuity=2,
-    )
-    return circle, wave
-
-
-def _claims_polygon() -> tuple[Claim, ...]:
-    # h and the corner's middle d by quadrature with 30 digits
-    h, d, c = 0.448203891095789116482924270672, 0.398153761100542820776691342953, 1 / 6
-    return (
-        Claim(
-            parameters=RoundedPolygon(corners=4, corner_radius=c),
-            ratio={
-                0.0: h / (1 - h),
-                math.pi / 2: h / (1 - h),
-                math.pi / 4: (d + c) / (1 - d - c),
-                0.5: h / (math.cos(0.5) - h),
-            },
-            motion={math.pi / 4: math.pi / 4, math.pi / 2: math.pi / 2, 2 * math.pi: 2 * math.pi},
-            continuity=1,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="bspline",
-        parameters=BSpline,
+        example=BSplineLaw(radii=(2.0, 2.0, 2.0, 2.0)),
         doc="a closed cubic B-spline of the driver's radius, by control values",
         continuity="C2",
         source="003 section 1.2; uniform cubic B-splines",
-        claims=_claims_spline,
-    )
-)
-LAWS.hang(
+    ),
     LawEntry(
         name="rounded-polygon",
-        parameters=RoundedPolygon,
+        example=RoundedPolygon(corners=4, corner_radius=1 / 6),
         doc="a regular polygon with rounded corners, phi1 = 0 at the middle of a side",
         continuity="C1: the curvature jumps from sides to corners",
         source="003 fig. 1.7 (square wheels); closure solved for the side's distance",
-        claims=_claims_polygon,
-    )
+    ),
 )

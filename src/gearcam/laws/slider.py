@@ -1,7 +1,7 @@
 """The crank angle that moves a slide as desired (003 section 1.4.1).
 
-A crank of radius 1 with a rod of length `rod` moves a slide; `s` is the slide's way from the dead
-centre that is farther from the shaft, 0 to 2, and ``d = 1 + rod - s`` its distance from the shaft.
+A crank of radius 1 with a rod of length `rod` moves a slide; `s` is the slide's distance from the
+dead centre that is farther from the shaft, 0 to 2, and ``d = 1 + rod - s`` that from the shaft.
 The triangle of crank, rod and d gives the crank angle psi without cancellation,
 
     sin(psi/2)^2 = s*(2*rod - s)/(4*d),   cos(psi/2)^2 = (2 - s)*(2 + 2*rod - s)/(4*d).
@@ -27,7 +27,7 @@ from gearcam.numeric.jets import Jet, asin, atan, polynomial, slope, sqrt
 from gearcam.numeric.piecewise import Piece, extremes
 
 Array = NDArray[np.float64]
-Motion = Callable[[Jet], Jet]
+Function = Callable[[Jet], Jet]
 
 _ORDER = 30
 """Terms of the Taylor series at a dead centre."""
@@ -47,7 +47,7 @@ class Slide:
 
     Parameters
     ----------
-    way : callable
+    position : callable
         s(phi1), 0 to 2.
     rod : float
         Length of the rod, in crank radii.
@@ -57,20 +57,20 @@ class Slide:
         After which the motion repeats.
     """
 
-    way: Motion
+    position: Function
     rod: float
     outer: float
     inner: float
     period: float
 
 
-def make_slide(shape: Motion, rod: float, period: float) -> tuple[Slide, float]:
+def make_slide(shape: Function, rod: float, period: float) -> tuple[Slide, float]:
     """Scale a desired motion to a crank.
 
     Parameters
     ----------
     shape : callable
-        The slide's way at any scale and from any place, rising towards the shaft.
+        The slide's position at any scale and from any place, rising towards the shaft.
     rod : float
         Length of the rod, in crank radii.
     period : float, rad
@@ -81,12 +81,12 @@ def make_slide(shape: Motion, rod: float, period: float) -> tuple[Slide, float]:
     slide : Slide
         In crank radii.
     radius : float
-        Crank radius in the unit of the way: half the stroke.
+        Crank radius in the unit of the slide: half the stroke.
 
     Raises
     ------
     InfeasibleError
-        If the way does not go once forth and once back.
+        If the slide does not go forth once and back once.
     """
 
     def function(x: Array) -> tuple[Array, Array]:
@@ -106,10 +106,10 @@ def make_slide(shape: Motion, rod: float, period: float) -> tuple[Slide, float]:
     (outer, low), (inner, high) = sorted(turns, key=lambda turn: turn[1])
     radius = 0.5 * (high - low)
 
-    def way(x: Jet) -> Jet:
+    def position(x: Jet) -> Jet:
         return (shape(x) - low) / radius
 
-    return Slide(way=way, rod=rod, outer=outer, inner=inner, period=period), radius
+    return Slide(position=position, rod=rod, outer=outer, inner=inner, period=period), radius
 
 
 def _dead_centres(
@@ -152,8 +152,8 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
     """
     outer = (slide.outer, *_series(slide, slide.outer, 1.0), 1.0)
     inner = (slide.inner, *_series(slide, slide.inner, -1.0), -1.0)
-    motion, period = _between(slide), slide.period
-    ratio = derivative(motion)
+    angle, period = _between(slide), slide.period
+    ratio = derivative(angle)
     stretches: list[tuple[float, float, Piece]] = []
     for (middle, reach, powers, sign), other in ((outer, inner), (inner, outer)):
         gap = (other[0] - middle) % period
@@ -161,7 +161,7 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
             place = middle + turn * period
             low, high = place + reach, place + gap - other[1]
             stretches.append((place - reach, low, Piece(slope, polynomial, (place, *powers))))
-            stretches.append((low, high, Piece(ratio, motion, (sign,))))
+            stretches.append((low, high, Piece(ratio, angle, (sign,))))
     inside = sorted(
         (
             (max(low, 0.0), min(high, period), piece)
@@ -173,7 +173,7 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
     knots = np.array([low for low, _, _ in inside] + [period])
     knots[0] = 0.0
     pieces = [piece for _, _, piece in inside]
-    first = slide.way(Jet.variable(np.zeros(1), 1)).derivatives()
+    first = slide.position(Jet.variable(np.zeros(1), 1)).derivatives()
     return knots, pieces, _start(slide, float(first[0][0]), float(first[1][0]))
 
 
@@ -187,17 +187,17 @@ def _start(slide: Slide, s: float, slope: float) -> float:
 def _between(slide: Slide) -> Callable[..., Jet]:
     """Return the crank angle between dead centres; sign 1 from the outer to the inner one."""
 
-    def motion(x: Jet, sign: Array) -> Jet:
-        s = slide.way(x)
+    def angle(x: Jet, sign: Array) -> Jet:
+        s = slide.position(x)
         sine, cosine = s * (2.0 * slide.rod - s), (2.0 - s) * (2.0 + 2.0 * slide.rod - s)
         return (2.0 * sign) * atan(sqrt(sine / cosine))
 
-    return motion
+    return angle
 
 
 def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]]:
     """Return reach and coefficients of the series about a dead centre; sign -1 for the inner."""
-    jet = slide.way(Jet.variable(np.array([place]), _ORDER))
+    jet = slide.position(Jet.variable(np.array([place]), _ORDER))
     c = np.array([float(np.ravel(value)[0]) for value in jet.c]) * sign
     if not c[2] > 1e-6:
         raise InfeasibleError(
@@ -205,7 +205,7 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
             where=f"law.slide, {angle_text(place)}",
             value=2.0 * float(c[2]),
             limit=2e-6,
-            nearest="this is the second derivative of the way, in crank radii",
+            nearest="this is the second derivative of the slide's position, in crank radii",
         )
     over, small = Jet(c[2:].tolist()), Jet([0.0, 0.0, *c[2:-2].tolist()])
     s = small if sign > 0.0 else 2.0 - small

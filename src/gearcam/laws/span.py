@@ -1,4 +1,4 @@
-"""How far a law reaches: lobes of a closed pair, or the way of an open one with its ends.
+"""How far a law reaches: lobes of a closed pair, or the travel of an open one with its ends.
 
 A closed law repeats. An open one is continued beyond both ends, since the teeth there roll beyond
 them: by the logarithmic spiral that goes on with the end's ratio and slope (a circle where the
@@ -58,7 +58,7 @@ class Lobes:
 
 @dataclass(frozen=True)
 class Travel:
-    """The way of an open pair.
+    """The travel of an open pair.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Travel:
 
 
 @dataclass(frozen=True)
-class Feed:
+class RackTravel:
     """A wheel that drives a rack, turning for ever; the rack is as long as its teeth.
 
     Parameters
@@ -82,7 +82,7 @@ class Feed:
     period : float, rad
         A turn of the wheel.
     advance : float
-        The rack's way in a turn, in the scale of the wheel's radius.
+        The rack's travel in a turn, in the scale of the wheel's radius.
     """
 
     period: float
@@ -95,7 +95,7 @@ class Feed:
 ONE_LOBE: Final = Lobes(1, 1)
 """Of equal tooth counts."""
 
-Span = Lobes | Travel | Feed
+Span = Lobes | Travel | RackTravel
 """Closed, open, or closed on a rack."""
 
 
@@ -123,7 +123,7 @@ def demand_equal(lobes: Lobes) -> None:
 
 
 def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | None) -> Span:
-    """Return the way of an open pair where both travels, rad, are given, else the lobes.
+    """Return the travel of an open pair where it is given for both wheels, else the lobes.
 
     Parameters
     ----------
@@ -187,14 +187,9 @@ def rough(name: str, error: NotSmoothError) -> InfeasibleError:
     return InfeasibleError(f"{name} {state}", where=angle_text(error.place))
 
 
-def driver_way() -> Any:
-    """Return the optional parameter ``driver_travel`` of a law (see `param`)."""
-    return param(ANGLE, default=None, gt=0, le=360, doc="how far the driver of an open pair turns")
-
-
-def driven_way() -> Any:
-    """Return the optional parameter ``driven_travel`` of a law (see `param`)."""
-    doc = "how far the driven wheel of an open pair turns"
+def open_travel(wheel: str) -> Any:
+    """Return the optional parameter of a law for the travel of a `wheel` (see `param`)."""
+    doc = f"how far the {wheel} of an open pair turns"
     return param(ANGLE, default=None, gt=0, le=360, doc=doc)
 
 
@@ -209,14 +204,14 @@ def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[NDArray[np.float64
     Parameters
     ----------
     ratio : Piecewise
-        i21 over the way, positive.
+        i21 over the travel, positive.
     pieces : list of Piece
         Its pieces.
 
     Returns
     -------
     knots : (n + 3,) array, rad
-        From before 0 to beyond the way.
+        From before 0 to beyond the travel.
     pieces : list of n + 2 Piece
         With a spiral before and behind. Each is as long as the centrode itself, or as the room
         between the shafts allows.

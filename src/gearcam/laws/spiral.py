@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.entry import LawEntry
 from gearcam.laws.span import Lobes, Travel, demand_equal
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece
@@ -45,7 +46,7 @@ class LogSpiral:
             )
         first = start / (1.0 + start)
         growth = math.log((1.0 + end) / (1.0 + start)) / self.driven_travel
-        way = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
+        travel = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
 
         def share(x: Jet) -> Jet:
             return first * exp(growth * x)
@@ -53,37 +54,17 @@ class LogSpiral:
         piece = Piece(
             lambda x: share(x) / (1.0 - share(x)), lambda x: (-1.0 / growth) * log(1.0 - share(x))
         )
-        solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(way)}
-        span = Travel(way, self.driven_travel)
-        return make_law(span, [0.0, way], [piece], tolerances, solved)
+        solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
+        span = Travel(travel, self.driven_travel)
+        return make_law(span, [0.0, travel], [piece], tolerances, solved)
 
 
-def _claims() -> tuple[Claim, ...]:
-    # from u = 1/3 to 2/3 both wheels turn alike: r1 doubles while r2 halves
-    k = math.log(2.0) / 2.0
-    return (
-        Claim(
-            parameters=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
-            ratio={0.0: 0.5, 1.0: 1 / (3 / math.sqrt(2) - 1), 2.0: 2.0},
-            motion={2.0: 2.0, 1.0: math.log((2 / 3) / (1 - math.sqrt(2) / 3)) / k},
-            continuity=3,
-        ),
-        Claim(
-            parameters=LogSpiral(ratios=(3.0, 1.0), driven_travel=1.0),
-            ratio={0.0: 3.0, math.log(1.5) / math.log(2): 1.0},
-            motion={math.log(1.5) / math.log(2): 1.0},
-            continuity=3,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="log-spiral",
-        parameters=LogSpiral,
+        example=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
         doc="logarithmic spirals on an open pair, from one ratio to another",
         continuity="analytic",
         source="003 fig. 1.9; classical",
-        claims=_claims,
-    )
+    ),
 )

@@ -1,20 +1,22 @@
-"""Measured or computed motions: a table of driver angles with ratios, driven angles or radii."""
+"""Measured or computed laws: a table of driver angles with ratios, driven angles or radii."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, Claim, LawEntry, RatioLaw, make_law
-from gearcam.laws.columns import ColumnsError, read_columns
+from gearcam.laws.base import LAWS, RatioLaw, make_law
+from gearcam.laws.columns import ColumnsError, CsvRows, FromFile
 from gearcam.laws.driver import law_of_centrode
-from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, driven_way
+from gearcam.laws.entry import LawEntry
+from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
 from gearcam.numeric.jets import polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
@@ -31,8 +33,8 @@ _MOST: Final = 20000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Table:
-    """Points of a motion: in a CSV file, or in the design itself.
+class TableLaw(FromFile):
+    """Points of a law: in a CSV file, or in the design itself.
 
     The curve through the points is C2 and rises only where they rise. A ratio is scaled so that it
     closes, a driven angle must close, and a radius (at any scale) gives the centre distance.
@@ -54,7 +56,7 @@ class Table:
     r1: tuple[float, ...] | None = param(
         NUMBER, default=None, gt=0, min_length=_FEWEST, doc="driver's radii at phi1, at any scale"
     )
-    driven_travel: float | None = driven_way()
+    driven_travel: float | None = open_travel("driven wheel")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -65,7 +67,7 @@ class Table:
                 yield "file", None, "the points are given twice", rule
                 return
             try:
-                read_table(self.file)
+                _ = self.points
             except ColumnsError as error:
                 columns = f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES)}"
                 yield "file", None, str(error), columns
@@ -86,47 +88,34 @@ class Table:
         Raises
         ------
         InfeasibleError
-            If the file is not such a table any more, spans no lobe, or its motion cannot be made.
+            If the file is not such a table any more, spans no lobe, or no law can be made of it.
         """
-        if self.file is None:
-            kind = next(name for name in _INLINE if getattr(self, name) is not None)
-            angles, values = np.array(self.phi1), np.array(getattr(self, kind))
-            kind = _INLINE[kind]
-        else:
-            try:
-                kind, angles, values = read_table(self.file)
-            except ColumnsError as error:
-                raise InfeasibleError(str(error), where="law.file") from error
+        try:
+            kind, angles, values = self.points
+        except ColumnsError as error:
+            raise InfeasibleError(str(error), where="law.file") from error
         return law_of_points(kind, angles, values, lobes, self.driven_travel, tolerances)
 
+    @cached_property
+    def points(self) -> tuple[str, Array, Array]:
+        """What the values are (``ratio``, ``phi2_deg`` or ``r1``), angles and values, rad or 1.
 
-def read_table(file: str) -> tuple[str, Array, Array]:
-    """Read a table.
+        It raises `ColumnsError` with the line of the file that is wrong.
+        """
+        if self.rows is not None:
+            return _points(self.rows)
+        kind = next(name for name in _INLINE if getattr(self, name) is not None)
+        return _INLINE[kind], np.array(self.phi1), np.array(getattr(self, kind))
 
-    Parameters
-    ----------
-    file : str
-        Path of a CSV file; lines that begin with # are comments.
 
-    Returns
-    -------
-    kind : str
-        ``ratio``, ``phi2_deg`` or ``r1``.
-    angles, values : (n,) arrays, rad and rad or 1
-        As in the file, angles rising.
-
-    Raises
-    ------
-    ColumnsError
-        With the line that is wrong.
-    """
+def _points(rows: CsvRows) -> tuple[str, Array, Array]:
     kinds: list[str] = []
 
     def choose(head: list[str]) -> list[str]:
         kinds[:] = [name for name in _VALUES if name in head]
         return [_ANGLE, *kinds] if len(kinds) == 1 else []
 
-    points, lines = read_columns(file, choose)
+    points, lines = rows.columns(choose)
     if not _FEWEST <= len(points) <= _MOST:
         raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
     falling = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
@@ -166,7 +155,7 @@ def law_of_points(
     Raises
     ------
     InfeasibleError
-        If they span no lobe, do not repeat, or their motion cannot be made.
+        If they span no lobe, do not repeat, or no law can be made of them.
     """
     span = _span(angles, lobes, driven_travel)
     knots = angles.copy()
@@ -240,41 +229,12 @@ def _demand_positive(kind: str, angles: Array, values: Array) -> None:
         )
 
 
-def _claims() -> tuple[Claim, ...]:
-    turn = 2 * math.pi
-    angles = tuple(turn * k / 8 for k in range(9))
-    # points on a straight line give a line; values at the points are kept
-    waves = tuple(a - 0.1 * math.sin(a) for a in angles)
-    return (
-        Claim(
-            parameters=Table(phi1=angles, ratio=(3.0,) * 9),
-            lobes=Lobes(1, 2),
-            ratio={0.0: 0.5, 1.0: 0.5, 5.0: 0.5},
-            motion={1.0: 0.5, turn: math.pi},
-            continuity=3,
-        ),
-        Claim(
-            parameters=Table(phi1=angles, phi2=waves),
-            ratio={},
-            motion=dict(zip(angles, waves, strict=True)),
-            continuity=1,
-        ),
-        Claim(
-            parameters=Table(phi1=angles, r1=tuple(2.0 + 0.2 * math.cos(a) for a in angles)),
-            ratio={},
-            motion={turn: turn, math.pi: math.pi},
-            continuity=2,
-        ),
-    )
-
-
-LAWS.hang(
+LAWS.register(
     LawEntry(
         name="table",
-        parameters=Table,
+        example=TableLaw(phi1=tuple(math.pi * k / 4 for k in range(9)), ratio=(3.0,) * 9),
         doc="points of the ratio, the driven angle or the driver's radius, from a CSV file",
         continuity="C2 in what is given; so C1 where it is phi2",
         source="quintics that keep the shape of the points (`gearcam.numeric.shape_keeping`)",
-        claims=_claims,
-    )
+    ),
 )

@@ -35,14 +35,14 @@ class Arc:
 def _cosine(start: float, end: float, low: float, width: float) -> Piece:
     """003 eqs. (2.1), (2.17) with Tables 2.2, 2.4."""
     mean, half, speed = 0.5 * (start + end), 0.5 * (start - end), math.pi / width
-    return Piece(_cosine_ratio, _cosine_motion, (mean, half, speed, low))
+    return Piece(_cosine_ratio, _cosine_integral, (mean, half, speed, low))
 
 
 def _cosine_ratio(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -> Jet:
     return half * cos(speed * (x - low)) + mean
 
 
-def _cosine_motion(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -> Jet:
+def _cosine_integral(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -> Jet:
     return mean * x + (half / speed) * sin(speed * (x - low))
 
 
@@ -52,11 +52,11 @@ def _curve(*powers: float) -> Callable[[float, float, float, float], Piece]:
     def ratio(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
         return rise * polynomial((x - low) / width, 0.0, *powers) + start
 
-    def motion(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
+    def integral(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
         t = (x - low) / width
         return width * (start * t + rise * primitive(t, 0.0, *powers))
 
-    return lambda start, end, low, width: Piece(ratio, motion, (start, end - start, low, width))
+    return lambda start, end, low, width: Piece(ratio, integral, (start, end - start, low, width))
 
 
 _CUBIC: Final = (0.0, 0.0, 3.0, -2.0)
@@ -68,14 +68,14 @@ _QUINTIC: Final = (0.0, 0.0, 0.0, 10.0, -15.0, 6.0)
 
 def _sine(start: float, end: float, low: float, width: float) -> Piece:
     """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
-    return Piece(_sine_ratio, _sine_motion, (start, end - start, 0.5 * math.pi / width, low))
+    return Piece(_sine_ratio, _sine_integral, (start, end - start, 0.5 * math.pi / width, low))
 
 
 def _sine_ratio(x: Jet, start: Value, rise: Value, speed: Value, low: Value) -> Jet:
     return rise * sin(speed * (x - low)) + start
 
 
-def _sine_motion(x: Jet, start: Value, rise: Value, speed: Value, low: Value) -> Jet:
+def _sine_integral(x: Jet, start: Value, rise: Value, speed: Value, low: Value) -> Jet:
     return start * x - (rise / speed) * cos(speed * (x - low))
 
 

@@ -142,7 +142,7 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     size = every.shape[1]
 
     def column(number: int, values: Array) -> Array:
-        result = np.ma.masked_all(size, dtype=float)
+        result = np.ma.array(np.zeros(size), mask=True)
         result[rows[number]] = np.ma.masked_invalid(values)
         return result
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 
-KIND = "gear-pair-meshing"
-"""The kind of design that the checks of a study belong to."""
+KIND = "meshing"
+"""The checks of a study."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +45,7 @@ class MeshingSpec:
     teeth: tuple[int, ...] | None = param(
         COUNT, default=None, ge=1, min_length=1, doc="teeth of the driver to study; all if left out"
     )
-    helix_step: int = param(
+    step: int = param(
         COUNT, default=1, ge=1, le=100, doc="step of stepped wheels that is studied, from below"
     )
     center_distance: float | None = param(

@@ -100,6 +100,20 @@ class Contour:
         made = (curve_moments(run.points, run.tangents) for run in self.runs)
         return sum(made, start=Moments())
 
+    @property
+    def length(self) -> float:
+        """Length of the polygon's boundary, mm."""
+        return float(np.hypot(*np.diff(self.vertices, axis=0, append=self.vertices[:1]).T).sum())
+
+    @property
+    def reach(self) -> float:
+        """Largest distance of a vertex from the origin, mm."""
+        return float(np.hypot(*self.vertices.T).max())
+
+    def points(self, _: float) -> Array:
+        """Return the polygon's vertices, which keep the contour's own tolerance."""
+        return self.vertices
+
     @cached_property
     def polygon(self) -> Polygon:
         """The polygon as a shapely region."""

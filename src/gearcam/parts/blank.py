@@ -18,13 +18,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any, Final
 
+from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, Quantity, param
 
-KIND: Final = "gear-pair-parts"
-"""The kind of the checks of a pair's parts."""
-
-CAM_KIND: Final = "cam-parts"
-"""The kind of the checks of a cam as a part."""
+KIND: Final = "parts"
+"""The checks of parts."""
 
 _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
 """Sizes of what a shaft, a bolt or a pin goes through."""
@@ -217,11 +215,11 @@ def _bore_problems(one: WheelBlank) -> Iterator[_Told]:
         missing = "keyway_width" if one.keyway_depth else "keyway_depth"
         yield missing, "a keyway has width and depth", "keyway_width_mm with keyway_depth_mm"
     if bore and one.keyway_width >= bore:
-        yield "keyway_width", "is as wide as the bore", f"below the bore's {bore:.6g} mm"
+        yield "keyway_width", "is as wide as the bore", f"below the bore's {shown(bore)} mm"
     if one.keyway_width and one.bore_flat:
         yield "bore_flat", "the bore has a keyway already", "keyway or flat"
     if one.bore_flat and not 0.5 * bore < one.bore_flat < bore:
-        rule = f"above {0.5 * bore:.6g} and below the bore's {bore:.6g} mm"
+        rule = f"above {shown(0.5 * bore)} and below the bore's {shown(bore)} mm"
         yield "bore_flat", "is no flat of this bore", rule
 
 
@@ -234,5 +232,5 @@ def _other_problems(one: WheelBlank) -> Iterator[_Told]:
     if one.hub_diameter and not (one.hub_front or one.hub_back):
         yield "hub_front", "the hub has no length", "hub_front_mm or hub_back_mm above 0"
     if one.hub_diameter and one.hub_diameter <= 2.0 * one.bore_reach:
-        rule = f"above {2.0 * one.bore_reach:.6g} mm, what the bore takes"
+        rule = f"above {shown(2.0 * one.bore_reach)} mm, what the bore takes"
         yield "hub_diameter", "the bore leaves no hub", rule

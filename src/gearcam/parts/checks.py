@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from gearcam.findings import Finding, check
-from gearcam.parts.blank import CAM_KIND, KIND
-from gearcam.parts.part import Part
+from gearcam.numerals import decimal, shown
+from gearcam.parts.blank import KIND
+from gearcam.parts.body import Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
@@ -46,7 +47,7 @@ class PartsSubject:
 
 @check(
     "thin-wall",
-    kind=(KIND, CAM_KIND),
+    kind=KIND,
     doc="walls between openings, and between openings and the outline or the hub's edge",
     limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0),
 )
@@ -61,7 +62,7 @@ def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="thin-wall",
                 severity="warning",
-                message=f"The wall between the {what} is {width:.4g} mm thick.",
+                message=f"The wall between the {what} is {shown(width, 4)} mm thick.",
                 value=width,
                 limit=limit,
                 unit="mm",
@@ -94,7 +95,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
 
 @check(
     "wide-kerf",
-    kind=(KIND, CAM_KIND),
+    kind=KIND,
     doc="whether what the cutter burns away fits into every place of an outline",
 )
 def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
@@ -108,8 +109,8 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
         yield Finding(
             code="wide-kerf",
             severity="error" if uncut else "warning",
-            message=f"A cutter that burns {subject.kerf:.4g} mm does not get into {what}{where}, "
-            f"which takes {tools.diameter:.4g} mm: {left}.",
+            message=f"A cutter that burns {shown(subject.kerf, 4)} mm does not get into "
+            f"{what}{where}, which takes {shown(tools.diameter, 4)} mm: {left}.",
             value=subject.kerf,
             limit=tools.diameter,
             unit="mm",
@@ -119,7 +120,7 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
 
 @check(
     "large-tool",
-    kind=(KIND, CAM_KIND),
+    kind=KIND,
     doc="the largest round tool or wire that reaches every place of an outline",
     limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
 )
@@ -132,8 +133,8 @@ def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
         yield Finding(
             code="large-tool",
             severity="note",
-            message=f"The largest round tool that reaches every place has {tools.diameter:.4g} mm: "
-            f"{what}{where} limits it.",
+            message=f"The largest round tool that reaches every place has "
+            f"{shown(tools.diameter, 4)} mm: {what}{where} limits it.",
             value=tools.diameter,
             limit=limit,
             unit="mm",
@@ -146,4 +147,7 @@ def _tightest(tools: ToolLimits) -> tuple[str, str]:
     narrow = tools.slot < 2.0 * tools.inner_radius
     place = tools.slot_place if narrow else tools.inner_place
     what = "a slot" if narrow else "an inner corner or radius"
-    return what, "" if place is None else f" at x = {place[0]:.4f}, y = {place[1]:.4f} mm"
+    if place is None:
+        return what, ""
+    x, y = (decimal(value, 4) for value in place)
+    return what, f" at x = {x}, y = {y} mm"

@@ -12,8 +12,8 @@ import numpy as np
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.openings import Place, openings
-from gearcam.parts.part import Hub, Mark, Part
+from gearcam.parts.body import Hub, Mark, Part
+from gearcam.parts.openings import Workpiece, openings
 
 Marker = Callable[[], Mark]
 
@@ -23,7 +23,7 @@ def make_part(
     contours: Sequence[Contour],
     width: float,
     blank: WheelBlank,
-    place: Place,
+    work: Workpiece,
     marker: Marker | None = None,
 ) -> Part:
     """Make the part of a wheel.
@@ -38,7 +38,7 @@ def make_part(
         Of the toothed plate.
     blank : WheelBlank
         What is wanted beyond the teeth.
-    place : Place
+    work : Workpiece
         Which wheel.
     marker : callable, optional
         Gives the timing mark; called only if marks are wanted.
@@ -53,11 +53,11 @@ def make_part(
         If something has no room, or meets something else.
     """
     edges = list(contours)
-    found = openings(blank, edges, place)
+    found = openings(blank, edges, work)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
-        _demand_within(hub, edges, place)
+        _demand_within(hub, edges, work)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     part = Part(
         name=name,
@@ -67,11 +67,11 @@ def make_part(
         hub=hub,
         marks=marks,
     )
-    _demand_marks(part, place)
+    _demand_marks(part, work)
     return part
 
 
-def finished(contour: Contour, blank: WheelBlank, place: Place) -> Contour:
+def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
     """Return an outline with its clearance and its rounded edges, in this order.
 
     Parameters
@@ -80,7 +80,7 @@ def finished(contour: Contour, blank: WheelBlank, place: Place) -> Contour:
         An outline that knows neither.
     blank : WheelBlank
         With both.
-    place : Place
+    work : Workpiece
         What is ordered, for messages.
 
     Returns
@@ -96,7 +96,7 @@ def finished(contour: Contour, blank: WheelBlank, place: Place) -> Contour:
         return contour
     from gearcam.parts.parallel import moved, rounded, sized
 
-    where = f"{place.name}, blank"
+    where = f"{work.name}, blank"
     clear = sized(
         lambda size: moved(contour, -size), blank.clearance, f"{where}.clearance_mm", "clearance"
     )
@@ -105,28 +105,28 @@ def finished(contour: Contour, blank: WheelBlank, place: Place) -> Contour:
     )
 
 
-def _demand_within(hub: Hub, contours: Sequence[Contour], place: Place) -> None:
+def _demand_within(hub: Hub, contours: Sequence[Contour], work: Workpiece) -> None:
     from shapely import Point
 
     room = min(2.0 * contour.polygon.boundary.distance(Point(0.0, 0.0)) for contour in contours)
     if hub.diameter >= room:
         raise InfeasibleError(
             "the hub reaches the roots of the teeth",
-            where=f"{place.name}, blank.hub_diameter_mm",
+            where=f"{work.name}, blank.hub_diameter_mm",
             value=hub.diameter,
             limit=room,
             unit="mm",
             nearest="the limit is where it would reach them",
             ways=(
                 Way(
-                    near={place.key("hub_diameter_mm"): room},
-                    far={place.key("hub_diameter_mm"): 0.5 * room},
+                    near={work.key("hub_diameter_mm"): room},
+                    far={work.key("hub_diameter_mm"): 0.5 * room},
                 ),
             ),
         )
 
 
-def _demand_marks(part: Part, place: Place) -> None:
+def _demand_marks(part: Part, work: Workpiece) -> None:
     """Refuse a mark that meets an opening, the hub or the outline."""
     from shapely import Point
 
@@ -139,7 +139,7 @@ def _demand_marks(part: Part, place: Place) -> None:
         if room < radius:
             raise InfeasibleError(
                 "the timing mark meets an opening, the hub or the outline",
-                where=f"{place.name}, [blank]",
+                where=f"{work.name}, [blank]",
                 value=mark.diameter,
                 limit=max(0.0, 2.0 * room),
                 unit="mm",

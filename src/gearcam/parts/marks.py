@@ -13,7 +13,8 @@ from typing import Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.parts.part import Mark
+from gearcam.numerals import shown
+from gearcam.parts.body import Mark
 
 MARK_DIAMETER: Final = 0.4
 """Diameter of a timing mark, modules: seen by eye, smaller than any rim that carries teeth."""
@@ -83,7 +84,7 @@ def timing_mark(
         root = max(0.0, pitch_radius - dedendum_mm / lean)
         raise InfeasibleError(
             "no room for a timing mark between bore and root",
-            where=f"direction {math.degrees(direction):.6g} deg",
+            where=f"direction {shown(math.degrees(direction))} deg",
             value=2 * bore_reach,
             limit=2 * root,
             unit="mm",
@@ -94,7 +95,7 @@ def timing_mark(
     if diameter is not None and diameter > largest:
         raise InfeasibleError(
             "no room for so large a timing mark between bore and root",
-            where=f"direction {math.degrees(direction):.6g} deg, blank.mark_diameter_mm",
+            where=f"direction {shown(math.degrees(direction))} deg, blank.mark_diameter_mm",
             value=diameter,
             limit=largest,
             unit="mm",

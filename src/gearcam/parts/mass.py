@@ -12,12 +12,11 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from functools import singledispatch
+from typing import Any, Final
 
 from gearcam.numeric.moments import Moments
-
-if TYPE_CHECKING:
-    from gearcam.parts.part import Part
+from gearcam.parts.body import Body, Part
 
 _PER_MM3: Final = 1e-9
 """m^3 in a mm^3."""
@@ -74,13 +73,14 @@ class MassProperties:
         }
 
 
-def volume_moments(part: Part) -> tuple[Moments, float]:
-    """Return the moments of a part's volume.
+@singledispatch
+def volume_moments(body: Body) -> tuple[Moments, float]:
+    """Return the moments of a body's volume; each kind of body registers how.
 
     Parameters
     ----------
-    part : Part
-        The part.
+    body : Body
+        A part, or another kind that is registered.
 
     Returns
     -------
@@ -89,21 +89,27 @@ def volume_moments(part: Part) -> tuple[Moments, float]:
     height : float, mm^4
         Integral of z.
     """
+    raise TypeError(f"the mass of a {type(body).__name__} is not known")
+
+
+@volume_moments.register
+def _(part: Part) -> tuple[Moments, float]:
     total, height = Moments(), 0.0
-    for slab in part.slabs:
-        plane, low, high = slab
-        total = total + (high - low) * plane
-        height += 0.5 * (high**2 - low**2) * plane.area
+    for sign, layers in ((1.0, part.layers), (-1.0, part.pockets)):
+        for layer in layers:
+            plane = sign * layer.moments
+            total = total + layer.height * plane
+            height += 0.5 * (layer.high**2 - layer.low**2) * plane.area
     return total, height
 
 
-def mass_properties(part: Part, density: float) -> MassProperties:
-    """Return the mass properties of a part.
+def mass_properties(body: Body, density: float) -> MassProperties:
+    """Return the mass properties of a body.
 
     Parameters
     ----------
-    part : Part
-        The part, as made: with holes, hubs, marks, its clearance and its rounded edges.
+    body : Body
+        As made: with holes, hubs, marks, its clearance and its rounded edges.
     density : float, kg/m^3
         Of its material.
 
@@ -112,7 +118,7 @@ def mass_properties(part: Part, density: float) -> MassProperties:
     MassProperties
         As exact as the outline's dense points: better than 1e-9 of the volume.
     """
-    total, height = volume_moments(part)
+    total, height = volume_moments(body)
     kilograms = density * _PER_MM3
     center = total.first / total.area
     return MassProperties(

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.part import Opening
+from gearcam.parts.body import Opening
 from gearcam.parts.shapes import Circle, Loop
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ _QUARTER: Final = 64
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
+class Workpiece:
     """Where a blank is made.
 
     Parameters
@@ -124,7 +124,9 @@ def _hole(radius: float, angle: float, diameter: float, name: str) -> Opening:
     return Opening(kind="HOLE", shape=Circle(center=center, diameter=diameter), name=name)
 
 
-def openings(blank: WheelBlank, contours: Sequence[Contour], place: Place) -> tuple[Opening, ...]:
+def openings(
+    blank: WheelBlank, contours: Sequence[Contour], work: Workpiece
+) -> tuple[Opening, ...]:
     """Return everything that goes through a wheel.
 
     Parameters
@@ -133,7 +135,7 @@ def openings(blank: WheelBlank, contours: Sequence[Contour], place: Place) -> tu
         What is wanted.
     contours : sequence of Contour
         The outlines of its steps.
-    place : Place
+    work : Workpiece
         Which wheel.
 
     Returns
@@ -151,10 +153,10 @@ def openings(blank: WheelBlank, contours: Sequence[Contour], place: Place) -> tu
     found = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
     found += _bolts(wide)
     if blank.stop_pin:
-        found.append(_slot(blank, solid, place))
-    _demand_apart(found, blank, solid, place)
+        found.append(_slot(blank, solid, work))
+    _demand_apart(found, blank, solid, work)
     if blank.lightening_holes:
-        found += _lightening(wide, solid, found, place)
+        found += _lightening(wide, solid, found, work)
     return tuple(found)
 
 
@@ -169,21 +171,21 @@ def _common(contours: Sequence[Contour]) -> Polygon:
 
 
 def _demand_apart(
-    found: Sequence[Opening], blank: WheelBlank, solid: Polygon, place: Place
+    found: Sequence[Opening], blank: WheelBlank, solid: Polygon, work: Workpiece
 ) -> None:
     """Refuse openings that meet each other, the hub's edge or the outline."""
     from shapely import Point, Polygon
 
-    regions = [Polygon(opening.shape.points(1e-4 * place.module)) for opening in found]
+    regions = [Polygon(opening.shape.points(1e-4 * work.module)) for opening in found]
     hub = Point(0.0, 0.0).buffer(0.5 * blank.hub_diameter, quad_segs=256).boundary
     for number, (opening, region) in enumerate(zip(found, regions, strict=True)):
         if not solid.contains(region):
-            raise _no_room(opening, solid, "the outline", place, blank.widening)
+            raise _no_room(opening, solid, "the outline", work, blank.widening)
         if blank.hub_diameter and region.intersects(hub):
-            raise _no_room(opening, solid, "the edge of the hub", place, blank.widening)
+            raise _no_room(opening, solid, "the edge of the hub", work, blank.widening)
         for other, second in zip(found[:number], regions[:number], strict=True):
             if region.intersects(second):
-                raise _no_room(opening, solid, f"the {other.name}", place, blank.widening)
+                raise _no_room(opening, solid, f"the {other.name}", work, blank.widening)
 
 
 _SMALLER: Final = (
@@ -196,7 +198,7 @@ _SMALLER: Final = (
 
 
 def _no_room(
-    opening: Opening, solid: Polygon, what: str, place: Place, widening: float
+    opening: Opening, solid: Polygon, what: str, work: Workpiece, widening: float
 ) -> InfeasibleError:
     """Return the refusal of what meets something; diameters as the design gives them."""
     from shapely import Point
@@ -215,55 +217,55 @@ def _no_room(
         )
     return InfeasibleError(
         f"the {opening.name} meets {what}",
-        where=f"{place.name}, [blank]",
+        where=f"{work.name}, [blank]",
         value=value,
         limit=limit,
         unit="mm",
         nearest=nearest,
         ways=tuple(
-            Way(far={place.key(key): small})
+            Way(far={work.key(key): small})
             for word, key, small in _SMALLER
             if word in f"{opening.name} {what}"
         ),
     )
 
 
-def _slot(blank: WheelBlank, solid: Polygon, place: Place) -> Opening:
+def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece) -> Opening:
     """Return the slot in which the stop pin of an open wheel runs.
 
     Wheel 1 turns by -phi1 and wheel 2 by phi2: in the wheel's frame the pin, on the line of
     centres, goes from the polar angle 0 to the travel, or from pi back by the travel.
     """
-    if place.travel is None:
+    if work.travel is None:
         raise InfeasibleError(
             "a wheel that turns for ever has no stop",
-            where=f"{place.name}, blank.stop_pin_mm",
+            where=f"{work.name}, blank.stop_pin_mm",
             value=blank.stop_pin,
             unit="mm",
             nearest="only wheels of an open law (driven_travel_deg) have one",
-            ways=(Way(near={place.key("stop_pin_mm"): 0.0}),),
+            ways=(Way(near={work.key("stop_pin_mm"): 0.0}),),
         )
-    start = 0.0 if place.wheel == 1 else math.pi - place.travel
+    start = 0.0 if work.wheel == 1 else math.pi - work.travel
     wide = blank.widened
     inner = max(wide.bore_reach, 0.5 * blank.hub_diameter)
-    radius, room = _roomiest(solid, start, place.travel, inner)
+    radius, room = _roomiest(solid, start, work.travel, inner)
     room -= blank.widening
     if blank.stop_pin >= room:
         raise InfeasibleError(
             "no room for the slot of the stop pin between shaft and roots",
-            where=f"{place.name}, blank.stop_pin_mm",
+            where=f"{work.name}, blank.stop_pin_mm",
             value=blank.stop_pin,
             limit=room,
             unit="mm",
             nearest="the limit is the widest slot that has room",
             ways=(
                 Way(
-                    near={place.key("stop_pin_mm"): room},
-                    far={place.key("stop_pin_mm"): 0.1 * room},
+                    near={work.key("stop_pin_mm"): room},
+                    far={work.key("stop_pin_mm"): 0.1 * room},
                 ),
             ),
         )
-    shape = _arc_slot(radius, start, place.travel, wide.stop_pin)
+    shape = _arc_slot(radius, start, work.travel, wide.stop_pin)
     return Opening(kind="SLOT", shape=shape, name="stop slot")
 
 
@@ -302,12 +304,12 @@ def _arc_slot(radius: float, start: float, sweep: float, width: float) -> Loop:
 
 
 def _lightening(
-    blank: WheelBlank, solid: Polygon, others: Sequence[Opening], place: Place
+    blank: WheelBlank, solid: Polygon, others: Sequence[Opening], work: Workpiece
 ) -> Iterator[Opening]:
     """Yield the largest circle in each sector that keeps rim and web."""
     from shapely import Point, Polygon, maximum_inscribed_circle, union_all
 
-    rim = blank.rim if blank.rim is not None else RIM * place.module
+    rim = blank.rim if blank.rim is not None else RIM * work.module
     web = blank.web if blank.web is not None else rim
     count = blank.lightening_holes
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)
@@ -331,7 +333,7 @@ def _lightening(
                     size, center = float(spoke.length), np.array(spoke.coords[0])
         size -= _SEARCH * rim
         if center is None or size <= 0.0:
-            raise _no_lightening(number + 1, solid, core, rim, place)
+            raise _no_lightening(number + 1, solid, core, rim, work)
         name = f"lightening hole {number + 1}"
         yield Opening(kind="HOLE", shape=Circle(center=center, diameter=2.0 * size), name=name)
 
@@ -347,20 +349,20 @@ def _sector(middle: float, half: float, far: float, web: float) -> Polygon:
 
 
 def _no_lightening(
-    number: int, solid: Polygon, core: float, rim: float, place: Place
+    number: int, solid: Polygon, core: float, rim: float, work: Workpiece
 ) -> InfeasibleError:
     from shapely import Point
 
     least = solid.boundary.distance(Point(0.0, 0.0))
     return InfeasibleError(
         f"lightening hole {number} has no room between hub and rim",
-        where=f"{place.name}, [blank]",
+        where=f"{work.name}, [blank]",
         value=least - core,
         unit="mm",
         nearest="this is what lies between hub or bore and the nearest root",
         ways=(
             Way(near={"blank.rim_mm": 0.5 * rim}),
-            Way(far={place.key("hub_diameter_mm"): 0.0}),
-            Way(near={place.key("lightening_holes"): 0}),
+            Way(far={work.key("hub_diameter_mm"): 0.0}),
+            Way(near={work.key("lightening_holes"): 0}),
         ),
     )

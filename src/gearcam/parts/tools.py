@@ -134,7 +134,7 @@ def _inner(contour: Contour) -> tuple[float, complex | None]:
 
 def _slot(contour: Contour) -> tuple[float, complex | None]:
     """Width and middle of the narrowest slot."""
-    chain = _Chain.of(contour.runs)
+    chain = _ByLength.of(contour.runs)
     length = np.diff(chain.way[chain.first], append=chain.way[-1])
     step = chain.way[-1] / max(_LEAST, _PER_RUN * len(length))
     counts = np.ceil(length / step).astype(int) + 1
@@ -153,7 +153,7 @@ def _slot(contour: Contour) -> tuple[float, complex | None]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Chain:
+class _ByLength:
     """The runs of a contour one behind the other, with the `way` to each point, mm.
 
     `first` and `last` are the numbers of the runs' first and last points.
@@ -166,7 +166,7 @@ class _Chain:
     last: Index
 
     @classmethod
-    def of(cls, runs: Sequence[Run]) -> _Chain:
+    def of(cls, runs: Sequence[Run]) -> _ByLength:
         points = np.concatenate([as_complex(run.points) for run in runs])
         last = np.cumsum([len(run.points) for run in runs]) - 1
         steps = np.abs(np.diff(points, prepend=points[0]))

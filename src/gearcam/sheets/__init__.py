@@ -6,39 +6,6 @@ title block, `extent` measures outlines, `board` finds free places for dimension
 """
 
 from gearcam.sheets.pair import pair_sheet
-from gearcam.sheets.sheet import (
-    CENTERLINE,
-    DIMENSION,
-    EDGE,
-    FRAME,
-    HIDDEN,
-    TEXT,
-    LinearDimension,
-    RoundDimension,
-    Sheet,
-    Strokes,
-    Text,
-    number,
-    strokes,
-    text_box,
-)
 from gearcam.sheets.wheel import wheel_sheet
 
-__all__ = [
-    "CENTERLINE",
-    "DIMENSION",
-    "EDGE",
-    "FRAME",
-    "HIDDEN",
-    "TEXT",
-    "LinearDimension",
-    "RoundDimension",
-    "Sheet",
-    "Strokes",
-    "Text",
-    "number",
-    "pair_sheet",
-    "strokes",
-    "text_box",
-    "wheel_sheet",
-]
+__all__ = ["pair_sheet", "wheel_sheet"]

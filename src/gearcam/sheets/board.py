@@ -10,14 +10,14 @@ Depends on drawings and sheets.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import Cross, Feature, Path, Shape
-from gearcam.parts.shapes import Circle, Loop
+from gearcam.drawings import Feature, Path, Shape, chains
+from gearcam.numerals import decimal
 from gearcam.sheets.sheet import (
     ARROW_ROOM,
     CENTERLINE,
@@ -32,8 +32,7 @@ from gearcam.sheets.sheet import (
     RoundDimension,
     Text,
     arrow_head,
-    number,
-    strokes,
+    as_drawn,
     text_box,
     text_width,
 )
@@ -90,17 +89,8 @@ def shape_points(shape: Shape, step: float) -> Array:
     -------
     (n, 2) array, mm
     """
-    match shape:
-        case Circle() | Loop():
-            return _resampled(shape.points(0.1 * step), step, closed=True)
-        case Path():
-            return _resampled(shape.points, step, closed=shape.closed)
-        case Cross():
-            arm = 0.5 * shape.size * np.linspace(-1.0, 1.0, math.ceil(shape.size / step) + 1)
-            flat = np.column_stack([arm, np.zeros(len(arm))])
-            return shape.center + np.vstack([flat, flat[:, ::-1]])
-        case _:
-            return _resampled(shape.vertices, step, closed=True)
+    made = (_resampled(points, step, closed) for points, closed in chains(shape, 0.1 * step))
+    return np.vstack(list(made))
 
 
 @dataclass(eq=False, kw_only=True)
@@ -196,7 +186,7 @@ class Board:
         ends = np.array([first, second], dtype=np.float64)
         along = int(vertical)
         low, high = np.sort(ends[:, along])
-        label = prefix + number(float(high - low)) + suffix
+        label = prefix + decimal(float(high - low)) + suffix
         wide = text_width(label) * self.unit
         place = np.full(2, at)
         place[1 - along] += (GAP + 0.5 * HEIGHT) * self.unit * (-1.0 if vertical else 1.0)
@@ -288,7 +278,7 @@ class Board:
         return True
 
     def _free(self, made: RoundDimension) -> bool:
-        low, high = text_box(strokes(made, self.unit).text, self.unit)
+        low, high = text_box(as_drawn(made, self.unit).text, self.unit)
         return bool(self._empty(low[None, :], high[None, :])[0])
 
     def _search(
@@ -315,11 +305,7 @@ class Board:
                     best, least = index, cost
         if best is None:
             return None
-        return RoundDimension(
-            center=made.center, radius=made.radius, angle=float(angle[best]),
-            diameter=made.diameter, knee=float(knees[best]), prefix=made.prefix,
-            suffix=made.suffix,
-        )  # fmt: skip
+        return replace(made, angle=float(angle[best]), knee=float(knees[best]))
 
     def _crossed(self, start: Array, end: Array) -> float:
         """Return how many lines a leader crosses; infinite along one, or through a text."""
@@ -364,7 +350,7 @@ class Board:
 
     def _measure(self, dimension: Dimension) -> None:
         self.dimensions.append(dimension)
-        drawn = strokes(dimension, self.unit)
+        drawn = as_drawn(dimension, self.unit)
         for line in drawn.lines:
             self._ink(_resampled(line, 0.8 * CELL * self.unit, closed=False))
         self._take(drawn.text)

@@ -11,7 +11,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.cubics import on_cubics
 
 Array = NDArray[np.float64]
 
@@ -27,26 +29,19 @@ def true_points(contours: Iterable[Contour]) -> Array:
     """
     runs = [run for contour in contours for run in contour.runs]
     points = np.vstack([run.points for run in runs])
-    tangents = np.vstack([run.tangents for run in runs])
+    tangents = as_complex(np.vstack([run.tangents for run in runs]))
     reach = np.hypot(*points.T)
     extremes = {
         int(pick(values)) for values in (*points.T, reach) for pick in (np.argmin, np.argmax)
     }
     starts = np.cumsum([0, *(len(run.points) for run in runs)])
     # the last point of a run and the first of the next have nothing between them
-    pieces = [
-        slice(first, first + 2)
+    firsts = [
+        first
         for place in sorted(extremes)
         for first in (place - 1, place)
         if first >= 0 and first + 1 not in starts
     ]
-    return np.vstack([points, *(_cubic(points[piece], tangents[piece]) for piece in pieces)])
-
-
-def _cubic(ends: Array, tangents: Array) -> Array:
-    """Points between two points with unit tangents."""
-    u = np.linspace(0.0, 1.0, _BETWEEN)[:, None]
-    length = float(np.hypot(*(ends[1] - ends[0])))
-    bend = u * (1.0 - u) * ((1.0 - u) * tangents[0] - u * tangents[1]) * length
-    rise = u * u * (3.0 - 2.0 * u)
-    return ends[0] + rise * (ends[1] - ends[0]) + bend
+    share = np.tile(np.linspace(0.0, 1.0, _BETWEEN), len(firsts))
+    between, _ = on_cubics(as_complex(points), tangents, np.repeat(firsts, _BETWEEN), share)
+    return np.vstack([points, as_pairs(between)])

@@ -17,6 +17,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.drawings import Feature, Path
+from gearcam.numerals import shown
 from gearcam.sheets.board import Board
 from gearcam.sheets.sheet import FRAME, GLYPH, HEIGHT, Array, Box, Sheet, Text
 
@@ -64,8 +65,8 @@ class Format:
     def words(self) -> str:
         """The scale as it is written, such as 1:2."""
         if self.scale >= 1.0:
-            return f"{self.scale:.6g}:1"
-        return f"1:{1.0 / self.scale:.6g}"
+            return f"{shown(self.scale)}:1"
+        return f"1:{shown(1.0 / self.scale)}"
 
 
 def area_of(paper: str) -> Box:
@@ -105,7 +106,7 @@ def choose(size: tuple[float, float], room: tuple[float, float], rows: int) -> F
         if fits and not (long and paper == "A4"):
             found.append(Format(paper=paper, scale=fits[0]))
     if not found:
-        raise ValueError(f"views of {size[0]:.6g} x {size[1]:.6g} mm fit on no sheet")
+        raise ValueError(f"views of {shown(size[0])} x {shown(size[1])} mm fit on no sheet")
     true = [one for one in found if one.scale >= 1.0]
     return true[0] if true else max(found, key=lambda one: one.scale)
 

@@ -3,7 +3,7 @@
 A *sheet* has a *paper* and a *scale*, millimetres of paper over millimetres of the part. Everything
 on it is placed in the part's millimetres, y upwards, the front view in the part's own frame;
 heights of texts, gaps and arrow heads are in millimetres of paper. A *dimension* knows what it
-measures; `strokes` turns it into lines, arrow heads and a text, for formats that have no
+measures; `as_drawn` turns it into lines, arrow heads and a text, for formats that have no
 dimensions of their own. Text heights are those of capital letters.
 
 Depends on drawings.
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import Feature
+from gearcam.numerals import decimal
 
 Array = NDArray[np.float64]
 
@@ -57,16 +58,10 @@ ARROW_ROOM: Final = 2 * ARROW + GAP
 """Dimension lines shorter than this, mm of paper, have their arrows outside."""
 
 
-def number(value: float) -> str:
-    """Return at most three decimals, no idle zeros."""
-    text = f"{value:.3f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
 def fine(value: float) -> str:
     """Return a small length, such as a tolerance, to two digits and without exponent."""
     digits = max(3, 1 - math.floor(math.log10(value)))
-    return f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return decimal(value, digits)
 
 
 def text_width(text: str, height: float = HEIGHT) -> float:
@@ -133,7 +128,7 @@ class LinearDimension:
     @property
     def label(self) -> str:
         """Its text."""
-        return f"{self.prefix}{number(self.value)}{self.suffix}"
+        return f"{self.prefix}{decimal(self.value)}{self.suffix}"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -178,7 +173,7 @@ class RoundDimension:
     @property
     def label(self) -> str:
         """Its text."""
-        return f"{self.prefix}{self.sign}{number(self.value)}{self.suffix}"
+        return f"{self.prefix}{self.sign}{decimal(self.value)}{self.suffix}"
 
     def point(self, distance: float) -> Array:
         """Return the point on the leader at a distance from the middle, (2,), mm."""
@@ -194,7 +189,7 @@ Dimension = LinearDimension | RoundDimension
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Strokes:
+class DrawnDimension:
     """A dimension as it is drawn: `lines` (2, 2) and arrow `heads` (3, 2), mm, and its `text`."""
 
     lines: tuple[Array, ...]
@@ -250,9 +245,9 @@ class Sheet:
         return 1.0 / self.scale
 
     @property
-    def drawn(self) -> tuple[Strokes, ...]:
-        """The dimensions as strokes."""
-        return tuple(strokes(dimension, self.unit) for dimension in self.dimensions)
+    def drawn(self) -> tuple[DrawnDimension, ...]:
+        """The dimensions as they are drawn."""
+        return tuple(as_drawn(dimension, self.unit) for dimension in self.dimensions)
 
     def on_paper(self, points: Array) -> Array:
         """Return points, (n, 2), mm of the part, in mm of paper from its lower left corner."""
@@ -282,7 +277,7 @@ def text_box(text: Text, unit: float) -> Box:
     return text.place + unit * low, text.place + unit * high
 
 
-def strokes(dimension: Dimension, unit: float) -> Strokes:
+def as_drawn(dimension: Dimension, unit: float) -> DrawnDimension:
     """Return a dimension as lines, arrow heads and text.
 
     Parameters
@@ -294,7 +289,7 @@ def strokes(dimension: Dimension, unit: float) -> Strokes:
 
     Returns
     -------
-    Strokes
+    DrawnDimension
     """
     if isinstance(dimension, LinearDimension):
         return _linear(dimension, unit)
@@ -323,7 +318,7 @@ def arrow_head(tip: Array, way: Array, unit: float) -> Array:
     return np.array([tip, back + side, back - side])
 
 
-def _linear(dimension: LinearDimension, unit: float) -> Strokes:
+def _linear(dimension: LinearDimension, unit: float) -> DrawnDimension:
     along = int(dimension.vertical)
     feet = [point.copy() for point in (dimension.first, dimension.second)]
     lines = []
@@ -350,10 +345,10 @@ def _linear(dimension: LinearDimension, unit: float) -> Strokes:
     base[1 - along] += 0.5 * HEIGHT * unit * (1.0 if dimension.vertical else -1.0)
     text = Text(text=dimension.label, place=base, anchor="middle", upright=dimension.vertical)
     heads = (arrow_head(low, -turn * way, unit), arrow_head(high, turn * way, unit))
-    return Strokes(lines=(*lines, np.array([start, end])), heads=heads, text=text)
+    return DrawnDimension(lines=(*lines, np.array([start, end])), heads=heads, text=text)
 
 
-def _leader(dimension: RoundDimension, unit: float) -> Strokes:
+def _leader(dimension: RoundDimension, unit: float) -> DrawnDimension:
     distance = dimension.knee or 0.0
     knee, edge = dimension.point(distance), dimension.edge
     wide = text_width(dimension.label) * unit
@@ -362,18 +357,18 @@ def _leader(dimension: RoundDimension, unit: float) -> Strokes:
     way = dimension.point(1.0) - dimension.center
     way = -way if distance > dimension.radius else way
     place = 0.5 * (knee + end) + np.array([0.0, GAP * unit])
-    return Strokes(
+    return DrawnDimension(
         lines=(np.array([edge, knee]), np.array([knee, end])),
         heads=(arrow_head(edge, way, unit),),
         text=Text(text=dimension.label, place=place, anchor="middle"),
     )
 
 
-def _inside(dimension: RoundDimension, unit: float) -> Strokes:
+def _inside(dimension: RoundDimension, unit: float) -> DrawnDimension:
     ends = [dimension.point(-dimension.radius), dimension.edge]
     way = (ends[1] - ends[0]) / (2.0 * dimension.radius)
     place = dimension.center + np.array([0.0, GAP * unit])
-    return Strokes(
+    return DrawnDimension(
         lines=(np.array(ends),),
         heads=(arrow_head(ends[0], -way, unit), arrow_head(ends[1], way, unit)),
         text=Text(text=dimension.label, place=place, anchor="middle"),

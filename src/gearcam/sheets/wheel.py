@@ -19,8 +19,10 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import part_features, placed
-from gearcam.parts.part import Hub, Part
+from gearcam.drawings import INNER, part_features, placed, reach
+from gearcam.numerals import decimal
+from gearcam.numeric.contour import Contour
+from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
 from gearcam.sheets.extent import true_points
@@ -35,7 +37,6 @@ from gearcam.sheets.sheet import (
     Sheet,
     Text,
     fine,
-    number,
     text_width,
 )
 
@@ -65,12 +66,11 @@ class _Bore:
 
 def _bore(part: Part) -> _Bore | None:
     """Read the bore's sizes from its shape."""
-    shapes = [opening.shape for opening in part.openings if opening.kind == "BORE"]
-    if not shapes:
-        return None
-    shape = shapes[0]
+    shape = next((one.shape for one in part.openings if one.kind == "BORE"), None)
     if isinstance(shape, Circle):
         return _Bore(radius=0.5 * shape.diameter)
+    if not isinstance(shape, Loop):
+        return None
     corners = shape.vertices @ np.array([1.0, 1j])
     floor = corners[[-1, -2]] if len(corners) == 5 else corners[[0, -1]]
     middle = complex(floor.mean())
@@ -175,7 +175,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
 
 def _front_view(board: Board, wheel: _Wheel) -> None:
     part = wheel.part
-    for feature in part_features(part, len(part.contours) - 1):
+    for feature in part_features(part, -1):
         board.draw(feature.layer, feature.shape)
     if part.hub is not None:
         circle = Circle(center=np.zeros(2), diameter=part.hub.diameter)
@@ -196,11 +196,13 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     """Draw the view from the left, its back at x = `left`."""
     part, hub, unit = wheel.part, wheel.hub, board.unit
     back, end = left + hub.back, left + part.thickness
-    for contour, low, high in part.plates:
-        ys = true_points([contour])[:, 1]
-        _rectangle(board, (back + low, float(ys.min())), (back + high, float(ys.max())))
-    for low, high in part.bosses:
-        _rectangle(board, (back + low, -0.5 * hub.diameter), (back + high, 0.5 * hub.diameter))
+    for layer in part.layers:
+        low, high = back + layer.low, back + layer.high
+        bottom, top = _span(layer.edge)
+        _rectangle(board, (low, bottom), (high, top))
+        for opening in layer.openings:
+            for y in _span(opening.shape) if opening.kind == INNER else ():
+                board.line(HIDDEN, (low, y), (high, y))
     if wheel.turns:
         over = OVERHANG * unit
         board.line(CENTERLINE, (left - over, 0.0), (end + over, 0.0))
@@ -209,7 +211,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
             board.line(HIDDEN, (left, y), (end, y))
     base = float(wheel.low[1])
     lengths = [(back, back + part.width)]
-    lengths += [(back + low, back + high) for low, high in part.bosses]
+    lengths += [(back + boss.low, back + boss.high) for boss in part.bosses]
     lengths += [(left, end)] if part.hub is not None else []
     for level, (low, high) in enumerate(lengths):
         y = [base if (x in (back, back + part.width)) else -0.5 * hub.diameter for x in (low, high)]
@@ -226,6 +228,12 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
         x = end if front else left
         at = end + (FIRST_LEVEL + LEVEL * level) * unit if front else left - FIRST_LEVEL * unit
         board.linear((x, -radius), (x, radius), at, vertical=True, prefix="Ø")
+
+
+def _span(edge: Edge) -> tuple[float, float]:
+    """Return how far an edge reaches along y, mm."""
+    ys = (true_points([edge]) if isinstance(edge, Contour) else reach(edge))[:, 1]
+    return float(ys.min()), float(ys.max())
 
 
 def _rectangle(board: Board, low: tuple[float, float], high: tuple[float, float]) -> None:
@@ -253,7 +261,7 @@ def _bore_view(board: Board, bore: _Bore, place: Array) -> None:
     line = np.array([x, below - 5.0 * unit - HEIGHT * unit])
     board.write(Text(text=words, place=line, anchor="middle"))
     kind = "flat" if bore.flat else "keyway"
-    board.rows.append((f"{kind}, direction", f"{number(math.degrees(bore.angle))} deg"))
+    board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(bore.angle))} deg"))
 
 
 def _callouts(board: Board, wheel: _Wheel) -> None:
@@ -266,9 +274,9 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
         if opening.kind == "SLOT" and isinstance(opening.shape, Loop):
             _slot(board, opening.shape)
     for mark in part.marks:
-        words = f", {number(mark.depth)} deep"
+        words = f", {decimal(mark.depth)} deep"
         if not board.round(mark.center, 0.5 * mark.diameter, prefix="mark ", suffix=words):
-            board.rows.append(("mark", f"Ø{number(mark.diameter)}{words}"))
+            board.rows.append(("mark", f"Ø{decimal(mark.diameter)}{words}"))
 
 
 def _radii(board: Board, wheel: _Wheel) -> None:
@@ -281,8 +289,8 @@ def _radii(board: Board, wheel: _Wheel) -> None:
         if board.round(np.zeros(2), radius, angles=ways, diameter=False, suffix=end):
             continue
         # a leader need not point to the axis
-        if not board.label(np.array([x, y]), f"R{number(radius)}{end}"):
-            board.rows.append((f"{words}. radius from axis", number(radius)))
+        if not board.label(np.array([x, y]), f"R{decimal(radius)}{end}"):
+            board.rows.append((f"{words}. radius from axis", decimal(radius)))
 
 
 def _holes(board: Board, part: Part) -> None:
@@ -299,7 +307,7 @@ def _holes(board: Board, part: Part) -> None:
         _ring(board, group)
     named = [(circle, f"H{k}") for k, circle in enumerate(singles, start=1)]
     for circle, letter in named:
-        size = f"{letter} Ø{number(circle.diameter)}"
+        size = f"{letter} Ø{decimal(circle.diameter)}"
         inside = circle.diameter * board.scale > text_width(size) + TIGHT
         gap = (-CLEAR - GAP, HEIGHT + GAP + 2.0 * CLEAR) if inside else None
         board.centre(circle.center, 0.5 * circle.diameter, gap)
@@ -308,8 +316,8 @@ def _holes(board: Board, part: Part) -> None:
     for group in patterns:
         _pattern(board, group)
     for circle, letter in named:
-        x, y = (number(value) for value in circle.center.tolist())
-        board.rows.append((f"{letter} Ø{number(circle.diameter)}", f"X {x}  Y {y}"))
+        x, y = (decimal(value) for value in circle.center.tolist())
+        board.rows.append((f"{letter} Ø{decimal(circle.diameter)}", f"X {x}  Y {y}"))
 
 
 def _even(circles: list[Circle]) -> bool:
@@ -340,8 +348,8 @@ def _pattern(board: Board, circles: list[Circle]) -> None:
     # the arrow points at the circle between two holes
     ring = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
     board.round(np.zeros(2), away, angles=ring)
-    words = f"on Ø{number(2.0 * away)}, at {number(math.degrees(first))} deg"
-    board.rows.append((f"{count} x Ø{number(one.diameter)}", words))
+    words = f"on Ø{decimal(2.0 * away)}, at {decimal(math.degrees(first))} deg"
+    board.rows.append((f"{count} x Ø{decimal(one.diameter)}", words))
 
 
 def _slot(board: Board, shape: Loop) -> None:
@@ -355,7 +363,7 @@ def _slot(board: Board, shape: Loop) -> None:
     end = corners[[half - 1, half]].mean()
     place = np.array([end.real, end.imag])
     if not board.round(place, 0.5 * width, diameter=False, prefix="slot "):
-        board.rows.append(("slot, width", number(width)))
-    board.rows.append(("slot, mid radius", number(middle)))
+        board.rows.append(("slot, width", decimal(width)))
+    board.rows.append(("slot, mid radius", decimal(middle)))
     last = first + math.degrees(sweep)
-    board.rows.append(("slot, ends at", f"{number(first)}, {number(last)} deg"))
+    board.rows.append(("slot, ends at", f"{decimal(first)}, {decimal(last)} deg"))

@@ -1,0 +1,240 @@
+"""Remedies: changes of a design with which it was built, and nothing was refused or an error.
+
+What a refusal or a finding suggests is not told before it has been followed: each change is made
+in the design's own keys, the design is built through the same steps, wheels, checks and parts, and
+the change is kept if it is not refused, what was an error is gone, and no other error has come.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.designs.design import Design, changed, document_of, value_at
+from gearcam.designs.kind import KINDS
+from gearcam.errors import DesignError, InfeasibleError, Way
+
+if TYPE_CHECKING:
+    from gearcam.findings import Finding
+    from gearcam.result import Result
+
+Changes = Mapping[str, object]
+
+PATIENCE: Final = 6.0
+"""Seconds after which a search is given up."""
+
+_PARTS: Final = 40
+"""Steps between the near and the far end of a way."""
+
+_INSIDE: Final = 1e-3
+"""Part of the way by which a limit is kept."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remedy:
+    """A change with which a design was built, free of errors.
+
+    Parameters
+    ----------
+    changes : mapping of str to value
+        Values by dotted keys of the design file, in its units.
+    less : mapping of str to value
+        The next smaller change, with which it was not; empty where none was tried.
+    design : Design
+        The changed design.
+    """
+
+    changes: Changes
+    less: Changes = field(default_factory=dict)
+    design: Design
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remedies:
+    """What a search for remedies found.
+
+    Parameters
+    ----------
+    found : tuple of Remedy
+        Each another way out.
+    tried : tuple of str
+        Keys that were changed in the search.
+    gave_up : bool
+        Whether the time was over before all ways were tried to their end.
+    seconds : float
+        The time that it was given.
+    """
+
+    found: tuple[Remedy, ...] = ()
+    tried: tuple[str, ...] = ()
+    gave_up: bool = False
+    seconds: float = PATIENCE
+
+
+def remedies(
+    result: Result, refusal: InfeasibleError | None = None, *, patience: float = PATIENCE
+) -> Remedies:
+    """Search for changes that make a design buildable and free of errors.
+
+    Parameters
+    ----------
+    result : Result
+        The result of the design.
+    refusal : InfeasibleError, optional
+        How it was refused; found by building it where left out.
+    patience : float, s
+        Time after which no other build is begun.
+
+    Returns
+    -------
+    Remedies
+        Empty where the design is not refused and has no error.
+    """
+    errors: list[Finding] = []
+    if refusal is None:
+        try:
+            errors = [finding for finding in result.findings if finding.severity == "error"]
+        except InfeasibleError as error:
+            refusal = error
+    elif not refusal.ways and not refusal.more_teeth and _builds(result):
+        return Remedies(seconds=patience)  # a study was refused, not the design
+    if refusal is None and not errors:
+        return Remedies(seconds=patience)
+    search = Search(result, frozenset(error.code for error in errors), patience)
+    search.advice.seek(search, refusal)
+    return Remedies(
+        found=tuple(search.found),
+        tried=tuple(search.tried),
+        gave_up=search.gave_up,
+        seconds=patience,
+    )
+
+
+def _builds(result: Result) -> bool:
+    """Whether the design is not refused when it is built."""
+    try:
+        _ = result.findings
+    except InfeasibleError:
+        return False
+    return True
+
+
+class Search:
+    """A search within a time: what was tried, and what was found.
+
+    Parameters
+    ----------
+    result : Result
+        Of the design that is to be changed.
+    codes : frozenset of str
+        Findings that are to go.
+    patience : float, s
+        Time after which no other build is begun.
+    """
+
+    def __init__(self, result: Result, codes: frozenset[str], patience: float) -> None:
+        self.result, self.codes = result, codes
+        self.advice = KINDS[result.design.kind].room("advice")
+        self.until = time.perf_counter() + patience
+        self.found: list[Remedy] = []
+        self.tried: dict[str, None] = {}
+        self.gave_up = False
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """What a file of the design would hold."""
+        return document_of(self.result.design)
+
+    def over(self) -> bool:
+        """Whether the time is over; then a search is given up."""
+        over = time.perf_counter() > self.until
+        self.gave_up |= over
+        return over
+
+    def cures(self, changes: Changes) -> bool:
+        """Whether the changed design builds, without the errors and without others."""
+        self.tried |= dict.fromkeys(changes)
+        try:
+            other = type(self.result)(changed(self.result.design, changes), self.result.tolerances)
+            if self.advice.hopeless(other):
+                return False
+            findings = other.findings
+        except (InfeasibleError, DesignError):
+            return False
+        return all(
+            finding.severity != "error" and finding.code not in self.codes for finding in findings
+        )
+
+    def keep(self, changes: Changes, less: Changes | None = None) -> None:
+        """Write a remedy down: its `changes`, and the next smaller ones, `less`."""
+        design = changed(self.result.design, changes)
+        self.found.append(Remedy(changes=changes, less=less or {}, design=design))
+
+    def along(self, way: Way) -> bool:
+        """Find the smallest change along a way; whether there is one."""
+        if self.over():
+            return False
+        near = {key: way.near.get(key, value_at(self.document, key)) for key in way.far or way.near}
+        if any(value is None for value in near.values()):
+            return False
+        if way.far and _between(near, way.far, 1.0) == _between(near, {}, 0.0):
+            return False  # it is there already
+        if way.near:
+            first = _between(near, way.far, _INSIDE) if way.far else _tidy(near)
+            if self.cures(first):
+                self.keep(first)
+                return True
+        low, high = 0, _PARTS if way.far else 0
+        while high and not self.over() and not self.cures(_between(near, way.far, high / _PARTS)):
+            high //= 2
+        if not high or self.over():
+            return False
+        while high - low > 1 and not self.over():
+            middle = (low + high) // 2
+            does = self.cures(_between(near, way.far, middle / _PARTS))
+            low, high = (low, middle) if does else (middle, high)
+        ends = [_between(near, way.far, part / _PARTS) for part in (high, low)]
+        self.keep(ends[0], ends[1] if low else None)
+        return True
+
+    def follow(self, ways: Iterable[Way]) -> None:
+        """Follow `ways`, each for one wheel and, where that does not do, for both."""
+        for way in ways:
+            if not self.along(way) and (both := _for_both(way)) is not None:
+                self.along(both)
+
+
+def _for_both(way: Way) -> Way | None:
+    """Return a way of one wheel's blank as one of both, None where it is none."""
+    keys = [*way.near, *way.far]
+    if not keys or not all(re.fullmatch(r"blank\.\w+\[\d\]", key) for key in keys):
+        return None
+    near, far = ({key[:-3]: end for key, end in ends.items()} for ends in (way.near, way.far))
+    return Way(near=near, far=far)
+
+
+def _between(near: Changes, far: Changes, share: float) -> dict[str, object]:
+    """Return values between two ends, numbers of ten digits."""
+    return {key: _mixed(value, far.get(key, value), share) for key, value in near.items()}
+
+
+def _tidy(value: Any) -> Any:
+    """Write numbers in ten digits."""
+    if isinstance(value, Mapping):
+        return {key: _tidy(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_tidy(item) for item in value]
+    return float(f"{value:.10g}") if isinstance(value, float) else value
+
+
+def _mixed(near: Any, far: Any, share: float) -> Any:
+    if isinstance(near, list):
+        ends = far if isinstance(far, list) else [far] * len(near)
+        return [_mixed(a, b, share) for a, b in zip(near, ends, strict=True)]
+    if isinstance(near, bool | str) or isinstance(far, bool | str):
+        return near
+    return _tidy(float(near + share * (far - near)))

@@ -1,0 +1,256 @@
+"""What all designs have in common: a design made in Python meets the rules of a file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import InitVar, dataclass, field
+from typing import Any, ClassVar, Final
+
+from gearcam.designs.examine import examine
+from gearcam.designs.faults import MISSING, Fault, dotted
+from gearcam.designs.kind import KINDS
+from gearcam.errors import DesignError, InfeasibleError, Problem
+
+HASH_DIGITS: Final = 16
+"""Hexadecimal digits of a design's hash: two of a thousand million million are alike by chance."""
+
+Wanted = tuple[str, Any, tuple[type, ...]]
+"""Key of a part, the part, and of which types it may be."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Design:
+    """What every design has; each kind adds the fields of its tables.
+
+    Parameters
+    ----------
+    name : str
+        Name of the design and of its folder: letters, digits, ``_ - .``
+    source : str
+        The file it came from, empty for a design made in Python.
+    limits : mapping of str to float
+        Limits of checks by name, in mm and rad; the others keep their defaults.
+    examined : bool
+        Whether its values have passed an examination.
+
+    Raises
+    ------
+    DesignError
+        If a value is not what a design file may hold, all problems at once.
+    """
+
+    kind: ClassVar[str]
+    """The kind of design, as in a file."""
+
+    name: str
+    source: str = ""
+    limits: Mapping[str, float] = field(default_factory=dict)
+    examined: InitVar[bool] = False
+
+    def __post_init__(self, examined: bool) -> None:
+        object.__setattr__(self, "limits", dict(self.limits))
+        self._settle()
+        if not examined:
+            _demand_types(self)
+            faults = examine(document_of(self)).faults
+            if faults:
+                raise _refusal(faults, self)
+
+    def _settle(self) -> None:
+        """Bring what is given into one form."""
+
+    def _wanted(self) -> Iterable[Wanted]:
+        """Return of what types the parts are that follow a registry; those of tables are known."""
+        return ()
+
+
+def demand_kind(design: Design, kind: str) -> Any:
+    """Return a design, or refuse it if it is of another kind.
+
+    Parameters
+    ----------
+    design : Design
+        Of any kind.
+    kind : str
+        The one that a command is for.
+
+    Returns
+    -------
+    Design
+        The design, whose fields are those of the kind.
+
+    Raises
+    ------
+    DesignError
+        With the kind that it is of.
+    """
+    if design.kind != kind:
+        message = f"this command is for designs of kind {kind}"
+        raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
+    return design
+
+
+def _refusal(faults: Iterable[Fault], design: Design) -> DesignError:
+    return DesignError(
+        Problem(
+            message=fault.message,
+            file=design.source,
+            key=dotted(fault.path),
+            value=None if fault.value is MISSING else fault.value,
+            allowed=fault.allowed,
+            hint=fault.hint,
+        )
+        for fault in faults
+    )
+
+
+def _demand_types(design: Design) -> None:
+    kind = KINDS[design.kind]
+    owners = ((title, kind.table(title).owner) for title in kind.tables)
+    tables = [(title, getattr(design, title), (owner,)) for title, owner in owners if owner]
+    problems = [
+        Problem(
+            f"is a {type(part).__name__}",
+            file=design.source,
+            key=key,
+            allowed=f"an instance of {' or '.join(owner.__name__ for owner in types)}",
+        )
+        for key, part, types in (*tables, *design._wanted())
+        if not isinstance(part, types)
+    ]
+    if problems:
+        raise DesignError(problems)
+
+
+def document_of(design: Design) -> dict[str, Any]:
+    """Return what a design file with this design would hold.
+
+    Parameters
+    ----------
+    design : Design
+        A design of any kind.
+
+    Returns
+    -------
+    dict
+        Nested dictionaries with the keys and units of a file.
+    """
+    kind = KINDS[design.kind]
+    document: dict[str, Any] = {"kind": kind.name, "name": design.name}
+    if kind.main:
+        document[kind.main] = kind.main_of(design)
+    for title in kind.tables:
+        document[title] = kind.table(title).document(getattr(design, title))
+    if design.limits:
+        known = {entry.name: entry for entry in kind.table("limits").entries.values()}
+        document["limits"] = {
+            known[name].key if name in known else name: known[name].outward(value)
+            if name in known
+            else value
+            for name, value in design.limits.items()
+        }
+    return document
+
+
+def hash_of(design: Design) -> str:
+    """Return the hash of a design: designs of the same hash give the same files.
+
+    It is taken from the values of all keys, defaults included, and from the rows of the CSV files
+    that the design names; not from comments, spaces, the order of keys, or where these files
+    lie; degrees count with 13 digits. What changes the content of no file of a build is left out:
+    ``[limits]``, ``[meshing]`` and which files are wanted.
+
+    Parameters
+    ----------
+    design : Design
+        A design of any kind.
+
+    Returns
+    -------
+    str
+        The first `HASH_DIGITS` hexadecimal digits of SHA-256.
+
+    Raises
+    ------
+    InfeasibleError
+        If such a CSV file cannot be read any more.
+    """
+    document = document_of(design)
+    for title in ("limits", "meshing"):
+        document.pop(title, None)
+    del document["output"]["files"]
+    text = json.dumps(_with_rows(document, design), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
+
+
+def _with_rows(value: Any, design: Design) -> Any:
+    """Return a part of a document with rows instead of files, and numbers of one type."""
+    if isinstance(value, Mapping):
+        return {
+            key: _rows(item, design) if key == "file" else _with_rows(item, design)
+            for key, item in value.items()
+        }
+    if isinstance(value, list):
+        return [_with_rows(item, design) for item in value]
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _rows(file: str, design: Design) -> Any:
+    from gearcam.laws.columns import ColumnsError, rows_of
+
+    try:
+        rows = rows_of(file, design)
+    except ColumnsError as error:
+        raise InfeasibleError(str(error), where=file) from error
+    return rows and rows.cells
+
+
+def changed(design: Any, changes: Mapping[str, object]) -> Any:
+    """Return a design with other values of some keys.
+
+    Parameters
+    ----------
+    design : Design
+        A design of any kind.
+    changes : mapping of str to value
+        New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units.
+
+    Returns
+    -------
+    Design
+        Of the same kind.
+
+    Raises
+    ------
+    DesignError
+        If a value is not what the file may hold.
+    """
+    document = document_of(design)
+    for key, value in changes.items():
+        *path, last = path_of(key)
+        place: Any = document
+        for step in path:
+            place = place[step]
+        place[last] = value
+    found = examine(document)
+    if found.faults:
+        raise _refusal(found.faults, design)
+    return type(design)(source=design.source, examined=True, **found.parts)
+
+
+def value_at(document: Any, key: str) -> Any:
+    """Return the value of a dotted `key` in a `document`, None where it has none."""
+    for step in path_of(key):
+        try:
+            document = document[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return document
+
+
+def path_of(key: str) -> tuple[str | int, ...]:
+    """Return the steps of a dotted key, such as ``law.ratios[1]``."""
+    return tuple(int(step) if step.isdigit() else step for step in re.findall(r"[^.\[\]]+", key))

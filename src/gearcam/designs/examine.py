@@ -1,0 +1,210 @@
+"""Examining a design: everything that can be known to be wrong by reading, found in one go.
+
+A *document* is what a design file holds, as nested dictionaries; a design made in Python is turned
+into one, so that both meet the same rules. What passes comes back as parameter objects, mm and rad.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from gearcam.designs.faults import Fault, did_you_mean, key_hint, nearest, quoted, show
+from gearcam.designs.kind import KINDS, DesignKind, Examined, own_faults
+from gearcam.designs.lines import Path
+from gearcam.designs.retired import without_retired
+from gearcam.designs.validate import faults_of
+
+_NAME = re.compile(r"\w[\w.-]*")
+_NAME_RULE: Final = (
+    "letters, digits, _ - and . (it names a folder), beginning with a letter or digit"
+)
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+_LONGEST_NAME: Final = 100
+
+
+def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
+    """Examine a document.
+
+    Parameters
+    ----------
+    document : mapping
+        As read from TOML.
+    stem : str
+        The file's name without its ending: the design's name where the file gives none.
+
+    Returns
+    -------
+    Examined
+        With the fields of the kind's design where there is no fault.
+    """
+    found = Examined()
+    kind = _meant_kind(document)
+    if kind is None:
+        found.faults += _kind_faults(document)
+        return found
+    later = kind.later(document)
+    if later is not None:
+        found.faults.append(later)
+        return found
+    retired, document = without_retired(document)
+    found.faults += [one.fault for one in retired]
+    found.faults += _kind_faults(document)
+    found.faults += _top_faults(document, kind)
+    _examine_name(document, stem, found)
+    kind.examine_main(document, found)
+    for title in kind.tables:
+        _examine_table(document, kind, title, found)
+    _examine_limits(document, kind, found)
+    found.faults += kind.rules(document, found)
+    return found
+
+
+def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
+    """Return the kind of a document; where it gives none that is known, the likeliest, if any."""
+    name = document.get("kind")
+    if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
+        return KINDS[near]
+    likely = {name: sum(title in document for title in kind.tables) for name, kind in KINDS.items()}
+    best = max(likely, key=lambda name: likely[name])
+    return KINDS[best] if likely[best] else None
+
+
+def home_of(kind: DesignKind, key: str) -> str:
+    """Return where a key that its table does not know belongs, if the kind has it elsewhere."""
+    homes: dict[str, str] = {}
+    for title in kind.tables:  # of two tables the first is the likelier
+        for known in kind.table(title).entries:
+            homes.setdefault(known, f"this key belongs under [{title}]")
+    homes |= dict.fromkeys(("kind", "name"), "this key belongs above all tables")
+    return homes.get(key) or kind.homes().get(key, "")
+
+
+def _near_home(kind: DesignKind, key: str) -> str:
+    for title in kind.tables:
+        hint = key_hint(key, kind.table(title).entries)
+        if hint:
+            return f"{hint} (under [{title}])"
+    return ""
+
+
+def _kind_faults(document: Mapping[str, Any]) -> Iterator[Fault]:
+    rule = quoted(KINDS)
+    if "kind" not in document:
+        yield Fault(("kind",), "is missing", allowed=rule)
+    elif not isinstance(document["kind"], str) or document["kind"] not in KINDS:
+        kind = document["kind"]
+        hint = did_you_mean(kind, KINDS)
+        yield Fault(("kind",), f"{show(kind)} is not a kind of design", kind, rule, hint)
+
+
+def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault]:
+    for key, value in document.items():
+        if key not in kind.titles:
+            what = "table" if _holds_tables(value) else "key"
+            shown = "" if what == "table" else f" (its value is {show(value)})"
+            hint = home_of(kind, key) or _other_kind(key)
+            hint = hint or key_hint(key, kind.titles) or _near_home(kind, key)
+            rule = ", ".join(kind.titles)
+            yield Fault((key,), f"unknown {what}{shown}", value, rule, hint)
+
+
+def _holds_tables(value: Any) -> bool:
+    items = value if isinstance(value, list) and value else [value]
+    return all(isinstance(item, Mapping) for item in items)
+
+
+def _other_kind(title: str) -> str:
+    owners = [other.name for other in KINDS.values() if title in other.titles]
+    return f"this table belongs to kind = {quoted(owners)}" if owners else ""
+
+
+def _examine_name(document: Mapping[str, Any], stem: str, found: Examined) -> None:
+    name = document.get("name", stem)
+    fault = name_fault(name)
+    if not fault:
+        found.parts["name"] = name
+    elif "name" in document:
+        found.faults.append(Fault(("name",), f"{show(name)} {fault}", name, _NAME_RULE))
+    else:
+        message = (
+            "is missing" if not stem else f"is missing, and the file's own {show(stem)} {fault}"
+        )
+        hint = re.sub(r"[^\w-]+", "_", stem).strip("_-")
+        hint = f'add name = "{hint}"' if hint else ""
+        found.faults.append(Fault(("name",), message, allowed=_NAME_RULE, hint=hint))
+
+
+def name_fault(name: Any) -> str:
+    """Return what keeps a design's name from naming a folder, or nothing."""
+    if not isinstance(name, str):
+        return "is not text"
+    if len(name) > _LONGEST_NAME:
+        return f"has {len(name)} characters, and {_LONGEST_NAME} are allowed"
+    if not _NAME.fullmatch(name) or name.endswith("."):
+        return "cannot name a folder"
+    return "is reserved on some systems" if _RESERVED.fullmatch(name) else ""
+
+
+def _examine_table(
+    document: Mapping[str, Any], kind: DesignKind, title: str, found: Examined
+) -> None:
+    known, raw = kind.table(title), document.get(title, {})
+    if title not in document and title in kind.required:
+        rule = ", ".join(known.entries)
+        found.faults.append(Fault((title,), f"the table [{title}] is missing", allowed=rule))
+        return
+    faults = list(faults_of(known, raw, home=lambda key: home_of(kind, key)))
+    found.faults += faults
+    if not faults and known.owner is not None:
+        made = known.owner(**known.inward(raw))
+        found.faults += own_faults(made, known, raw, (title,))
+        found.parts[title] = made
+
+
+def _examine_limits(document: Mapping[str, Any], kind: DesignKind, found: Examined) -> None:
+    if "limits" not in document:
+        found.parts["limits"] = {}
+        return
+    known, raw = kind.table("limits"), document["limits"]
+    faults = list(faults_of(known, raw, home=lambda key: home_of(kind, key)))
+    found.faults += faults
+    if not faults:
+        found.parts["limits"] = known.inward(raw)
+
+
+def chosen(
+    at: Path, raw: Mapping[str, Any], key: str, what: str, known: Mapping[str, Any], found: Examined
+) -> str:
+    """Return the word of a key that names an entry of a registry.
+
+    Parameters
+    ----------
+    at : tuple
+        Where its table stands.
+    raw : mapping
+        The table.
+    key : str
+        Such as ``type``.
+    what : str
+        What an entry is, with its article.
+    known : mapping
+        The registry.
+    found : Examined
+        Gets the fault where there is no such word.
+
+    Returns
+    -------
+    str
+        Empty where there is none.
+    """
+    word, rule = raw.get(key), quoted(known)
+    if isinstance(word, str) and word in known:
+        return word
+    if key not in raw:
+        found.faults.append(Fault((*at, key), "is missing", allowed=rule))
+    else:
+        message, hint = f"{show(word)} is not {what}", did_you_mean(word, known)
+        found.faults.append(Fault((*at, key), message, word, rule, hint))
+    return ""

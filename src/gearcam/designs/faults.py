@@ -1,0 +1,258 @@
+"""Faults of a design file in words: what was found, what is allowed, what was meant."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from gearcam.designs.lines import Path
+from gearcam.designs.table import Key
+from gearcam.quantities import ANGLE, LENGTH
+
+MISSING: Final = object()
+"""Value of a fault where nothing was found."""
+
+_SUFFIX = re.compile(r"_(deg|rad|mm|cm|m|in|inch|rpm|um)$")
+_KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
+_SHOWN: Final = 60
+
+_SURE: Final = 0.75
+"""Likeness of words (twice the letters that they share over the letters of both) from which the
+first letter may be wrong too, which it rarely is in a slip."""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something wrong at a path of the document, without file and line.
+
+    Parameters
+    ----------
+    path : tuple
+        Keys and item numbers.
+    message, allowed, hint : str
+        As in `gearcam.errors.Problem`.
+    value : object
+        What was found, or `MISSING`.
+    """
+
+    path: Path
+    message: str
+    value: Any = MISSING
+    allowed: str = ""
+    hint: str = ""
+
+
+def dotted(path: Path) -> str:
+    """Return a path as in messages: ``pair.teeth[1]``."""
+    text = ""
+    for part in path:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            bare = re.fullmatch(r"[A-Za-z0-9_-]+", part)
+            text += ("." if text else "") + (part if bare else json.dumps(part, ensure_ascii=False))
+    return text
+
+
+def show(value: Any) -> str:
+    """Return a value as it would stand in a file, shortened."""
+    if isinstance(value, bool):
+        text = "true" if value else "false"
+    elif isinstance(value, str):
+        text = json.dumps(value, ensure_ascii=False)
+    elif isinstance(value, list | tuple):
+        text = "[" + ", ".join(show(item) for item in value[:12]) + "]"
+    elif isinstance(value, Mapping):
+        text = "a table"
+    elif isinstance(value, int) and abs(value) > 10**15:
+        text = f"{value // 10**15}..." if value < 10**40 else "a very large number"
+    else:
+        text = str(value)
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known word that was probably meant, or nothing."""
+    by_lower = {name.lower(): name for name in known}
+    meant = word.lower()
+    close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=_SURE)
+    close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
+    return by_lower[close[0]] if close else ""
+
+
+def did_you_mean(word: Any, known: Iterable[str]) -> str:
+    """Return the question with the nearest known word, or nothing."""
+    near = nearest(word, known) if isinstance(word, str) else ""
+    return f"did you mean {near}?" if near else ""
+
+
+def key_hint(key: str, known: Mapping[str, Key] | Iterable[str]) -> str:
+    """Return the hint for an unknown key: its unit's suffix, or the nearest key.
+
+    Parameters
+    ----------
+    key : str
+        As written.
+    known : mapping of str to Key, or iterable of str
+        The keys of its table.
+    """
+    if not isinstance(known, Mapping):
+        return did_you_mean(key, known)
+    named = {word: entry for entry in known.values() for word in (entry.key, entry.name)}
+    stem = _SUFFIX.sub("", key)
+    near = stem if stem in named else nearest(key, named)
+    return f"did you mean {named[near].key}?" + _unit_words(key, named[near]) if near else ""
+
+
+def _unit_words(key: str, entry: Key) -> str:
+    if entry.param.quantity in (ANGLE, LENGTH) and not key.endswith(entry.param.quantity.suffix):
+        what = "angles" if entry.param.quantity is ANGLE else "lengths"
+        return f" ({what} are given in {entry.param.quantity.unit}, and the key says so)"
+    return ""
+
+
+def description(entry: Key) -> str:
+    """Return the meaning and range of a key in one line."""
+    return f"{entry.param.doc}; {allowed(entry)}" if entry.param.doc else allowed(entry)
+
+
+def allowed(entry: Key, *, item: bool = False) -> str:
+    """Return what an entry may hold, in words.
+
+    Parameters
+    ----------
+    entry : Key
+        The key.
+    item : bool
+        Words for one item of a list.
+    """
+    if entry.length is None or item:
+        return _single(entry)
+    made = entry.param
+    if made.both:
+        return f"{_single(entry)}, or two of them, driver first"
+    if entry.length:
+        count = f"{entry.length} "
+    elif made.min_length:
+        count = f"at least {made.min_length} "
+    else:
+        count = ""
+    return f"a list of {count}{_plural(entry)}"
+
+
+def _single(entry: Key) -> str:
+    if entry.param.choices:
+        return quoted(entry.param.choices)
+    if entry.base in (str, bool):
+        return _KINDS[entry.base]
+    words = [f"a {_KINDS[entry.base]}", bounds(entry)]
+    text = " ".join(word for word in words if word)
+    return f'{text}, or "solve"' if entry.solve else text
+
+
+def _plural(entry: Key) -> str:
+    if entry.param.choices:
+        return "words out of " + ", ".join(f'"{word}"' for word in entry.param.choices)
+    text = " ".join(word for word in (f"{_KINDS[entry.base]}s", bounds(entry)) if word)
+    return f'{text}, or "solve"' if entry.solve else text
+
+
+def quoted(words: Iterable[str]) -> str:
+    """Return ``"a" or "b"``, ``"a", "b" or "c"``."""
+    *most, last = [f'"{word}"' for word in words]
+    return f"{', '.join(most)} or {last}" if most else last
+
+
+def bounds(entry: Key) -> str:
+    """Return the range of a value with its unit, in words; empty where there is none."""
+    made = entry.param
+    unit = f" {made.quantity.unit}" if made.quantity.unit else ""
+    low = f"from {made.ge:.10g}" if made.ge is not None else ""
+    low = f"above {made.gt:.10g}" if made.gt is not None else low
+    high = f"to {made.le:.10g}" if made.le is not None else ""
+    high = f"below {made.lt:.10g}" if made.lt is not None else high
+    if low and high:
+        joint = " and " if made.gt is not None and made.lt is not None else " "
+        return f"{low}{joint}{_upper(high, low)}{unit}"
+    if not low and not high:
+        return f"in{unit}" if unit else ""
+    if made.ge is not None:
+        low = f"of at least {made.ge:.10g}"
+    if made.le is not None:
+        high = f"of at most {made.le:.10g}"
+    return f"{low}{high}{unit}"
+
+
+def _upper(high: str, low: str) -> str:
+    """Say the upper bound so that it follows the lower one: "from 0 to below 1"."""
+    if high.startswith("below") and low.startswith("from"):
+        return f"to {high}"
+    return f"up {high}" if low.startswith("above") and high.startswith("to") else high
+
+
+def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
+    """Return the fault of a value that its entry does not allow.
+
+    Parameters
+    ----------
+    path : tuple
+        Where.
+    value : object
+        What was found.
+    entry : Key
+        What is allowed.
+    item : bool
+        Whether the value is an item of the entry's list.
+    """
+    rule = allowed(entry, item=item)
+    as_list = entry.length is not None and not item
+    if as_list:
+        if isinstance(value, list):
+            return Fault(path, _count(value), value, rule)
+        return Fault(path, f"{show(value)} is not a list", value, rule)
+    choices = entry.param.choices or (("solve",) if entry.solve else ())
+    if isinstance(value, str) and choices:
+        hint = did_you_mean(value, choices)
+        return Fault(path, f"{show(value)} is not known here", value, rule, hint)
+    if not is_of(value, entry.base):
+        hint = _type_hint(value, entry)
+        return Fault(path, f"{show(value)} is not {_a_kind(entry)}", value, rule, hint)
+    if isinstance(value, float) and not math.isfinite(value):
+        return Fault(path, f"{show(value)} is not a finite number", value, rule)
+    return Fault(path, f"{show(value)} is out of range", value, rule)
+
+
+def _count(value: list[Any]) -> str:
+    count = len(value)
+    return (
+        "the list is empty" if not count else f"{show(value)} has {count} value" + "s" * (count > 1)
+    )
+
+
+def _a_kind(entry: Key) -> str:
+    if entry.param.choices:
+        return "one of the words allowed"
+    kind = _KINDS[entry.base]
+    return kind if entry.base in (str, bool) else f"a {kind}"
+
+
+def is_of(value: Any, base: type) -> bool:
+    """Return whether a `value` is of a `base` type as files mean it: 2 is a number, not true."""
+    if isinstance(value, bool) or base is bool:
+        return base is bool and isinstance(value, bool)
+    return isinstance(value, (int, float) if base is float else base)
+
+
+def _type_hint(value: Any, entry: Key) -> str:
+    if isinstance(value, str) and entry.base in (int, float):
+        try:
+            float(value)
+        except ValueError:
+            return ""
+        return "write the number without quotes"
+    return "write the text in quotes" if entry.base is str and not entry.param.choices else ""

@@ -1,0 +1,44 @@
+"""The laws that a design can name, each with what it asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from gearcam.designs.faults import description
+from gearcam.designs.kind import KINDS
+from gearcam.designs.table import Table
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listed:
+    """A law as it is shown.
+
+    Parameters
+    ----------
+    name, doc : str
+        Of its entry.
+    line : str
+        How a design file names it.
+    rows : tuple of (str, str)
+        Its keys, then continuity and source, with what they mean.
+    """
+
+    name: str
+    doc: str
+    line: str
+    rows: tuple[tuple[str, str], ...]
+
+
+def law_groups() -> Iterator[tuple[str, list[Listed]]]:
+    """Yield the laws of each kind of design below a heading."""
+    for kind in filter(lambda kind: kind.main, KINDS.values()):
+        yield kind.room("describe").laws()
+
+
+def listed(entry: Any, line: str, known: Table) -> Listed:
+    """Return a law as it is shown: its `entry`, the `line` that names it, its `known` keys."""
+    keys = ((key, description(item)) for key, item in known.entries.items())
+    rows = (*keys, ("continuity", entry.continuity), ("source", entry.source))
+    return Listed(name=entry.name, doc=entry.doc, line=line, rows=rows)

@@ -1,0 +1,204 @@
+"""Reading design files: TOML becomes a design, or one error that lists everything wrong in it."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Final
+
+from gearcam.designs.design import Design
+from gearcam.designs.examine import examine
+from gearcam.designs.faults import MISSING, Fault, dotted
+from gearcam.designs.kind import KINDS
+from gearcam.designs.lines import line_at, lines_of
+from gearcam.errors import DesignError, Problem
+
+_PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+_COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
+"""A number with a decimal comma at the end of a line."""
+
+_PLAIN: Final = {
+    "Invalid value": "this value cannot be read (texts stand in quotes, numbers use a point)",
+    "Invalid statement": "this line is neither a table [name] nor key = value",
+    "Expected '=' after a key in a key/value pair": "an = is missing after the key",
+    "Expected newline or end of document after a statement": (
+        "something follows the value that does not belong to it (one key = value on each line)"
+    ),
+    "Cannot overwrite a value": "this key is given twice",
+    "Unclosed array": "the list is not closed with ]",
+    "Unclosed inline table": "the table is not closed with }",
+    "Unterminated string": "the text is not closed by its quote",
+    "Expected ']' at the end of a table declaration": "the name of the table is not closed with ]",
+    "Illegal character '\\n'": "the text is not closed by its quote on the same line",
+}
+
+
+def load(path: str | os.PathLike[str]) -> Design:
+    """Read a design file.
+
+    Parameters
+    ----------
+    path : path
+        A TOML file in UTF-8.
+
+    Returns
+    -------
+    Design
+        In mm and rad, of the file's kind.
+
+    Raises
+    ------
+    DesignError
+        If the file cannot be read, or for everything that is wrong in it, each with its line.
+    """
+    file = os.fspath(path)
+    return loads(decoded(content_of(file), file), file=file)
+
+
+def content_of(file: str) -> bytes:
+    """Return what is in a `file`.
+
+    Raises
+    ------
+    DesignError
+        If it cannot be read.
+    """
+    try:
+        return Path(file).read_bytes()
+    except FileNotFoundError as error:
+        raise DesignError([Problem("there is no such file", file=file)]) from error
+    except IsADirectoryError as error:
+        raise DesignError([Problem("this is a folder, not a file", file=file)]) from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise DesignError([Problem(f"cannot be read: {reason}", file=file)]) from error
+
+
+def decoded(content: bytes, file: str) -> str:
+    """Return the content of a file as text.
+
+    Parameters
+    ----------
+    content : bytes
+        As read.
+    file : str
+        Its name for messages.
+
+    Returns
+    -------
+    str
+        Without the mark that some programs put before UTF-8.
+
+    Raises
+    ------
+    DesignError
+        If it is not UTF-8.
+    """
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        message = f"the byte 0x{content[error.start]:02x} is not UTF-8"
+        problem = Problem(message, file=file, line=line, allowed="a text file saved as UTF-8")
+        raise DesignError([problem]) from error
+
+
+def loads(text: str, *, file: str = "") -> Design:
+    """Read the text of a design file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        The file's name for messages; its stem names a design that has no name.
+
+    Returns
+    -------
+    Design
+        In mm and rad, of the file's kind.
+
+    Raises
+    ------
+    DesignError
+        For everything that is wrong in it, each with its line.
+    """
+    document = document_in(text, file)
+    _find_tables(document, Path(file).parent)
+    found = examine(document, stem=Path(file).stem)
+    if found.faults:
+        raise DesignError(problems_of(found.faults, text, file))
+    return KINDS[document["kind"]].design(source=file, examined=True, **found.parts)
+
+
+def _find_tables(value: Any, folder: Path) -> None:
+    """Look for CSV files that a design names beside its own file."""
+    for item in value.values() if isinstance(value, dict) else value:
+        if isinstance(item, dict | list):
+            _find_tables(item, folder)
+    if isinstance(value, dict) and isinstance(value.get("file"), str) and value["file"]:
+        value["file"] = os.fspath(folder / value["file"])
+
+
+def problems_of(faults: Iterable[Fault], text: str, file: str) -> list[Problem]:
+    """Return what is wrong in the `text` of a `file`, from its `faults`, with lines."""
+    lines = lines_of(text)
+    placed = [
+        Problem(
+            message=fault.message,
+            file=file,
+            line=line_at(lines, fault.path),
+            key=dotted(fault.path),
+            value=None if fault.value is MISSING else fault.value,
+            allowed=fault.allowed,
+            hint=fault.hint,
+        )
+        for fault in faults
+    ]
+    return sorted(placed, key=lambda problem: problem.line or 0)
+
+
+def document_in(text: str, file: str) -> dict[str, Any]:
+    """Return what the text of a file holds.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        The file's name for messages.
+
+    Returns
+    -------
+    dict
+        As read.
+
+    Raises
+    ------
+    DesignError
+        If it is not TOML.
+    """
+    try:
+        return tomllib.loads(text)
+    except RecursionError as error:
+        raise DesignError([Problem("lists or tables are nested too deep", file=file)]) from error
+    except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
+        raise DesignError([_syntax_problem(str(error), text, file)]) from error
+
+
+def _syntax_problem(message: str, text: str, file: str) -> Problem:
+    place = _PLACE.search(message)
+    what = message[: place.start()] if place else message
+    what = _PLAIN.get(what, what)
+    if place and place.group(1):
+        line = int(place.group(1))
+        comma = _COMMA.search(text.split("\n")[line - 1])
+        hint = f"use a decimal point: {comma[1]}.{comma[2]}" if comma else ""
+        return Problem(f"column {place.group(2)}: {what}", file=file, line=line, hint=hint)
+    if place:
+        last = text.rstrip().count("\n") + 1
+        return Problem(f"{what} (the file ends)", file=file, line=last)
+    return Problem(f"a number in this file cannot be read: {what}", file=file)

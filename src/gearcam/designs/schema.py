@@ -1,0 +1,168 @@
+"""The JSON schema of design files, for editors that complete and check TOML while it is typed.
+
+It is made of the same tables that files are checked by, so that both agree on keys, types and
+ranges. What a schema cannot say (knots must rise, formulas must parse) the reader says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Final
+
+from gearcam.designs.faults import description
+from gearcam.designs.kind import KINDS, DesignKind
+from gearcam.designs.table import Key, Table
+
+DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
+
+Schema = dict[str, Any]
+
+_TYPES: Final = {float: "number", int: "integer", str: "string", bool: "boolean"}
+_BOUNDS: Final = {
+    "gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"
+}  # fmt: skip
+
+_NAME_PATTERN: Final = r"^[A-Za-z0-9_\u00aa-\uffff]([A-Za-z0-9_.\-\u00aa-\uffff]*[^.])?$"
+"""What an editor can check of a name; the reader knows letters of all scripts from other signs."""
+
+
+def schema() -> Schema:
+    """Return the schema of design files.
+
+    Returns
+    -------
+    dict
+        JSON schema, draft 2020-12, with one branch per kind of design, law and phase.
+    """
+    definitions: Schema = {}
+    for kind in KINDS.values():
+        main, own = kind.room("describe").schema() if kind.main else ({}, {})
+        definitions[kind.name] = _branch(kind, main)
+        for title in (*kind.tables, "limits"):
+            definitions[f"{kind.name}-{title}"] = _titled(kind, title)
+        definitions |= own
+    return {
+        "$schema": DIALECT,
+        "title": "gearcam design file",
+        "type": "object",
+        "required": ["kind"],
+        "properties": {"kind": {"enum": list(KINDS), "description": "the kind of design"}},
+        "allOf": [_when("kind", name, {"$ref": f"#/$defs/{name}"}) for name in KINDS],
+        "$defs": definitions,
+    }
+
+
+def _when(key: str, value: str, then: Schema) -> Schema:
+    """Return what holds where a key has a value."""
+    return {"if": {"properties": {key: {"const": value}}, "required": [key]}, "then": then}
+
+
+def chosen(key: str, names: Iterable[str], words: str, home: Callable[[str], str]) -> Schema:
+    """Return the schema of a table whose keys follow from a word.
+
+    Parameters
+    ----------
+    key : str
+        The key of the word, such as ``type``.
+    names : iterable of str
+        What it may be.
+    words : str
+        What it means.
+    home : callable
+        Returns the name of the definition that holds for a word.
+
+    Returns
+    -------
+    dict
+    """
+    known = list(names)
+    return {
+        "required": [key],
+        "properties": {key: {"enum": known, "description": words}},
+        "allOf": [_when(key, name, {"$ref": f"#/$defs/{home(name)}"}) for name in known],
+    }
+
+
+def told(names: Iterable[tuple[str, str]]) -> str:
+    """Return words with their meanings in one line."""
+    return "; ".join(f"{name}: {doc}" for name, doc in names)
+
+
+def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
+    """Return the schema of a table.
+
+    Parameters
+    ----------
+    known : Table
+        Its keys.
+    doc : str
+        What it is.
+    **words : str
+        Keys before them that have one value each.
+
+    Returns
+    -------
+    dict
+    """
+    entries = known.entries.items()
+    required = [*words, *(name for name, key in entries if key.required)]
+    return {
+        "type": "object",
+        **({"description": doc} if doc else {}),
+        "additionalProperties": False,
+        **({"required": required} if required else {}),
+        "properties": {name: {"const": word} for name, word in words.items()}
+        | {name: _property(key) for name, key in entries},
+    }
+
+
+def _branch(kind: DesignKind, main: Schema) -> Schema:
+    return {
+        "type": "object",
+        "description": kind.doc,
+        "additionalProperties": False,
+        "required": ["kind", *([kind.main] if kind.main else []), *kind.required],
+        "properties": {
+            "kind": {"const": kind.name, "description": kind.doc},
+            "name": {
+                "type": "string",
+                "pattern": _NAME_PATTERN,
+                "maxLength": 100,
+                "description": "names the folder of the files; the file's own name if left out",
+            },
+            **({kind.main: main} if kind.main else {}),
+        }
+        | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
+    }
+
+
+def _titled(kind: DesignKind, title: str) -> Schema:
+    made = table_schema(kind.table(title))
+    if title in kind.one_of:
+        made["oneOf"] = [{"required": [key]} for key in kind.one_of[title]]
+    if title == "output":
+        made["properties"]["files"]["uniqueItems"] = True
+    return made
+
+
+def _property(key: Key) -> Schema:
+    words: Schema = {"description": description(key)}
+    if not key.required and key.default is not None:
+        words["default"] = key.outward(key.default)
+    single = _single(key)
+    if key.length is None:
+        return single | words
+    counts = {"minItems": key.length or key.param.min_length, "maxItems": key.length}
+    many = {"type": "array", "items": single} | {name: n for name, n in counts.items() if n}
+    return words | {"anyOf": [single, many]} if key.param.both else many | words
+
+
+def _single(key: Key) -> Schema:
+    made = key.param
+    if made.choices:
+        single: Schema = {"enum": list(made.choices)}
+    else:
+        bounds = {word: getattr(made, name) for name, word in _BOUNDS.items()}
+        single = {"type": _TYPES[key.base]}
+        single |= {word: bound for word, bound in bounds.items() if bound is not None}
+    return {"anyOf": [single, {"const": "solve"}]} if key.solve else single

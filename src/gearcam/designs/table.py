@@ -1,0 +1,172 @@
+"""Tables of a design file: which keys they have and what each may hold.
+
+Everything follows from parameter dataclasses (see `gearcam.quantities`): an *entry* is one key, a
+*table* the keys of one dataclass. Values cross here between the file's units and mm and rad.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from gearcam.quantities import REQUIRED, Param, params_of
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a table.
+
+    Parameters
+    ----------
+    name : str
+        The parameter's name inside the program.
+    key : str
+        Its key in a file, with the suffix of its unit.
+    param : Param
+        Quantity, bounds, choices, meaning.
+    base : type
+        Type of a single value: float, int, str or bool.
+    length : int or None
+        Entries of a list: a number, 0 for any number of them, None where the value is no list.
+    solve : bool
+        Whether the word ``"solve"`` may stand for a value.
+    default : object
+        In inner units; `REQUIRED` where the file must give the key, None where the program finds a
+        value by itself.
+    """
+
+    name: str
+    key: str
+    param: Param
+    base: type
+    length: int | None
+    solve: bool
+    default: Any
+
+    @property
+    def required(self) -> bool:
+        """Whether the file must give the key."""
+        return self.default is REQUIRED
+
+    def takes(self, count: int) -> bool:
+        """Return whether its list may have as many values as `count`."""
+        return count == self.length if self.length else count >= (self.param.min_length or 0)
+
+    def inward(self, value: Any) -> Any:
+        """Turn a value that has been checked from the file's unit into mm, rad and tuples."""
+        if self.param.both and not isinstance(value, list | tuple):
+            value = (value, value)
+        if self.length is not None:
+            return tuple(self._inward(item) for item in value)
+        return self._inward(value)
+
+    def _inward(self, value: Any) -> Any:
+        if self.base is not float or isinstance(value, str):
+            return value
+        return float(value) * self.param.quantity.factor
+
+    def outward(self, value: Any) -> Any:
+        """Turn an inner value into what a file would hold; arrays become lists."""
+        value = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(value, list | tuple):
+            return [self._outward(item) for item in value]
+        return self._outward(value)
+
+    def _outward(self, value: Any) -> Any:
+        value = value.item() if hasattr(value, "item") else value
+        factor = self.param.quantity.factor
+        if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):
+            return value
+        written = value / factor
+        # degrees that went through radians get their digits back
+        return float(f"{written:.13g}") if math.isfinite(written) else written
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The keys of one table of the file.
+
+    Parameters
+    ----------
+    title : str
+        Its name in the file.
+    owner : type or None
+        What is made from it, a dataclass; None for limits, which belong to checks.
+    entries : mapping of str to Key
+        By key.
+    """
+
+    title: str
+    owner: type | None
+    entries: Mapping[str, Key]
+
+    def inward(self, raw: Mapping[str, Any]) -> dict[str, Any]:
+        """Return inner values by parameter name, for the keys given."""
+        return {
+            entry.name: entry.inward(raw[key]) for key, entry in self.entries.items() if key in raw
+        }
+
+    def outward(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what a file would hold; what is None is left out."""
+        return {
+            entry.key: entry.outward(values[entry.name])
+            for entry in self.entries.values()
+            if values.get(entry.name) is not None
+        }
+
+    def document(self, made: Any) -> dict[str, Any]:
+        """Return what a file would hold of an instance of the owner."""
+        return self.outward(
+            {item.name: getattr(made, item.name) for item in dataclasses.fields(made)}
+        )
+
+
+@lru_cache(maxsize=128)
+def table_of(title: str, owner: type) -> Table:
+    """Return the table of a parameter dataclass.
+
+    Parameters
+    ----------
+    title : str
+        Its name in the file.
+    owner : type
+        The dataclass; its fields are made by `gearcam.quantities.param`.
+
+    Returns
+    -------
+    Table
+        With an entry for each field, in order.
+    """
+    hints = typing.get_type_hints(owner)
+    defaults = {field.name: field.default for field in dataclasses.fields(owner)}
+    made = (
+        _entry(name, made_of, hints[name], defaults[name])
+        for name, made_of in params_of(owner).items()
+    )
+    return Table(title, owner, {entry.key: entry for entry in made})
+
+
+def _entry(name: str, made_of: Param, hint: Any, default: Any) -> Key:
+    hint, _ = _split(hint)
+    length: int | None = None
+    if typing.get_origin(hint) is tuple:
+        items = typing.get_args(hint)
+        length = 0 if items[-1] is Ellipsis else len(items)
+        hint = items[0]
+    hint, solve = _split(hint)
+    return Key(name, made_of.key(name), made_of, hint, length, solve, default)
+
+
+def _split(hint: Any) -> tuple[Any, bool]:
+    """Take None and the word "solve" out of a union; say whether the word was there."""
+    if typing.get_origin(hint) not in (typing.Union, types.UnionType):
+        return hint, False
+    rest = [part for part in typing.get_args(hint) if part is not types.NoneType]
+    plain = [part for part in rest if typing.get_origin(part) is not typing.Literal]
+    return plain[0], len(plain) < len(rest)

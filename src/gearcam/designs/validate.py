@@ -1,0 +1,85 @@
+"""What is wrong in one table of a design file by itself: keys, types, ranges, counts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from gearcam.designs.faults import Fault, allowed, is_of, key_hint, show, value_fault
+from gearcam.designs.lines import Path
+from gearcam.designs.table import Key, Table
+
+
+def faults_of(
+    table: Table, raw: Any, *, home: Callable[[str], str], at: Path = ()
+) -> Iterator[Fault]:
+    """Yield everything that is wrong in a table by itself.
+
+    Parameters
+    ----------
+    table : Table
+        What is allowed.
+    raw : object
+        What the file holds under the table's name.
+    home : callable
+        Gives the words that say where a key of another place belongs.
+    at : tuple
+        Where the table stands; under its title if left out.
+
+    Yields
+    ------
+    Fault
+        In the order of keys; one for each place.
+    """
+    at = at or (table.title,)
+    known = ", ".join(table.entries) or "no keys"
+    if not isinstance(raw, Mapping):
+        yield Fault(at, f"{show(raw)} is not a table", raw, f"a table [{table.title}] with {known}")
+        return
+    for name, key in table.entries.items():
+        if name in raw:
+            yield from _of_value(key, raw[name], (*at, name))
+        elif key.required:
+            yield Fault((*at, name), "is missing", allowed=allowed(key))
+    for name, value in raw.items():
+        if name not in table.entries:
+            hint = key_hint(name, table.entries) or home(name)
+            message = f"unknown key (its value is {show(value)})"
+            yield Fault((*at, name), message, value, known, hint)
+
+
+def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
+    if key.length is None or (key.param.both and not isinstance(value, list)):
+        if not _fits(key, value):
+            yield value_fault(path, value, key, item=key.length is not None)
+    elif not isinstance(value, list):
+        yield value_fault(path, value, key, item=False)
+    else:
+        for number, item in enumerate(value):
+            if not _fits(key, item):
+                yield value_fault((*path, number), item, key, item=True)
+        if not key.takes(len(value)):
+            yield value_fault(path, value, key, item=False)
+
+
+def _fits(key: Key, value: Any) -> bool:
+    """Whether a single value is what its key allows."""
+    if key.solve and value == "solve":
+        return True
+    if not is_of(value, key.base) or (key.param.choices and value not in key.param.choices):
+        return False
+    if key.base not in (int, float):
+        return True
+    try:
+        number = float(value)
+    except OverflowError:
+        return False
+    made = key.param
+    return (
+        (math.isfinite(number) or key.base is int)
+        and (made.gt is None or number > made.gt)
+        and (made.ge is None or number >= made.ge)
+        and (made.lt is None or number < made.lt)
+        and (made.le is None or number <= made.le)
+    )

@@ -1,0 +1,246 @@
+"""What the files and facts of every kind of design share: DXF, meshes, sheets, parts, accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gearcam.drawings import Drawing
+    from gearcam.export.dxf import DxfStyle
+    from gearcam.facts import Facts
+    from gearcam.parts.body import Part
+    from gearcam.parts.tools import ToolLimits
+    from gearcam.solids import Mesh
+
+Files = dict[str, bytes]
+"""Contents by file name."""
+
+STEP_PART = 2e-3
+"""Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
+
+
+CHORD_HOW = (
+    "largest distance of the curve from a chord: measured at 13 places, or, "
+    "where the curvature hardly changes, from the tangents at its ends"
+)
+"""How a sampler knows its chord error."""
+
+
+def accuracy(
+    rows: Mapping[str, tuple[float, str]], chord: float, kerf: float, measured: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return error estimates, and how each was made.
+
+    Parameters
+    ----------
+    rows : mapping of str to (float, str)
+        Those of the kind, by name.
+    chord : float, mm
+        Chord error of the outlines.
+    kerf : float, mm
+        By half of which paths of cutting files are moved.
+    measured : mapping
+        What exporters measured: ``dxf``.
+
+    Returns
+    -------
+    dict
+        Of facts, with ``how`` for each.
+    """
+    rows = {**rows, "chord_mm": (chord, CHORD_HOW)}
+    made: dict[str, Any] = {name: value for name, (value, _) in rows.items()}
+    how = {name: words for name, (_, words) in rows.items()}
+    dxf = measured.get("dxf")
+    if dxf is not None:
+        made["dxf_mm"] = dxf["error_mm"]
+        what = "the edge, or its parallel at half the kerf" if kerf else "the curve"
+        how["dxf_mm"] = f"files read back ({dxf['curves']}), against {what}, both ways"
+    return {**made, "how": how}
+
+
+def part_facts(part: Part, tools: ToolLimits, density: float | None) -> dict[str, Any]:
+    """Return what is known of a part.
+
+    Parameters
+    ----------
+    part : Part
+        As made.
+    tools : ToolLimits
+        The largest tools for it.
+    density : float or None, kg/m^3
+        Asks for its mass.
+
+    Returns
+    -------
+    dict
+        Of facts; what does not exist is left out.
+    """
+    from gearcam.parts.mass import mass_properties
+
+    made: dict[str, Any] = {
+        "tool": tools.as_dict(),
+        "openings": [opening.as_dict() for opening in part.openings],
+    }
+    if density is not None:
+        made["density_kg_m3"] = density
+        made["mass"] = mass_properties(part, density).as_dict()
+    return {name: value for name, value in made.items() if value}
+
+
+def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
+    """Return the rows of a drawing's table: those quantities of `names` that `facts` have."""
+    known = {one.name: one for one in facts.quantities()}
+    return {known[name].meaning: known[name].text for name in names if name in known}
+
+
+def sheet_bytes(sheet: Any, style: DxfStyle, ending: str) -> Files:
+    """Return a workshop drawing as a file.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        The drawing.
+    style : DxfStyle
+        How DXF is written.
+    ending : {"svg", "dxf"}
+        The kind of file.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by file name.
+    """
+    from gearcam.export.sheet_dxf import sheet_dxf
+    from gearcam.export.sheet_svg import sheet_svg
+
+    data = sheet_svg(sheet) if ending == "svg" else sheet_dxf(sheet, style)
+    return {f"{sheet.name}_drawing.{ending}": data}
+
+
+def dxf_style(output: Any, tolerance: float) -> DxfStyle:
+    """Return how DXF is written.
+
+    Parameters
+    ----------
+    output : OutputSpec
+        What a design says of its files.
+    tolerance : float, mm
+        Of the outlines.
+
+    Returns
+    -------
+    DxfStyle
+    """
+    from gearcam.export.dxf import DxfStyle
+
+    version = output.dxf_version or ("R12" if output.dxf_curves == "lines" else "R2010")
+    return DxfStyle(tolerance=tolerance, curves=output.dxf_curves, version=version)
+
+
+def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: dict[str, Any]) -> Files:
+    """Return drawings as DXF files, each read back and measured.
+
+    Parameters
+    ----------
+    drawings : sequence of Drawing
+        Each a file of its name.
+    style : DxfStyle
+        How.
+    measured : dict
+        The measured errors are written in here.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by file name.
+    """
+    from gearcam.export.dxf import dxf_bytes
+    from gearcam.export.dxf_read import measure_dxf
+
+    files: Files = {}
+    known = measured.setdefault(
+        "dxf", {"curves": style.curves, "version": style.version, "error_mm": {}}
+    )
+    for drawing in drawings:
+        name = f"{drawing.name}.dxf"
+        files[name] = dxf_bytes(drawing, style)
+        known["error_mm"][name] = measure_dxf(files[name], drawing.contours)
+    return files
+
+
+def cut_files(drawings: Sequence[Drawing], title: str, kerf: float) -> Files:
+    """Return the files of a laser: one for each part, and a sheet with all of them, labelled.
+
+    Parameters
+    ----------
+    drawings : sequence of Drawing
+        What is cut.
+    title : str
+        The design's name.
+    kerf : float, mm
+        By half of which their paths have been moved.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by file name.
+    """
+    from gearcam.export.cut_svg import cut_svg
+    from gearcam.export.nest import labelled, nested
+
+    files = {
+        f"{one.name}_cut.svg": cut_svg([one], f"{title}, {one.name}", kerf) for one in drawings
+    }
+    sheet = nested([labelled(one) for one in drawings])
+    return files | {"cut.svg": cut_svg(sheet, title, kerf)}
+
+
+def meshes(parts: Sequence[Part], measured: dict[str, Any]) -> dict[str, Mesh]:
+    """Return the solids of parts, made once for all kinds of files.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+        As made.
+    measured : dict
+        Keeps them, and what was measured on them.
+
+    Returns
+    -------
+    dict of str to Mesh
+        By the parts' names.
+    """
+    from gearcam.solids import solid, volume_error
+
+    solids = measured.setdefault("_solids", {})
+    for part in parts:
+        if part.name not in solids:
+            solids[part.name] = solid(part)
+            measured.setdefault("solids", {})[part.name] = {
+                "volume_mm3": solids[part.name].volume,
+                "volume_error_mm3": volume_error(part),
+                "triangles": len(solids[part.name].triangles),
+            }
+    return solids
+
+
+def mesh_bytes(named: dict[str, Mesh], kind: str, title: str) -> bytes:
+    """Return meshes as a file.
+
+    Parameters
+    ----------
+    named : dict of str to Mesh
+        By name.
+    kind : {"stl", "3mf", "glb"}
+        The format.
+    title : str
+        Of the scene.
+
+    Returns
+    -------
+    bytes
+    """
+    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
+
+    return {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind](named, title)

@@ -1,0 +1,211 @@
+"""Facts: what is known of a result, as one tree of named quantities.
+
+Console, ``summary.json``, drawings and pictures are all told from this tree. A *group* is a mapping
+of names to facts and groups; a *fact* has a value and, where people see it, its meaning, the limit
+that it is held against and its place. The name says the unit, as the keys of design files do:
+``module_mm`` is in mm. A value is a number, a text, a list, a range ``{"min": ..., "max": ...}`` or
+``{"least": ..., "mean": ...}``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+from gearcam.numerals import shown
+
+_UNITS: Final = {
+    "_per_mm": "1/mm",
+    "_kg_m3": "kg/m3",
+    "_kg_mm2": "kg mm2",
+    "_g_mm": "g mm",
+    "_mm3": "mm3",
+    "_mm2": "mm2",
+    "_mm": "mm",
+    "_deg": "deg",
+    "_rad": "rad",
+    "_kg": "kg",
+}
+"""Units by the ends of names, the longer ones first."""
+
+_LEAVES: Final = (("min", "max"), ("least", "mean"))
+"""Keys of a mapping that is one value."""
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A value with what a person should know of it.
+
+    Parameters
+    ----------
+    value : object
+        Number, text, list or range, in the unit that its name says.
+    meaning : str
+        What it is, in the words of the field; by its name where left out.
+    at_least, at_most : float, optional
+        The limit that it is held against, in the same unit.
+    place : str
+        Where: wheel, tooth, angle.
+    unit : str, optional
+        Where the name does not say it.
+    shown : bool
+        Whether it is one of the few that are always shown.
+    """
+
+    value: Any
+    meaning: str = ""
+    at_least: float | None = None
+    at_most: float | None = None
+    place: str = ""
+    unit: str | None = None
+    shown: bool = False
+
+
+@dataclass(frozen=True)
+class NamedFact:
+    """A fact with its name and its unit, as it is told.
+
+    Parameters
+    ----------
+    name : str
+        Dotted, as in ``summary.json``: ``pair.module_mm``.
+    value : object
+        In `unit`.
+    unit, meaning : str
+        As people write them.
+    limit : str
+        The limit that the value is held against, in words.
+    place : str
+        Where.
+    """
+
+    name: str
+    value: Any
+    unit: str
+    meaning: str
+    limit: str
+    place: str
+
+    @property
+    def text(self) -> str:
+        """The value with its unit: ``0.4 to 1.6``, ``36 : 36``, ``4.92299 mm``."""
+        return f"{text_of(self.value)} {self.unit}".rstrip()
+
+
+def text_of(value: Any) -> str:
+    """Return a `value` as people read it, numbers in few digits."""
+    if isinstance(value, Mapping):
+        low, high = map(text_of, value.values())
+        if low == high:
+            return low
+        return f"{low} to {high}" if "max" in value else f"{low}, mean {high}"
+    if isinstance(value, list | tuple):
+        return " : ".join(map(text_of, value))
+    if isinstance(value, bool | str):
+        return str(value)
+    return shown(value)
+
+
+class Facts(Mapping[str, Any]):
+    """A tree of facts; values and groups are found by their dotted names.
+
+    Parameters
+    ----------
+    tree : mapping
+        Groups and lists of groups, facts, and bare values, which no person is told of by default.
+        What is None is left out.
+    headline : sequence of str
+        Names of the few quantities that stand first, on one line.
+    title : str
+        What the machine is, before them.
+    """
+
+    def __init__(
+        self, tree: Mapping[str, Any], headline: Sequence[str] = (), title: str = ""
+    ) -> None:
+        self._tree = tree
+        self._headline = tuple(headline)
+        self._title = title
+
+    @cached_property
+    def headline(self) -> tuple[str, ...]:
+        """The machine in a few phrases: ``("module 2 mm", "teeth 20 : 20")``."""
+        told = map(self.quantity, self._headline)
+        phrases = (f"{one.meaning} {one.text}" for one in told)
+        return (self._title, *phrases) if self._title else tuple(phrases)
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """The tree as JSON holds it: values without their words."""
+        return _bare(self._tree)
+
+    def __getitem__(self, name: str) -> Any:
+        found: Any = self.document
+        for step in name.split("."):
+            found = found[int(step) if isinstance(found, list) else step]
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return (quantity.name for quantity in self.quantities())
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def quantities(self) -> Iterator[NamedFact]:
+        """Yield every quantity in the order of the tree."""
+        return (_quantity(name, fact) for name, fact in _leaves(self._tree))
+
+    def shown(self) -> Iterator[NamedFact]:
+        """Yield the quantities that are always shown."""
+        for name, fact in _leaves(self._tree):
+            if isinstance(fact, Fact) and fact.shown:
+                yield _quantity(name, fact)
+
+    def quantity(self, name: str) -> NamedFact:
+        """Return one quantity by its dotted `name`."""
+        return next(one for one in self.quantities() if one.name == name)
+
+
+def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    if _is_group(tree):
+        items: Any = tree.items()
+    elif isinstance(tree, list) and tree and all(map(_is_group, tree)):
+        items = enumerate(tree)
+    else:
+        yield path, tree
+        return
+    for name, item in items:
+        if item is not None:
+            yield from _leaves(item, f"{path}.{name}" if path else str(name))
+
+
+def _is_group(value: Any) -> bool:
+    return isinstance(value, Mapping) and tuple(value) not in _LEAVES
+
+
+def _quantity(name: str, leaf: Any) -> NamedFact:
+    fact = leaf if isinstance(leaf, Fact) else Fact(leaf)
+    last = name.rpartition(".")[2]
+    end = next((end for end in _UNITS if last.endswith(end)), "")
+    unit = _UNITS.get(end, "") if fact.unit is None else fact.unit
+    meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
+    limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
+    limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
+    return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place)
+
+
+def _bare(value: Any) -> Any:
+    if isinstance(value, Fact):
+        return _bare(value.value)
+    if isinstance(value, Mapping):
+        return {name: _bare(item) for name, item in value.items() if item is not None}
+    if isinstance(value, list | tuple):
+        return [_bare(item) for item in value]
+    return value
+
+
+def extent(low: float, high: float, factor: float = 1.0) -> dict[str, float]:
+    """Return the range from `low` to `high`, both times `factor`."""
+    return {"min": factor * low, "max": factor * high}

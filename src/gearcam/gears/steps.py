@@ -1,0 +1,55 @@
+"""Stepped wheels: the same pair again, its teeth moved on along the pitch curves.
+
+Both centrodes have the same arc length, so teeth that are moved by the same way on both wheels mesh
+as before: each step is a rolled copy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from gearcam.errors import InfeasibleError, Way
+from gearcam.gears.pair import GearPair
+from gearcam.gears.spec import StepsSpec
+
+
+def leads(pair: GearPair, spec: StepsSpec) -> tuple[float, ...]:
+    """Return how far the teeth of each step are moved, mm along the pitch curves.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The lowest step.
+    spec : StepsSpec
+        Count and offset.
+
+    Returns
+    -------
+    tuple of float
+        Within one pitch, since whole pitches change nothing; the first is 0.
+
+    Raises
+    ------
+    InfeasibleError
+        If open wheels are to be stepped.
+    """
+    if spec.count > 1 and not pair.closed:
+        raise InfeasibleError(
+            "open wheels and racks cannot be stepped: their end teeth would leave the blank",
+            where="steps.count",
+            value=spec.count,
+            limit=1,
+            nearest="they have one step",
+            ways=(Way(near={"steps.count": 1}),),
+        )
+    pitch = pair.toothings[0].pitch
+    offset = pitch / spec.count if spec.offset is None else spec.offset
+    return tuple(number * offset % pitch for number in range(spec.count))
+
+
+def stepped(pair: GearPair, moved: float) -> GearPair:
+    """Return the pair with its teeth moved on by `moved`, mm (see `leads`)."""
+    if moved == 0.0:
+        return pair
+    first, second = (replace(toothing, moved=moved) for toothing in pair.toothings)
+    return replace(pair, toothings=(first, second))

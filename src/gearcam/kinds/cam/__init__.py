@@ -1,0 +1,1 @@
+"""Cams with their followers: the kind ``cam``."""

@@ -1,0 +1,44 @@
+"""What may help where a cam is refused or has errors: a larger cam, a smaller roller or lift."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.designs.design import value_at
+from gearcam.errors import InfeasibleError, Way
+
+if TYPE_CHECKING:
+    from gearcam.advice import Search
+    from gearcam.result import Result
+
+_LARGER: Final = 5.0
+_SMALLER: Final = 0.05
+"""How far a cam grows and a roller or a lift shrinks in the search, over what is given."""
+
+
+def seek(search: Search, refusal: InfeasibleError | None) -> None:
+    """Lead a `search` for remedies: what a `refusal` names, then other sizes."""
+    search.follow([*(refusal.ways if refusal else ()), *_sizes(search.document)])
+
+
+def hopeless(_: Result) -> bool:
+    """Whether a changed design cannot do, which nothing tells without building it."""
+    return False
+
+
+def _sizes(document: Mapping[str, Any]) -> Iterator[Way]:
+    """Yield ways to a cam that is larger for its follower and its lifts."""
+    sizes = (("cam.prime_radius_mm", _LARGER), ("cam.base_radius_mm", _LARGER))
+    for key, factor in (*sizes, ("follower.roller_radius_mm", _SMALLER)):
+        given = value_at(document, key)
+        if given:
+            yield Way(far={key: factor * given})
+    lifts = {
+        f"motion[{number}].{key}": _SMALLER * value
+        for number, phase in enumerate(document["motion"])
+        for key, value in phase.items()
+        if key.startswith(("lift_", "to_", "velocity_", "acceleration_")) and value
+    }
+    if lifts:
+        yield Way(far=lifts)

@@ -1,0 +1,40 @@
+"""The command ``follow``: what motion a given profile makes."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from typing import Any, Final
+
+from gearcam.commands import Command
+from gearcam.designs.design import Design, demand_kind
+from gearcam.kinds.cam.design import NAME
+from gearcam.result import Progress, Written
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
+    parser.add_argument("profile", metavar="PROFILE", help=words)
+
+
+def _adapt(design: Design, _: Mapping[str, Any]) -> Design:
+    return demand_kind(design, NAME)
+
+
+def _run(
+    result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
+) -> Written:
+    return result.follow(options["profile"], output, progress=progress)
+
+
+COMMANDS: Final = (
+    Command(
+        name="follow",
+        done="followed",
+        doc="Put a cam's follower on a given profile; writes DIR/<name>/followed.csv.",
+        arguments=_arguments,
+        adapt=_adapt,
+        run=_run,
+        many=False,
+    ),
+)

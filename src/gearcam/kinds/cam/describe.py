@@ -1,0 +1,83 @@
+"""The tables ``[[motion]]`` in words: for the schema, the template and the list of laws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from gearcam.designs.listing import Listed, listed
+from gearcam.designs.schema import chosen, table_schema, told
+from gearcam.designs.template import entry_lines, key_line, law_comment
+from gearcam.kinds.cam.design import KIND
+from gearcam.kinds.cam.motion import LIFT, WITH_LAW, phase_table, rise_table, summary, twins
+from gearcam.laws.phases_of_lift import PHASES
+from gearcam.laws.rises import RISES
+
+
+def schema() -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the schema of the array of tables, and the definitions that it needs."""
+    words = told((name, entry.doc) for name, entry in RISES.items())
+    phases = chosen("type", PHASES, "the phase", lambda name: name)
+    made: dict[str, Any] = {}
+    for name in PHASES:
+        if name in WITH_LAW:
+            made[name] = chosen("law", RISES, words, f"{name}-{{}}".format)
+            made |= {f"{name}-{law}": _phase_schema(name, law) for law in RISES}
+        else:
+            made[name] = _phase_schema(name)
+    main = {
+        "type": "array",
+        "minItems": 1,
+        "description": "the lift over a turn of the cam, phase by phase",
+        "items": {"type": "object", **phases},
+    }
+    return main, made
+
+
+def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
+    known = phase_table(name, law)
+    words = {"type": name, "law": law} if law else {"type": name}
+    made = table_schema(known, summary(PHASES[name]), **words)
+    either = [
+        {"oneOf": [{"required": [key]} for key in keys]}
+        if word == LIFT.get(name)
+        else {"not": {"required": list(keys)}}
+        for word, keys in twins(known).items()
+    ]
+    return made | {"allOf": either} if either else made
+
+
+def lines() -> Iterator[str]:
+    """Yield the lines of the template: the example's phases, others and other laws as comments."""
+    example = KIND.example["motion"]
+    yield f"# {KIND.notes['motion']}"
+    for phase in example:
+        yield from _phase(phase)
+        yield ""
+    yield "# Other phases, to stand among those above:"
+    for name in PHASES:
+        if name not in (phase["type"] for phase in example):
+            yield "#"
+            yield from _phase({"type": name}, "# ")
+    yield ""
+    yield "# Other laws of rises and returns:"
+    used = {phase["law"] for phase in example if "law" in phase}
+    for name, entry in RISES.items():
+        if name not in used:
+            yield from law_comment("law", name, entry, rise_table(name))
+
+
+def _phase(given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
+    """Show a phase, or tell of one in comments where a mark stands before its lines."""
+    law = given.get("law", "")
+    yield f"{mark}[[motion]]"
+    yield key_line("type", given["type"], summary(PHASES[given["type"]]), mark)
+    if law:
+        yield key_line("law", law, RISES[law].doc, mark)
+    yield from entry_lines(phase_table(given["type"], law), given)
+
+
+def laws() -> tuple[str, list[Listed]]:
+    """Return the laws below a heading."""
+    found = [listed(entry, f'law = "{name}"', rise_table(name)) for name, entry in RISES.items()]
+    return "Laws of cams: rises and returns, in the tables [[motion]]", found

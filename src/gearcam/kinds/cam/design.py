@@ -1,0 +1,228 @@
+"""The kind ``cam``: its design, its tables, and the rules between them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache, partial
+from typing import Any, Final
+
+from gearcam.cams.spec import KIND as CAM_KIND
+from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec, size_problems
+from gearcam.designs.design import Design, Wanted
+from gearcam.designs.examine import home_of
+from gearcam.designs.faults import Fault, show
+from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
+from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
+from gearcam.designs.table import Table, table_of
+from gearcam.errors import DesignError, Problem
+from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of
+from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase
+from gearcam.laws.rises import RISES
+from gearcam.parts.blank import KIND as PARTS_KIND
+from gearcam.parts.blank import Blank, WheelBlank
+from gearcam.quantities import ANGLE, COUNT, LENGTH, param
+
+NAME: Final = "cam"
+"""As in a file."""
+
+CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
+"""What ``output.files`` of a cam may list."""
+
+LATER_FORMS: Final = ("groove", "conjugate", "cylinder", "translating")
+"""Forms of cams that are planned."""
+
+_OF_WHEELS: Final = ("stop_pin", "tip_rounding", "timing_marks", "mark_diameter")
+"""What a blank has for wheels only."""
+
+_BLANK_WORDS: Final = {
+    "bore_diameter": "bore; none if left out",
+    "keyway_angle": "its direction in the cam's frame",
+    "bolt_angle": "direction of the first in the cam's frame",
+    "rim": "rim that they keep below the profile",
+}
+"""Meanings that are told of wheels otherwise."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CamOutputSpec(OutputSpec):
+    """Which files of a cam are wanted, and how exact (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        Cam angle of the assembled cam.
+    """
+
+    files: tuple[str, ...] = files_param(CAM_FORMATS)
+    chord_tolerance: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1,
+        doc="largest distance of an outline's chords from the true curve; 0.001 mm when left out",
+    )
+    pose: float = pose_param("theta", "cam angle at which the assembled cam is drawn")
+    motion_step: float = param(
+        ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
+    )
+    inspection_points: int = param(
+        COUNT, default=360, ge=8, le=100000, doc="points in inspection.csv, at even cam angles"
+    )
+    tool_radius: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e6,
+        doc="radius of the cutter of the tool path; the follower's radius when left out",
+    )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CamDesign(Design):
+    """A cam with its follower as it is asked for (see `Design`).
+
+    Parameters
+    ----------
+    phases : tuple of Phase
+        The lift over a turn of the cam.
+    follower : FollowerSpec
+        What touches the cam, and how it is guided.
+    cam : CamSpec
+        Form, size, direction of turning.
+    blank : WheelBlank
+        Bore, hub, holes, density; a cam has no timing marks.
+    output : CamOutputSpec
+        Files and their tolerance.
+    """
+
+    kind = NAME
+
+    phases: tuple[Phase, ...]
+    follower: FollowerSpec
+    cam: CamSpec
+    blank: WheelBlank = field(default_factory=WheelBlank)
+    output: CamOutputSpec = field(default_factory=CamOutputSpec)
+
+    def _settle(self) -> None:
+        if isinstance(self.phases, Sequence):
+            object.__setattr__(self, "phases", tuple(self.phases))
+        if isinstance(self.blank, WheelBlank):
+            object.__setattr__(self, "blank", _unmarked(self.blank, self.source))
+
+    def _wanted(self) -> Iterator[Wanted]:
+        if not isinstance(self.phases, tuple):
+            yield "phases", self.phases, (tuple,)
+            return
+        for number, phase in enumerate(self.phases):
+            yield f"motion[{number}]", phase, tuple(PHASES.values())
+            if isinstance(phase, RisePhase) and phase.law in RISES:
+                yield f"motion[{number}].shape", phase.shape, (RISES[phase.law].parameters,)
+
+
+def _unmarked(blank: WheelBlank, source: str) -> WheelBlank:
+    """Take the timing marks off a blank, and refuse what else only wheels have."""
+    plain = {item.name: item.default for item in dataclasses.fields(WheelBlank)}
+    problems = [
+        Problem("a cam has none", file=source, key=f"blank.{name}", value=getattr(blank, name))
+        for name in _OF_WHEELS
+        if name != "timing_marks" and getattr(blank, name) != plain[name]
+    ]
+    if problems:
+        raise DesignError(problems)
+    return dataclasses.replace(blank, timing_marks=False)
+
+
+@lru_cache(maxsize=1)
+def _blank_table() -> Table:
+    """Return the table of a cam's blank: the keys of a pair's, with one value each."""
+    entries = {}
+    for key, entry in table_of("blank", Blank).entries.items():
+        if entry.name not in _OF_WHEELS:
+            words = _BLANK_WORDS.get(entry.name, entry.param.doc)
+            entries[key] = dataclasses.replace(
+                entry,
+                param=dataclasses.replace(entry.param, both=False, doc=words),
+                length=None,
+                default=entry.default and entry.default[0],
+            )
+    return Table("blank", WheelBlank, entries)
+
+
+def _examine_motion(document: Mapping[str, Any], found: Examined) -> None:
+    examine_motion(document, found, partial(home_of, KINDS[NAME]))
+
+
+def _later(document: Mapping[str, Any]) -> Fault | None:
+    cam = document.get("cam")
+    form = cam.get("form") if isinstance(cam, Mapping) else None
+    if document.get("kind") != NAME or form not in LATER_FORMS:
+        return None
+    message = f"{show(form)}: {form} cams are not built by this version yet"
+    return Fault(("cam", "form"), message, form, '"disc"')
+
+
+def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    output, follower = document.get("output"), document.get("follower")
+    yield from output_faults(output)
+    yield from _tool_faults(output, follower)
+    if "follower" in found.parts and "cam" in found.parts:
+        told = size_problems(found.parts["follower"], found.parts["cam"])
+        yield from told_faults(told, table_of("cam", CamSpec), document["cam"], ("cam",))
+
+
+def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
+    if not isinstance(output, Mapping) or not isinstance(follower, Mapping):
+        return
+    files, kind = output.get("files"), follower.get("type")
+    asked = isinstance(files, list) and "tool-path" in files
+    if asked and kind in ("flat", *POINTED) and "tool_radius_mm" not in output:
+        message = f"is missing: a {kind} follower gives a tool path no radius"
+        yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
+
+
+KIND: Final = DesignKind(
+    name=NAME,
+    doc="a disc cam with its follower",
+    design=CamDesign,
+    main=TITLE,
+    examine_main=_examine_motion,
+    main_of=lambda design: motion_of(design.phases),
+    homes=homes,
+    tables={
+        "follower": partial(table_of, "follower", FollowerSpec),
+        "cam": partial(table_of, "cam", CamSpec),
+        "blank": _blank_table,
+        "output": partial(table_of, "output", CamOutputSpec),
+    },
+    required=("follower", "cam"),
+    one_of={"cam": ("prime_radius_mm", "base_radius_mm")},
+    rules=_rules,
+    later=_later,
+    formats=CAM_FORMATS,
+    rooms=("gearcam.cams.checks", "gearcam.parts.checks"),
+    checks=(CAM_KIND, PARTS_KIND),
+    example={
+        "motion": [
+            {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
+            {"type": "dwell", "angle_deg": 60},
+            {"type": "return", "angle_deg": 120, "law": "cycloidal"},
+            {"type": "dwell", "angle_deg": 60},
+        ],
+        "follower": {"type": "roller", "motion": "translating", "roller_radius_mm": 8},
+        "cam": {"prime_radius_mm": 40, "thickness_mm": 12},
+        "blank": {"bore_diameter_mm": 16},
+        "output": {"files": ["dxf", "csv"]},
+    },
+    processes={
+        "printing": {"output": {"files": ["3mf", "svg"]}},
+        "laser": {"output": {"files": ["cut-svg", "dxf"], "kerf_mm": 0.15}},
+        "wire": {"output": {"files": ["dxf"], "kerf_mm": 0.3}},
+    },
+    notes={
+        "motion": "The lift over a turn of the cam: 360 deg in all, from 0 back to 0.",
+        "cam": "prime_radius_mm or base_radius_mm; a flat follower has base_radius_mm",
+    },
+)

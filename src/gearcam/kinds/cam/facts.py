@@ -1,0 +1,194 @@
+"""What is known of a cam, as facts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearcam.cams.checks import KIND, PRESSURE
+from gearcam.export.shared import accuracy, part_facts
+from gearcam.facts import Fact, Facts, extent
+from gearcam.findings import limit_of
+from gearcam.numerals import shown
+
+if TYPE_CHECKING:
+    from gearcam.cams.measures import Range
+    from gearcam.kinds.cam.build import CamResult
+
+Tree = dict[str, Any]
+
+_PEAKS = (
+    ("peak_velocity", "largest velocity", "/rad"),
+    ("peak_acceleration", "largest acceleration", "/rad2"),
+    ("peak_jerk", "largest jerk", "/rad3"),
+)
+
+
+def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
+    """Return what is known of a cam.
+
+    Parameters
+    ----------
+    result : CamResult
+        A built design.
+    measured : mapping
+        What exporters measured: ``dxf``, ``solids``, ``curvature``, ``followed``.
+
+    Returns
+    -------
+    Facts
+    """
+    design = result.design
+    tree: Tree = {
+        "kerf_mm": design.output.kerf or None,
+        "motion": _motion(result),
+        "cam": _cam(result),
+        "part": _part(result) or None,
+        "accuracy": _accuracy(result, measured),
+        **{name: measured.get(name) for name in ("solids", "curvature", "followed")},
+    }
+    follower = f"{design.follower.motion} {design.follower.type} follower"
+    article = "an" if design.follower.oscillating else "a"
+    radius = "base" if result.mechanism.flat else "prime"
+    headline = ("motion.total_lift", f"cam.{radius}_radius_mm")
+    return Facts(tree, headline, f"{design.cam.form} cam for {article} {follower}")
+
+
+def _motion(result: CamResult) -> Tree:
+    """Lift in mm or deg; what jumps has a peak, what is infinite has none."""
+    program = result.program
+    swings = result.design.follower.oscillating
+    scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+    low, high = program.range
+    return {
+        "unit": unit,
+        "lift": Fact(extent(low, high, scale), "lift", unit=unit, shown=True),
+        "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+        "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
+        **{
+            name: Fact(scale * peak, meaning, unit=unit + per, shown=True)
+            for (name, meaning, per), peak in zip(
+                _PEAKS[: program.continuity + 1], program.peaks, strict=False
+            )
+        },
+    }
+
+
+def _cam(result: CamResult) -> Tree:
+    design, cam, mechanism = result.design, result.cam, result.mechanism
+    given, swings = design.follower, mechanism.oscillating
+    corners, place = bool(cam.corners), cam.contact_place
+    return {
+        "form": design.cam.form,
+        "follower": f"{given.motion} {given.type}",
+        "roller_radius_mm": given.roller_radius,
+        "dome_radius_mm": given.dome_radius,
+        "pivot_distance_mm": given.pivot_distance,
+        "arm_mm": given.arm,
+        "face_offset_mm": given.face_offset or None,
+        "offset_mm": None if swings else given.offset,
+        "rotation": Fact(design.cam.rotation, "cam turns"),
+        "prime_radius_mm": mechanism.least,
+        "base_radius_mm": mechanism.least - mechanism.radius,
+        "thickness_mm": design.cam.thickness,
+        "pressure_angle_deg": _pressure(result),
+        "curvature": _curvature(result),
+        "undercut": [[math.degrees(low), math.degrees(high)] for low, high in cam.undercut_ranges],
+        "start_angle_deg": math.degrees(mechanism.start) if swings else None,
+        "lost_lift_deg": math.degrees(cam.shortfall) if corners and swings else None,
+        "lost_lift_mm": cam.shortfall if corners and not swings else None,
+        "contact_mm": None
+        if place is None
+        else Fact(_ends(place), "contact along the face", shown=True),
+        "profile": _profile(result),
+    }
+
+
+def _profile(result: CamResult) -> Tree:
+    """Return the sizes of the profile as made: with clearance those of its parallel."""
+    cam, contour, clearance = result.cam, result.contour, result.design.blank.clearance
+    reach = np.hypot(*contour.vertices.T)
+    least = min(float(reach.min()), cam.nearest_flat - clearance)
+    common = {
+        "chord_error_mm": contour.chord_error,
+        "vertices": len(contour.vertices),
+        "radius_mm": extent(least, float(reach.max())),
+    }
+    if clearance:
+        return {"clearance_mm": clearance, "area_mm2": contour.moments.area, **common}
+    return {
+        "perimeter_mm": cam.size.perimeter,
+        "area_mm2": cam.size.area,
+        "least_vertices": cam.sampler.least,
+        **common,
+    }
+
+
+def _ends(found: Range, scale: float = 1.0) -> dict[str, float]:
+    return extent(found.low.value, found.high.value, scale)
+
+
+def _pressure(result: CamResult) -> Tree:
+    made: Tree = {}
+    limit = limit_of(KIND, "pressure-angle", result.design.limits)
+    limit = PRESSURE[result.mechanism.oscillating] if math.isnan(limit) else limit
+    for kind in ("rise", "return"):
+        found = result.cam.pressure(kind)
+        if found is not None:
+            worst = max(found.low, found.high, key=lambda end: abs(end.value))
+            made[f"{kind}_max"] = Fact(
+                math.degrees(found.largest),
+                f"pressure angle, {kind}",
+                at_most=math.degrees(limit),
+                place=f"at {shown(math.degrees(worst.theta), scale=360.0)} deg",
+                unit="deg",
+                shown=found.largest > 0.0,
+            )
+            made[kind] = Fact(_ends(found, math.degrees(1.0)), unit="deg")
+    return made
+
+
+def _curvature(result: CamResult) -> Tree:
+    """Smallest radii: of any sign, and of the convex and concave parts of the profile."""
+    cam = result.cam
+    convex, concave = cam.profile_radius
+    made = {"profile_min_mm": min(convex, concave)}
+    whole = cam.pitch_curvature()
+    made["pitch_min_mm"] = min(convex, concave) if whole is None else 1.0 / whole.largest
+    for kind in ("rise", "return"):
+        found = cam.pitch_curvature(kind)
+        if found is not None:
+            made[f"pitch_{kind}_min_mm"] = 1.0 / found.largest
+    made |= {"profile_convex_min_mm": convex, "profile_concave_min_mm": concave}
+    facts: Tree = {name: value for name, value in made.items() if math.isfinite(value)}
+    words = {
+        "profile_convex_min_mm": "smallest convex radius",
+        "profile_concave_min_mm": "smallest concave radius",
+    }
+    for name in words.keys() & facts.keys():
+        facts[name] = Fact(facts[name], words[name], shown=True)
+    return facts
+
+
+def _part(result: CamResult) -> Tree:
+    """Return what is known of a cam as a part, if one is ordered."""
+    if not result.ordered:
+        return {}
+    (tools,) = result.part_subject.tools
+    return part_facts(result.part, tools, result.design.blank.density)
+
+
+def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
+    """Error estimates, and how each was made."""
+    reach = float(np.abs(result.profile.vertices).max())
+    rounding = 16.0 * np.finfo(float).eps * reach
+    rows = {"profile_mm": (rounding, "rounding of closed forms at the largest radius")}
+    if not result.design.blank.clearance:
+        size = result.cam.size
+        how = "Gauss-Legendre quadrature with half the cells, and rounding"
+        rows |= {"perimeter_mm": (size.perimeter_error, how), "area_mm2": (size.area_error, how)}
+    kerf = result.design.output.kerf
+    return accuracy(rows, result.contour.chord_error, kerf, measured)

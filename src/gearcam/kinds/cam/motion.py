@@ -1,0 +1,183 @@
+"""The array ``[[motion]]`` of a cam: its phases, each with the keys of its type and of its law.
+
+A rise and a return have a ``law`` of the registry `gearcam.laws.rises.RISES`, whose parameters
+stand beside the keys of the phase.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
+from typing import Any, Final
+
+from gearcam.designs.examine import chosen
+from gearcam.designs.faults import Fault, quoted, show
+from gearcam.designs.kind import Examined, made_of, told_faults
+from gearcam.designs.lines import Path
+from gearcam.designs.table import Table, table_of
+from gearcam.designs.validate import faults_of
+from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
+from gearcam.laws.rises import RISES
+
+TITLE: Final = "motion"
+
+WITH_LAW: Final = tuple(name for name, owner in PHASES.items() if issubclass(owner, RisePhase))
+"""The phases that have a law."""
+
+LIFT: Final = {"rise": "lift", "segment": "to"}
+"""What a phase must give, as a length or as an angle, without the suffix of its unit."""
+
+_UNREADABLE: Final = RisePhase(angle=1.0, law="", shape=None)
+"""Stands for a phase that cannot be read: without a lift, so that nothing is said of the sum."""
+
+
+@cache
+def phase_table(name: str, law: str = "") -> Table:
+    """Return the table of a phase, without the keys ``type`` and ``law``.
+
+    Parameters
+    ----------
+    name : str
+        Its type.
+    law : str
+        Its law; its parameters follow the phase's own keys.
+
+    Returns
+    -------
+    Table
+    """
+    own = table_of(TITLE, PHASES[name])
+    return Table(TITLE, None, {**own.entries, **rise_table(law).entries}) if law else own
+
+
+def rise_table(law: str) -> Table:
+    """Return the table of a law's parameters."""
+    return table_of(TITLE, RISES[law].parameters)
+
+
+def twins(known: Table) -> dict[str, tuple[str, ...]]:
+    """Return the keys that say the same as a length and as an angle, by their common word."""
+    words: dict[str, list[str]] = {}
+    for key, entry in known.entries.items():
+        if entry.param.word:
+            words.setdefault(entry.param.word, []).append(key)
+    return {word: tuple(keys) for word, keys in words.items() if len(keys) > 1}
+
+
+def summary(phase: type) -> str:
+    """Return what a phase is, in a few words."""
+    first = (phase.__doc__ or "").partition("\n")[0].rstrip(".")
+    return first[:1].lower() + first[1:]
+
+
+def examine_motion(
+    document: Mapping[str, Any], found: Examined, home: Callable[[str], str]
+) -> None:
+    """Examine the phases of a document, and the program that they make.
+
+    Parameters
+    ----------
+    document : mapping
+        As read from TOML.
+    found : Examined
+        Gets the faults, or ``phases``.
+    home : callable
+        Gives the words that say where a key of another place belongs.
+    """
+    raw = document.get(TITLE)
+    rule = f"[[{TITLE}]] for each phase, with type = {quoted(PHASES)}"
+    if TITLE not in document:
+        found.faults.append(Fault((TITLE,), f"there is no [[{TITLE}]]", allowed=rule))
+    elif isinstance(raw, Mapping):
+        hint = f"write [[{TITLE}]] in double brackets"
+        found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
+    elif not isinstance(raw, list) or not raw:
+        message = "the list is empty" if raw == [] else f"{show(raw)} is no list of tables"
+        found.faults.append(Fault((TITLE,), message, raw, rule))
+    else:
+        before = len(found.faults)
+        phases = [_phase((TITLE, k), item, found, home) for k, item in enumerate(raw)]
+        _examine_program(phases, raw, document.get("follower", {}), found)
+        if len(found.faults) == before:
+            found.parts["phases"] = tuple(phases)
+
+
+def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> Phase | None:
+    """Examine one phase; what can be read of it serves to judge the program."""
+    if not isinstance(raw, Mapping):
+        rule = f"a table with type = {quoted(PHASES)}"
+        found.faults.append(Fault(at, f"{show(raw)} is not a table", raw, rule))
+        return None
+    name = chosen(at, raw, "type", "a phase", PHASES, found)
+    if not name:
+        return None
+    rest = {key: value for key, value in raw.items() if key != "type"}
+    own = phase_table(name)
+    if name not in WITH_LAW:
+        faults = list(faults_of(own, rest, home=home, at=at))
+        phase, problems = made_of(own, PHASES[name], rest, faults, at)
+        found.faults += [*faults, *problems]
+        return phase
+    law = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
+    rest.pop("law", None)
+    if not law:  # whatever any law asks for may be meant
+        rest = {key: value for key, value in rest.items() if key in own.entries or not _asked(key)}
+    faults = list(faults_of(phase_table(name, law), rest, home=home, at=at))
+    shape, problems = None, []
+    if law:
+        shape, problems = made_of(rise_table(law), RISES[law].parameters, rest, faults, at)
+    make = partial(PHASES[name], law=law, shape=shape)
+    phase, own_problems = made_of(own, make, rest, faults, at)
+    found.faults += [*faults, *problems, *own_problems]
+    return phase
+
+
+def _asked(key: str) -> bool:
+    return any(key in rise_table(law).entries for law in RISES)
+
+
+def _examine_program(
+    phases: Sequence[Phase | None], raw: Sequence[Any], follower: Any, found: Examined
+) -> None:
+    motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
+    if motion not in ("translating", "oscillating"):
+        return
+    readable = [_UNREADABLE if phase is None else phase for phase in phases]
+    told = program_problems(readable, oscillating=motion == "oscillating")
+    for number, name, message, rule in told:
+        if number is None:
+            found.faults.append(Fault((TITLE,), message, allowed=rule))
+        elif phases[number] is not None:
+            known, at = phase_table(raw[number]["type"]), (TITLE, number)
+            found.faults += told_faults([(name, None, message, rule)], known, raw[number], at)
+
+
+def motion_of(phases: Sequence[Phase]) -> list[dict[str, Any]]:
+    """Return what a file would hold of phases: a table for each."""
+    names = {owner: name for name, owner in PHASES.items()}
+    tables = []
+    for phase in phases:
+        name = names[type(phase)]
+        table: dict[str, Any] = {"type": name}
+        if isinstance(phase, RisePhase):
+            table |= {"law": phase.law}
+        table |= phase_table(name).document(phase)
+        if isinstance(phase, RisePhase) and phase.law in RISES:
+            table |= rise_table(phase.law).document(phase.shape)
+        tables.append(table)
+    return tables
+
+
+def homes() -> dict[str, str]:
+    """Return where the keys of phases belong, in words."""
+    by_phase: dict[str, list[str]] = {"law": list(WITH_LAW)}
+    for name in PHASES:
+        for key in phase_table(name).entries:
+            by_phase.setdefault(key, []).append(name)
+    by_law: dict[str, list[str]] = {}
+    for law in RISES:
+        for key in rise_table(law).entries:
+            by_law.setdefault(key, []).append(law)
+    found = {key: f"with law = {quoted(laws)}" for key, laws in by_law.items()}
+    found |= {key: f"of type {quoted(names)}" for key, names in by_phase.items()}
+    return {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}

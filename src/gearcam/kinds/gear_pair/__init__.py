@@ -1,0 +1,1 @@
+"""Pairs of non-circular gears: the kind ``gear-pair``."""

@@ -1,0 +1,122 @@
+"""What may help where a gear pair is refused or has errors: teeth, a milder law, other edges."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.designs.design import value_at
+from gearcam.errors import InfeasibleError, Way
+
+if TYPE_CHECKING:
+    from gearcam.advice import Changes, Search
+
+_MOST: Final = 400
+"""Most teeth of a wheel that are tried: beyond them nobody is helped."""
+
+_LIKELY: Final = 1.5
+"""How many times more teeth are tried first where an error does not tell."""
+
+_SHARE: Final = 0.6
+"""Part of the time that tooth counts may take where there are other ways."""
+
+_OF_TEETH: Final = frozenset({"contact-ratio", "undercut"})
+"""Findings that more teeth or a smaller swing may lift."""
+
+_EDGES: Final = (
+    Way(far={"blank.tip_rounding_mm": 0.0}),
+    Way(far={"blank.clearance_mm": 0.0}),
+)
+"""Ways to edges as they are cut."""
+
+
+def seek(search: Search, refusal: InfeasibleError | None) -> None:
+    """Lead a `search` for remedies: tooth counts, what a `refusal` names, a milder law."""
+    factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
+    ways = [*(refusal.ways if refusal else ()), *_others(search, refusal, factor)]
+    if factor:
+        end = search.until
+        if ways:
+            search.until = end - (1.0 - _SHARE) * (end - time.perf_counter())
+        _more_teeth(search, factor)
+        search.until = end
+    search.follow(ways)
+
+
+def hopeless(result: Any) -> bool:
+    """Whether the flanks alone already forbid what is asked, which takes no outline to know."""
+    from gearcam.gears.bound import contact_bound
+
+    return contact_bound(*result.pair.toothings) < 1.0
+
+
+def _more_teeth(search: Search, factor: float) -> None:
+    """Find the fewest teeth in the same ratio, `factor` times as many being likely."""
+    given: tuple[int, int] = search.result.design.pair.teeth
+    common = math.gcd(*given)
+
+    def teeth(k: int) -> Changes:
+        return {"pair.teeth": [count // common * k for count in given]}
+
+    low, most = common, _MOST * common // max(given)
+    high = max(low + 1, math.ceil(low * factor * (1.0 - 1e-9)))
+    while high <= most and not search.over() and not search.cures(teeth(high)):
+        low, high = high, min(2 * high, most) if high < most else most + 1
+    if high > most or search.over():
+        return
+    middle = high - 1  # the guess is often right
+    while high - low > 1 and not search.over():
+        low, high = (low, middle) if search.cures(teeth(middle)) else (middle, high)
+        middle = (low + high) // 2
+    search.keep(teeth(high), teeth(low))
+    module = search.result.design.pair.module
+    if module is not None and not search.over():
+        small = {"pair.module_mm": float(f"{module * common / high:.6g}")}
+        if search.cures({**teeth(high), **small}):
+            search.keep({**teeth(high), **small})
+
+
+def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Way]:
+    """Yield ways beside more teeth and what a refusal names."""
+    if refusal is None:
+        yield from _of_errors(search)
+    elif not refusal.ways and not factor:
+        yield from _other_ratios(search)
+        yield from _EDGES
+    if factor:
+        yield from _milder(search)
+
+
+def _milder(search: Search) -> Iterator[Way]:
+    """Yield ways to a law that swings less."""
+    law, teeth = search.document["law"], search.result.design.pair.teeth
+    mean = teeth[0] / teeth[1]
+    far: dict[str, object] = {}
+    for key in ("eccentricity", "cosines", "sines"):
+        if key in law:
+            far[f"law.{key}"] = 0.0
+    if "ratios" in law and "driven_travel_deg" not in law:
+        # arcs that close, mixed with the even turn, which closes, close
+        far["law.ratios"] = mean
+    if far:
+        yield Way(far=far)
+
+
+def _other_ratios(search: Search) -> Iterator[Way]:
+    """Yield the nearest teeth with which one wheel turns a whole number of times for the other."""
+    z1, z2 = search.result.design.pair.teeth
+    yield Way(near={"pair.teeth": [z1, max(1, round(z2 / z1)) * z1]})
+    yield Way(near={"pair.teeth": [max(1, round(z1 / z2)) * z2, z2]})
+
+
+def _of_errors(search: Search) -> Iterator[Way]:
+    """Yield the ways out of a pair's findings that are errors."""
+    if search.codes & _OF_TEETH:
+        addendum = value_at(search.document, "rack.addendum")
+        if addendum is not None and addendum < 1.0:
+            yield Way(far={"rack.addendum": 1.0})
+        if search.document["pair"]["x"]:
+            yield Way(far={"pair.x": 0.0})
+        yield from _EDGES

@@ -1,0 +1,90 @@
+"""The command ``mesh``: a meshing study of a gear pair."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, Final
+
+from gearcam.commands import Command
+from gearcam.designs.design import Design, demand_kind
+from gearcam.designs.kind import KINDS
+from gearcam.designs.table import Table
+from gearcam.kinds.gear_pair.design import NAME, GearPairDesign
+from gearcam.result import Progress, Written
+
+_OPTIONS: Final = {"center_distance_mm": "center"}
+"""Options that are not called as their keys are."""
+
+
+def with_meshing(design: Design, given: Mapping[str, Any]) -> GearPairDesign:
+    """Return a design with other settings of its meshing study.
+
+    Parameters
+    ----------
+    design : Design
+        The design of a gear pair.
+    given : mapping of str to value
+        Keys of the table ``[meshing]`` and values, in the units of a file.
+
+    Returns
+    -------
+    GearPairDesign
+
+    Raises
+    ------
+    DesignError
+        If nothing meshes in such a design, or a value is not what the file may hold.
+    """
+    pair: GearPairDesign = demand_kind(design, NAME)
+    values = _table().inward(given)
+    return dataclasses.replace(pair, meshing=dataclasses.replace(pair.meshing, **values))
+
+
+def _table() -> Table:
+    return KINDS[NAME].table("meshing")
+
+
+def _arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the settings of a study: they stand before those of the file's table [meshing]."""
+    for key, entry in _table().entries.items():
+        unit = entry.param.quantity.unit.upper()
+        parser.add_argument(
+            f"--{_OPTIONS.get(key, key.removesuffix('_deg'))}",
+            dest=key,
+            type=entry.base if entry.length is None else _numbers,
+            metavar=unit or ("N" if entry.length is None else "1,27,..."),
+            help=entry.param.doc,
+        )
+
+
+def _numbers(text: str) -> list[int]:
+    try:
+        return [int(word) for word in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f'"{text}" is no list of teeth such as 1,27') from None
+
+
+def _adapt(design: Design, options: Mapping[str, Any]) -> Design:
+    return with_meshing(design, {key: item for key, item in options.items() if item is not None})
+
+
+def _run(
+    result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
+) -> Written:
+    _ = options  # they are in the design
+    return result.mesh(output, progress=progress)
+
+
+COMMANDS: Final = (
+    Command(
+        name="mesh",
+        done="meshed",
+        doc="Turn the pair step by step: contact, interference, backlash; writes "
+        "DIR/<name>/meshing.csv.",
+        arguments=_arguments,
+        adapt=_adapt,
+        run=_run,
+    ),
+)

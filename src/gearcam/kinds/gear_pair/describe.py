@@ -1,0 +1,44 @@
+"""The table ``[law]`` in words: for the schema, the template and the list of laws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from gearcam.designs.listing import Listed, listed
+from gearcam.designs.schema import chosen, table_schema, told
+from gearcam.designs.template import beside, entry_lines, key_line, law_comment
+from gearcam.kinds.gear_pair.design import KIND, law_table
+from gearcam.laws.base import LAWS
+
+
+def schema() -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the schema of the table, and the definitions that it needs."""
+    words = told((name, entry.doc) for name, entry in LAWS.items())
+    main = chosen("type", LAWS, "the law", lambda name: f"law-{name}")
+    laws = {
+        f"law-{name}": table_schema(
+            law_table(name), f"{entry.doc} (continuity: {entry.continuity})", type=name
+        )
+        for name, entry in LAWS.items()
+    }
+    return {"type": "object", "description": f"the ratio of the pair. {words}", **main}, laws
+
+
+def lines() -> Iterator[str]:
+    """Yield the lines of the template: the table of the example, other laws as comments."""
+    example = KIND.example["law"]
+    yield beside("[law]", KIND.notes["law"])
+    yield key_line("type", example["type"], LAWS[example["type"]].doc)
+    yield from entry_lines(law_table(example["type"]), example)
+    yield ""
+    yield "# Other laws, to stand in place of the table above:"
+    for name, entry in LAWS.items():
+        if name != example["type"]:
+            yield from law_comment("type", name, entry, law_table(name))
+
+
+def laws() -> tuple[str, list[Listed]]:
+    """Return the laws below a heading."""
+    found = [listed(entry, f'law.type = "{name}"', law_table(name)) for name, entry in LAWS.items()]
+    return "Laws of gear pairs: the ratio, in the table [law]", found

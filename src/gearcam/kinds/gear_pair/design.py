@@ -1,0 +1,258 @@
+"""The kind ``gear-pair``: its design, its tables, and the rules between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, Final, TypeGuard
+
+from gearcam.designs.design import Design, Wanted
+from gearcam.designs.examine import chosen, home_of
+from gearcam.designs.faults import Fault, quoted, show
+from gearcam.designs.kind import KINDS, DesignKind, Examined, made_of
+from gearcam.designs.outputs import FORMATS, OutputSpec, output_faults, pose_param
+from gearcam.designs.table import Table, table_of
+from gearcam.designs.validate import faults_of
+from gearcam.gears.spec import PairSpec, Rack, StepsSpec
+from gearcam.gears.subject import KIND as TEETH_KIND
+from gearcam.laws.base import LAWS
+from gearcam.meshing.settings import KIND as MESHING_KIND
+from gearcam.meshing.settings import MeshingSpec
+from gearcam.parts.blank import KIND as PARTS_KIND
+from gearcam.parts.blank import Blank
+from gearcam.quantities import COUNT, param
+
+NAME: Final = "gear-pair"
+"""As in a file."""
+
+_COARSEST: Final = 50
+"""A chord tolerance coarser than module/50 no longer draws a tooth."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairOutputSpec(OutputSpec):
+    """Which files of a gear pair are wanted, and how exact (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        Driver angle of the assembled pair.
+    """
+
+    pose: float = pose_param("phi1", "driver angle at which the assembled pair is drawn")
+    inspection_points: int = param(
+        COUNT, default=9, ge=2, le=1000, doc="points on each flank in inspection.csv"
+    )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GearPairDesign(Design):
+    """A pair of non-circular gears as it is asked for (see `Design`).
+
+    Parameters
+    ----------
+    law_type : str
+        Name of the law in the registry.
+    law : object
+        The law's parameters, an instance of ``LAWS[law_type].parameters``.
+    pair : PairSpec
+        Centre distance or module, tooth counts, width.
+    rack : Rack
+        The basic rack.
+    blank : Blank
+        Bores, hubs, holes, marks, edges, density.
+    steps : StepsSpec
+        Steps of stepped wheels.
+    output : PairOutputSpec
+        Files and their tolerance.
+    meshing : MeshingSpec
+        Phases and mounting of a meshing study.
+    """
+
+    kind = NAME
+
+    law_type: str
+    law: Any
+    pair: PairSpec
+    rack: Rack = field(default_factory=Rack)
+    blank: Blank = field(default_factory=Blank)
+    steps: StepsSpec = field(default_factory=StepsSpec)
+    output: PairOutputSpec = field(default_factory=PairOutputSpec)
+    meshing: MeshingSpec = field(default_factory=MeshingSpec)
+
+    def _wanted(self) -> list[Wanted]:
+        law = LAWS.get(self.law_type)
+        return [("law", self.law, (law.parameters,))] if law else []
+
+
+def law_table(law_type: str) -> Table:
+    """Return the table of a law's parameters, without the key ``type``."""
+    return table_of("law", LAWS[law_type].parameters)
+
+
+def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
+    raw = document.get("law")
+    if not isinstance(raw, Mapping):
+        rule = f"type = {quoted(LAWS)}"
+        if "law" in document:
+            wanted = f"a table [law] with {rule}"
+            found.faults.append(Fault(("law",), f"{show(raw)} is not a table", raw, wanted))
+        else:
+            found.faults.append(Fault(("law",), "the table [law] is missing", allowed=rule))
+        return
+    law_type = chosen(("law",), raw, "type", "a law", LAWS, found)
+    if not law_type:
+        return
+    known = law_table(law_type)
+    rest = {key: value for key, value in raw.items() if key != "type"}
+    faults = list(faults_of(known, rest, home=partial(home_of, KINDS[NAME])))
+    law, problems = made_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
+    found.faults += [*faults, *problems]
+    if law is not None and not faults and not problems:
+        found.parts |= {"law_type": law_type, "law": law}
+
+
+def _law_of(design: GearPairDesign) -> dict[str, Any]:
+    law: dict[str, Any] = {"type": design.law_type}
+    known = design.law_type in LAWS
+    return law | table_of("law", type(design.law)).document(design.law) if known else law
+
+
+def _homes() -> Mapping[str, str]:
+    laws: dict[str, list[str]] = {}
+    for law_type in LAWS:
+        for key in law_table(law_type).entries:
+            laws.setdefault(key, []).append(f'"{law_type}"')
+    homes = {
+        key: f"this key belongs under [law] of type {' or '.join(types)}"
+        for key, types in laws.items()
+    }
+    return homes | {"type": "this key belongs under [law]"}
+
+
+def _rules(document: Mapping[str, Any], _: Examined) -> Iterator[Fault]:
+    pair, output = document.get("pair"), document.get("output")
+    yield from _pair_faults(pair)
+    yield from output_faults(output)
+    yield from _tolerance_faults(output, pair)
+    yield from _meshing_faults(document.get("meshing"), pair)
+    yield from _step_faults(document.get("meshing"), document.get("steps"))
+
+
+def _pair_faults(raw: Any) -> Iterator[Fault]:
+    if not isinstance(raw, Mapping):
+        return
+    rule = "exactly one of center_distance_mm and module_mm; the other is solved"
+    distance, module = raw.get("center_distance_mm"), raw.get("module_mm")
+    if distance is not None and module is not None:
+        message = (
+            f"center_distance_mm = {show(distance)} and module_mm = {show(module)} are both given"
+        )
+        yield Fault(("pair", "module_mm"), message, module, rule)
+    elif distance is None and module is None:
+        yield Fault(("pair",), "neither center_distance_mm nor module_mm is given", allowed=rule)
+
+
+def _tolerance_faults(raw: Any, pair: Any) -> Iterator[Fault]:
+    module = pair.get("module_mm") if isinstance(pair, Mapping) else None
+    tolerance = raw.get("chord_tolerance_mm") if isinstance(raw, Mapping) else None
+    if _is_number(module) and _is_number(tolerance):
+        coarsest = module / _COARSEST
+        if tolerance > coarsest > 0:
+            message = f"{show(tolerance)} is too coarse for a module of {show(module)} mm"
+            rule = f"at most module/{_COARSEST} = {coarsest:g} mm"
+            yield Fault(("output", "chord_tolerance_mm"), message, tolerance, rule)
+
+
+def _meshing_faults(raw: Any, pair: Any) -> Iterator[Fault]:
+    if not isinstance(raw, Mapping):
+        return
+    start, end = raw.get("from_deg", 0), raw.get("to_deg")
+    if _is_number(start) and _is_number(end) and not end > start:
+        message = f"{show(end)}: the study ends at {show(end)} deg before it begins"
+        yield Fault(("meshing", "to_deg"), message, end, "to_deg above from_deg")
+    if raw.get("advance_deg") == 0:
+        message = "0: without an advance no flanks overlap, and nothing can be seen"
+        yield Fault(("meshing", "advance_deg"), message, 0, "-1 to 1, but not 0; 0.005 is usual")
+    given = raw.get("teeth")
+    teeth = given if isinstance(given, list) else []
+    counts = pair.get("teeth") if isinstance(pair, Mapping) else None
+    known = counts[0] if isinstance(counts, list) and counts else None
+    for index, tooth in enumerate(teeth):
+        path = ("meshing", "teeth", index)
+        if _is_number(known) and _is_number(tooth) and tooth > known:
+            message = f"the driver has no tooth {show(tooth)}"
+            yield Fault(path, message, tooth, f"1 to {show(known)}")
+        if tooth in teeth[:index]:
+            yield Fault(path, f"{show(tooth)} is listed twice", tooth, "each tooth once")
+
+
+def _step_faults(meshing: Any, stepped: Any) -> Iterator[Fault]:
+    step = meshing.get("step", 1) if isinstance(meshing, Mapping) else 1
+    count = stepped.get("count", 1) if isinstance(stepped, Mapping) else 1
+    if _is_number(step) and _is_number(count) and step > count:
+        message = f"the wheels have no step {show(step)}"
+        yield Fault(("meshing", "step"), message, step, f"1 to {show(count)} (steps.count)")
+
+
+def _is_number(value: Any) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+KIND: Final = DesignKind(
+    name=NAME,
+    doc="a pair of non-circular gears",
+    design=GearPairDesign,
+    main="law",
+    examine_main=_examine_law,
+    main_of=_law_of,
+    homes=_homes,
+    tables={
+        title: partial(table_of, title, owner)
+        for title, owner in {
+            "pair": PairSpec,
+            "rack": Rack,
+            "blank": Blank,
+            "steps": StepsSpec,
+            "output": PairOutputSpec,
+            "meshing": MeshingSpec,
+        }.items()
+    },
+    required=("pair",),
+    one_of={"pair": ("center_distance_mm", "module_mm")},
+    rules=_rules,
+    formats=FORMATS,
+    rooms=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),
+    checks=(TEETH_KIND, MESHING_KIND, PARTS_KIND),
+    example={
+        "law": {
+            "type": "phases",
+            "shape": "cosine",
+            "knots_deg": [0, 160, 360],
+            "ratios": [1.25, 0.75, 1.25],
+        },
+        "pair": {"center_distance_mm": 120, "teeth": [48, 48], "face_width_mm": 10},
+        "blank": {"bore_diameter_mm": [16, 16]},
+        "output": {"files": ["dxf", "csv"]},
+    },
+    processes={
+        "printing": {
+            "pair": {"backlash_mm": 0.1},
+            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
+            "output": {"files": ["3mf", "svg"]},
+        },
+        "laser": {
+            "pair": {"backlash_mm": 0.1},
+            "output": {"files": ["cut-svg", "dxf"], "kerf_mm": 0.15},
+        },
+        "wire": {
+            "pair": {"backlash_mm": 0.03},
+            "output": {"files": ["dxf"], "kerf_mm": 0.3},
+        },
+    },
+    notes={
+        "law": "the ratio i21 = dphi2/dphi1 over the driver's angle",
+        "pair": "exactly one of center_distance_mm and module_mm; the other is solved",
+    },
+)

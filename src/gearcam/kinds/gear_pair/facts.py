@@ -1,0 +1,284 @@
+"""What is known of a gear pair, as facts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearcam.export.shared import accuracy, part_facts
+from gearcam.facts import Fact, Facts, extent
+from gearcam.findings import limit_of
+from gearcam.gears.subject import KIND
+from gearcam.laws.span import angle_text
+from gearcam.meshing.drive_checks import side_name
+
+if TYPE_CHECKING:
+    from gearcam.gears.contact import FlankPairs
+    from gearcam.gears.pair import Gear
+    from gearcam.kinds.gear_pair.build import GearPairResult
+
+Tree = dict[str, Any]
+
+
+def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
+    """Return what is known of a pair.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        A built design.
+    measured : mapping
+        What exporters measured: ``dxf``, ``solids``; the facts of a ``meshing`` study.
+
+    Returns
+    -------
+    Facts
+    """
+    kerf, leads = result.design.output.kerf, result.leads
+    tree: Tree = {
+        "pair": _pair(result),
+        # a study tells of the mesh as it is mounted
+        "mesh": None if "meshing" in measured else _mesh(result),
+        "kerf_mm": kerf or None,
+        "gears": [_gear(result, gear) for gear in result.gears],
+        "accuracy": _accuracy(result, measured),
+        "steps": {"count": len(leads), "moved_mm": list(leads)} if len(leads) > 1 else None,
+        "solids": measured.get("solids"),
+        "meshing": _meshing(measured["meshing"]) if "meshing" in measured else None,
+    }
+    size = "travel_per_turn_mm" if result.pair.on_rack else "center_distance_mm"
+    headline = [f"pair.{name}" for name in (size, "module_mm", "teeth")]
+    return Facts(tree, headline, "wheel and rack" if result.pair.on_rack else "")
+
+
+def _pair(result: GearPairResult) -> Tree:
+    pair, given = result.pair, result.design.pair
+    (_, low), (_, high) = pair.law.ratio_range
+    size, solved = pair.center_distance, dict(pair.law.solved)
+    own: Tree = {
+        "center_distance_mm": Fact(size, "centre distance"),
+        "ratio": Fact(extent(low, high), "ratio i21", shown=True),
+    }
+    if pair.on_rack:
+        own = {
+            "travel_per_turn_mm": Fact(size * pair.law.lobes.advance, "rack travel per turn"),
+            "radius_mm": Fact(extent(low, high, size), "pitch radius", shown=True),
+        }
+        solved["mm_per_unit_of_r1"] = size
+    elif given.center_distance is None:
+        solved["center_distance_mm"] = size
+    else:
+        solved["module_mm"] = pair.module
+    return {
+        "module_mm": Fact(pair.module, "module"),
+        "teeth": list(pair.teeth),
+        "face_width_mm": given.face_width,
+        "x": Fact(given.x, "profile shift", unit="modules"),
+        "backlash_mm": given.backlash,
+        "rack": _rack(result),
+        **own,
+        "solved": {
+            name: Fact(value, f"solved {name}", shown=name in pair.law.solved)
+            for name, value in solved.items()
+        },
+    }
+
+
+def _rack(result: GearPairResult) -> Tree:
+    """Return the basic rack as it was used, and the defaults that yielded to given values."""
+    rack = result.pair.rack
+    yielded = rack.yielded(result.design.rack)
+
+    def height(name: str) -> Fact:
+        gave = name in yielded
+        place = f"the default {yielded[name]:.6g} gave way to given values" if gave else ""
+        return Fact(getattr(rack, name), place=place, unit="modules", shown=gave)
+
+    return {
+        "pressure_angle_deg": math.degrees(rack.pressure_angle),
+        **{name: height(name) for name in ("addendum", "dedendum", "tip_radius")},
+        "yielded": yielded or None,
+    }
+
+
+def _mesh(result: GearPairResult) -> Tree:
+    """Return what the pair does as it is designed, with the limits that it is held against."""
+    subject, limits, module = result.subject, result.design.limits, result.pair.module
+    least = limit_of(KIND, "contact-ratio", limits)
+    thin = limit_of(KIND, "thin-tip", limits) * module
+    tip, gear = min((gear.profile.tip_thickness.min(), gear) for gear in result.gears)
+    tooth = int(gear.profile.tip_thickness.argmin()) + 1
+    way, (phi1, angle) = max(subject.pressure_angles.items(), key=lambda item: item[1][1])
+    places, values = subject.accelerations
+    worst = int(np.argmax(np.abs(values)))
+    return {
+        "contact_ratio": dict(_contact_ratios(subject.sides, least)),
+        "pressure_angle_max_deg": Fact(
+            math.degrees(angle),
+            "largest pressure angle",
+            at_most=math.degrees(limit_of(KIND, "pressure-angle", limits)),
+            place=f"driving {way}, {angle_text(phi1)}",
+            shown=True,
+        ),
+        "tip_thickness_min_mm": Fact(
+            float(tip),
+            "thinnest tip",
+            at_least=thin,
+            place=f"wheel {gear.wheel}, tooth {tooth}",
+            shown=True,
+        ),
+        "rim_min_mm": _rim(result, limit_of(KIND, "thin-rim", limits) * module),
+        "backlash_mm": Fact(max(subject.backlash, 0.0), "backlash as made", shown=True),
+        "acceleration_max": Fact(
+            abs(float(values[worst])),
+            "largest acceleration d(i21)/dphi1",
+            at_most=limit_of(KIND, "acceleration", limits),
+            place=angle_text(float(places[worst])),
+            unit="1/rad",
+            shown=True,
+        ),
+    }
+
+
+def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tuple[str, Fact]]:
+    """Yield the contact ratio of each side; people read one line where both are alike."""
+    found = []
+    for pairs in reversed(sides):
+        ratios = pairs.contact_ratios
+        found.append((pairs, {"least": float(ratios.min()), "mean": float(ratios.mean())}))
+    alike = all(
+        math.isclose(found[0][1][name], found[1][1][name], rel_tol=1e-9)
+        for name in ("least", "mean")
+    )
+    for number, (pairs, value) in enumerate(found):
+        side = side_name(pairs)
+        yield (
+            side.rpartition(" ")[2],
+            Fact(
+                value,
+                "least contact ratio" if alike else f"least contact ratio, {side}",
+                at_least=limit,
+                place="both ways" if alike else "",
+                shown=not (alike and number),
+            ),
+        )
+
+
+def _rim(result: GearPairResult, limit: float) -> Fact | None:
+    rims = [
+        (gear.least_radius - 0.5 * bore, gear.wheel)
+        for gear, bore in zip(result.gears, result.bores, strict=True)
+        if bore is not None
+    ]
+    if not rims:
+        return None
+    rim, wheel = min(rims)
+    return Fact(rim, "thinnest rim", at_least=limit, place=f"wheel {wheel}", shown=True)
+
+
+_STUDIED: Mapping[str, str] = {
+    "center_distance_mm": "centre distance as mounted",
+    "advance_deg": "driver turned ahead by",
+    "contact_ratio": "contact ratio",
+    "pairs_in_contact": "pairs in contact",
+    "interference_steps": "phases with interference",
+    "backlash_mm": "backlash along the pitch curve",
+    "lag_mm": "lag of the driven wheel, taken up",
+    "penetration_mm": "penetration of flanks",
+    "chord_error_mm": "chord error of outlines",
+}
+"""Numbers of a study that are always shown, in words."""
+
+
+def _meshing(numbers: Mapping[str, Any]) -> Tree:
+    """Return what a study found."""
+    tree = dict(numbers)
+    done, asked = numbers["steps_done"], numbers["steps"]
+    place = "" if numbers["complete"] else f"of {asked}"
+    tree["steps_done"] = Fact(done, "phases studied", place=place, shown=True)
+    for name, meaning in _STUDIED.items():
+        if name in numbers:
+            tree[name] = Fact(numbers[name], meaning, shown=True)
+    error = numbers.get("transmission_error")
+    if error is not None:
+        peak = Fact(error["peak_to_peak"], "transmission error, peak to peak", shown=True)
+        tree["transmission_error"] = error | {"peak_to_peak": replace(peak, unit=error["unit"])}
+        if "no_harmonics" in error:
+            missing = Fact(error["no_harmonics"], "harmonics, not told", shown=True)
+            tree["transmission_error"]["no_harmonics"] = missing
+        else:
+            largest = max(error["harmonics"], key=lambda one: one["amplitude"])
+            words = f"largest harmonic, {largest['order']} a turn"
+            found = Fact(largest["amplitude"], words, unit=error["unit"], shown=True)
+            tree["transmission_error"]["largest_harmonic"] = found
+    return tree
+
+
+def _gear(result: GearPairResult, gear: Gear) -> Tree:
+    cutter, radius = gear.toothing.cutter, gear.convex_radius
+    blank, pinion = result.design.blank.wheel(gear.wheel), cutter.kind == "pinion"
+    shift = result.design.pair.x if gear.wheel == 1 else -result.design.pair.x
+    return {
+        "name": gear.name,
+        "teeth": gear.toothing.teeth,
+        "profile_shift": Fact(shift, unit="modules") if shift else None,
+        "centrode": {
+            "length_mm": Fact(gear.toothing.length, "centrode length"),
+            "min_convex_radius_mm": radius if math.isfinite(radius) else None,
+            "max_concave_curvature_per_mm": gear.concave_curvature,
+            "closed": gear.toothing.closed,
+        },
+        "cutter": cutter.kind,
+        "cutter_pitch_radius_mm": 1.0 / cutter.kc if pinion else None,
+        "cutter_tip_radius_mm": cutter.tip_radius,
+        "undercut_teeth": list(gear.profile.undercut_teeth),
+        "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
+        "root_radius_min_mm": gear.least_radius,
+        "bore_diameter_mm": blank.bore if result.bores[gear.wheel - 1] else None,
+        "clearance_mm": blank.clearance or None,
+        "tip_rounding_mm": blank.tip_rounding or None,
+        "outline": {
+            "vertices": len(gear.outline),
+            "least_vertices": gear.profile.sampler.least,
+            "area_mm2": gear.profile.area,
+            "chord_error_mm": gear.profile.chord_error,
+        },
+        **_part(result, gear),
+    }
+
+
+def _part(result: GearPairResult, gear: Gear) -> Tree:
+    """Return what is known of a wheel as a part, if parts are ordered."""
+    if not result.ordered:
+        return {}
+    number = gear.wheel - 1
+    return part_facts(
+        result.parts[number],
+        result.parts_subject.tools[number],
+        result.design.blank.wheel(gear.wheel).density,
+    )
+
+
+def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
+    """Error estimates, and how each was made."""
+    rolling, law = result.pair.rolling, result.law
+    reach = max(float(np.hypot(*gear.outline.T).max()) for gear in result.gears)
+    rounding = 8.0 * np.finfo(float).eps * reach
+    rows = {
+        "law": (law.error, "rad of the driven angle: against Gauss-Legendre quadrature"),
+        "closure_rad": (abs(law.closure_error), "miss of the driven angle over a lobe"),
+        "arc_length_mm": (
+            rolling.arc_error,
+            "last Chebyshev coefficients over all intervals, and rounding",
+        ),
+        "flank_mm": (
+            rolling.arc_error + reach * law.error + rounding,
+            "arc length, and the law's error and rounding at the largest radius",
+        ),
+    }
+    chord = max(gear.profile.chord_error for gear in result.gears)
+    return accuracy(rows, chord, result.design.output.kerf, measured)

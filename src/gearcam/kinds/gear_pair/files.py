@@ -1,0 +1,182 @@
+"""From a gear pair to the contents of its files: one function a kind of file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.export.shared import (
+    STEP_PART,
+    Files,
+    cut_files,
+    drawn,
+    dxf_style,
+    mesh_bytes,
+    meshes,
+    sheet_bytes,
+    sheet_rows,
+)
+
+if TYPE_CHECKING:
+    from gearcam.drawings import Drawing, Pose
+    from gearcam.export.dxf import DxfStyle
+    from gearcam.kinds.gear_pair.build import GearPairResult
+
+Measured = dict[str, Any]
+
+PAIR: Final = "pair"
+"""Stem of the files of the assembled pair."""
+
+_PAIR_ROWS: Final = ("pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm")
+_RACK_ROWS: Final = (
+    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
+    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
+)  # fmt: skip
+_GEAR_ROWS: Final = (
+    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
+    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
+)  # fmt: skip
+"""Facts that stand in the tables of drawings."""
+
+
+def _tables(result: GearPairResult, _: Measured) -> Files:
+    from gearcam.export.table import outline_bytes, table_bytes
+
+    phi1 = result.centrode_angles()
+    phi2, ratio = result.law.derivatives(phi1, 1)
+    one, two = (track.frames(phi1) for track in result.pair.rolling.tracks)
+    with np.errstate(divide="ignore"):
+        rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa
+    driven = {
+        "phi2_deg": np.degrees(phi2 - phi2[0]),
+        "ratio": ratio,
+        "r1_mm": np.abs(one.p),
+        "r2_mm": np.abs(two.p),
+    }
+    if result.pair.on_rack:
+        driven = {"travel_mm": two.p.imag, "r1_mm": np.abs(one.p)}
+    centrodes = {
+        "phi1_deg": np.degrees(phi1),
+        **driven,
+        "s_mm": one.s - one.s[0],
+        "rho1_mm": rho1,
+        "rho2_mm": rho2,
+    }
+    files = {f"{gear.name}_outline.csv": outline_bytes(gear.outline) for gear in result.gears}
+    return files | {"centrodes.csv": table_bytes(centrodes)}
+
+
+def _pair_drawing(result: GearPairResult) -> Drawing:
+    from gearcam.drawings import pair_drawing
+
+    lobes = result.law.lobes
+    ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
+    if result.pair.on_rack:
+        ends[1] = result.centrode_angles()[-1]
+    centrodes = [
+        gear.centrode(np.linspace(0.0, end, 721)[: -1 if gear.toothing.closed else None])
+        for gear, end in zip(result.gears, ends, strict=True)
+    ]
+    closed = result.gear1.toothing.closed, result.gear2.toothing.closed
+    return pair_drawing(
+        result.parts, result.pair.shift, centrodes, name=PAIR, closed=closed, poses=poses(result)
+    )
+
+
+def poses(result: GearPairResult) -> tuple[Pose, Pose]:
+    """Return how the wheels of a `result` stand when assembled: wheel 1 turned by -phi1."""
+    phi1 = result.design.output.pose
+    phi2 = float(result.law.phi2(np.array(phi1)))
+    if result.pair.on_rack:
+        return (-phi1, (0.0, 0.0)), (0.0, (0.0, -result.pair.center_distance * phi2))
+    return (-phi1, (0.0, 0.0)), (phi2, (result.pair.shift, 0.0))
+
+
+def _style(result: GearPairResult) -> DxfStyle:
+    return dxf_style(result.design.output, result.gear1.profile.tolerance)
+
+
+def _dxf(result: GearPairResult, measured: Measured) -> Files:
+    return drawn([*result.to_cut, _pair_drawing(result)], _style(result), measured)
+
+
+def _cut(result: GearPairResult, _: Measured) -> Files:
+    return cut_files(result.to_cut, result.design.name, result.design.output.kerf)
+
+
+def _picture(result: GearPairResult, _: Measured) -> Files:
+    from gearcam.export.svg import svg_bytes
+
+    notes = result.facts.headline
+    return {"pair.svg": svg_bytes(_pair_drawing(result), title=result.design.name, notes=notes)}
+
+
+def _inspection(result: GearPairResult, _: Measured) -> Files:
+    from gearcam.export.table import table_bytes
+    from gearcam.kinds.gear_pair.ordered import inspection_rows
+
+    return {"inspection.csv": table_bytes(inspection_rows(result))}
+
+
+def _steps(result: GearPairResult, _: Measured) -> Files:
+    from gearcam.export.step import Placed, step_bytes
+
+    tolerance = STEP_PART * result.gear1.profile.tolerance
+    files = {
+        f"{part.name}.step": step_bytes([Placed(part=part)], part.name, tolerance)
+        for part in result.parts
+    }
+    placed = [
+        Placed(part=part, angle=angle, offset=offset)
+        for part, (angle, offset) in zip(result.parts, poses(result), strict=True)
+    ]
+    return files | {f"{PAIR}.step": step_bytes(placed, PAIR, tolerance)}
+
+
+def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
+    solids = meshes(result.parts, measured)
+    files = {
+        f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
+    }
+    placed = {
+        name: mesh.placed(*pose)
+        for (name, mesh), pose in zip(solids.items(), poses(result), strict=True)
+    }
+    return files | {f"{PAIR}.{kind}": mesh_bytes(placed, kind, PAIR)}
+
+
+def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
+    """Return the workshop drawings of both wheels and of the pair."""
+    from gearcam.sheets import pair_sheet, wheel_sheet
+
+    facts, title, pose = result.facts, result.design.name, result.design.output.pose
+    radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
+    sheets = []
+    for number, part in enumerate(result.parts):
+        own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
+        names = (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
+        sheets.append(wheel_sheet(part, sheet_rows(facts, names), title))
+    rows = {"law": result.design.law_type} | sheet_rows(facts, (*_PAIR_ROWS, *_RACK_ROWS))
+    rows["drawn at phi1"] = f"{np.degrees(pose):.6g} deg"
+    pair = _pair_drawing(result)
+    sheets.append(pair_sheet(pair, result.pair.shift, rows, title, pitch_radius=radius))
+    style = _style(result)
+    made = [sheet_bytes(sheet, style, ending) for sheet in sheets]
+    return {name: data for files in made for name, data in files.items()}
+
+
+FILES: Final[Mapping[str, Callable[..., Files]]] = {
+    "dxf": _dxf,
+    "cut-svg": _cut,
+    "svg": _picture,
+    **{kind: partial(_meshes, kind) for kind in ("stl", "3mf", "glb")},
+    "step": _steps,
+    "csv": _tables,
+    "drawing-dxf": partial(_sheets, "dxf"),
+    "drawing-svg": partial(_sheets, "svg"),
+    "inspection": _inspection,
+}
+"""What makes each kind of file: contents by name; what is measured on them is written down."""

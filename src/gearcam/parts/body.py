@@ -1,0 +1,259 @@
+"""Bodies: what is made as one piece. Parts are those that are stacks of layers.
+
+A *body* has a name, a chord tolerance, a solid and moments of its volume; it need not be a prism
+(see `solids.solid`). A *layer* is a prism: the plane inside one edge, less openings, between two
+heights. Any edge may be toothed: an outline, an opening, or both.
+
+A *part* is a body of layers, in its wheel's frame: its toothed plate from z = 0 to its width, hubs
+beyond. A *stepped* part has several outlines, one above the other, each of the same height.
+*Openings* go right through, those within the hub through it too; each step may have an *inner*
+edge of its own, such as the teeth of a ring. *Pockets* are taken out of one face: a *mark* is a
+shallow round one, engraved in the upper face.
+
+Refused: a contour that is not counter-clockwise, a width that is not positive.
+
+Depends on numeric; shapely only inside `Part.region`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearcam.numeric.contour import Contour
+from gearcam.numeric.moments import Moments
+from gearcam.parts.shapes import Circle, Loop, frozen
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+Array = NDArray[np.float64]
+
+Kind = Literal["BORE", "HOLE", "SLOT", "INNER"]
+"""What an opening is for: the shaft, bolts and lightness, a stop pin, inner teeth."""
+
+Edge = Contour | Circle | Loop
+"""A closed plane curve, counter-clockwise, with moments, length, reach and points."""
+
+
+class Body(Protocol):
+    """What is made as one piece, prism or not."""
+
+    @property
+    def name(self) -> str:
+        """Such as ``gear1``: the stem of its files."""
+        ...
+
+    @property
+    def tolerance(self) -> float:
+        """Chord tolerance of everything on it, mm."""
+        ...
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Opening:
+    """Something that goes right through a part.
+
+    Parameters
+    ----------
+    kind : {"BORE", "HOLE", "SLOT"}
+        What it is for, and its layer in drawings.
+    shape : Contour or Circle or Loop
+        The edge within which nothing is left, in the part's frame.
+    name : str
+        What a person calls it, such as ``bolt hole 2``.
+    """
+
+    kind: Kind
+    shape: Edge
+    name: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the opening for JSON: of a circle its place and diameter."""
+        made: dict[str, Any] = {"kind": self.kind.lower(), "name": self.name}
+        if isinstance(self.shape, Circle):
+            made |= {"center_mm": self.shape.center.tolist(), "diameter_mm": self.shape.diameter}
+        return made | {"area_mm2": self.shape.moments.area}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Layer:
+    """A prism: what lies within an `edge` less `openings`, from z = `low` to `high`, mm."""
+
+    edge: Edge
+    low: float
+    high: float
+    openings: tuple[Opening, ...] = ()
+
+    @property
+    def height(self) -> float:
+        """From its lower to its upper face, mm."""
+        return self.high - self.low
+
+    @property
+    def moments(self) -> Moments:
+        """Moments of the plane region."""
+        through = (opening.shape.moments for opening in self.openings)
+        return self.edge.moments - sum(through, start=Moments())
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hub:
+    """A round boss about the axis: its `diameter`, how far it stands out in `front` and `back`."""
+
+    diameter: float
+    front: float = 0.0
+    back: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Mark:
+    """A round dimple in the upper face.
+
+    Parameters
+    ----------
+    center : (2,) array, mm
+        In the part's frame.
+    diameter, depth : float, mm
+        Of the cylinder that is taken away.
+    """
+
+    center: Array
+    diameter: float
+    depth: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "center", frozen(self.center))
+
+    @property
+    def circle(self) -> Circle:
+        """Its edge."""
+        return Circle(center=self.center, diameter=self.diameter)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Part:
+    """A body of layers: a plate, stepped or not, with a hub.
+
+    Parameters
+    ----------
+    name : str
+        Such as ``gear1``: the stem of its files.
+    contours : tuple of Contour
+        Outlines in the part's frame, counter-clockwise: one, or those of the steps from z = 0 up.
+    width : float, mm
+        From z = 0 to z = width, shared evenly by the steps.
+    openings : tuple of Opening
+        Right through; none meets another or an outline.
+    inner : tuple of Contour
+        Toothed edges of the opening of a ring, one for each outline; none for wheels.
+    hub : Hub or None
+        Within the roots.
+    marks : tuple of Mark
+        Engraved in the face z = width.
+
+    Raises
+    ------
+    ValueError
+        If a contour runs clockwise, the width is not positive, or inner edges do not match the
+        outlines.
+    """
+
+    name: str
+    contours: tuple[Contour, ...]
+    width: float
+    openings: tuple[Opening, ...] = ()
+    inner: tuple[Contour, ...] = ()
+    hub: Hub | None = None
+    marks: tuple[Mark, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not all(contour.area > 0 for contour in (*self.contours, *self.inner)):
+            raise ValueError(f"{self.name}: the contour must run counter-clockwise")
+        if not self.width > 0:
+            raise ValueError(f"{self.name}: the width must be positive, not {self.width} mm")
+        if len(self.inner) not in (0, len(self.contours)):
+            raise ValueError(f"{self.name}: each outline has its inner edge, or none has")
+
+    @property
+    def contour(self) -> Contour:
+        """The outline, of a stepped part the lowest."""
+        return self.contours[0]
+
+    @property
+    def tolerance(self) -> float:
+        """Chord tolerance of everything on it, mm."""
+        return self.contour.tolerance
+
+    @cached_property
+    def steps(self) -> tuple[Layer, ...]:
+        """The plate, or its steps from the lowest up."""
+        height = self.width / len(self.contours)
+        teeth = [
+            (Opening(kind="INNER", shape=contour, name="inner edge"),) for contour in self.inner
+        ] or [()] * len(self.contours)
+        return tuple(
+            Layer(
+                edge=contour,
+                low=number * height,
+                high=(number + 1) * height,
+                openings=(*inner, *self.openings),
+            )
+            for number, (contour, inner) in enumerate(zip(self.contours, teeth, strict=True))
+        )
+
+    @cached_property
+    def bosses(self) -> tuple[Layer, ...]:
+        """The hub at the back and in front, where there is one, with what goes through it too."""
+        if self.hub is None:
+            return ()
+        disc = Circle(center=np.zeros(2), diameter=self.hub.diameter)
+        within = tuple(o for o in self.openings if o.shape.reach < 0.5 * self.hub.diameter)
+        ends = ((-self.hub.back, 0.0), (self.width, self.width + self.hub.front))
+        return tuple(
+            Layer(edge=disc, low=low, high=high, openings=within)
+            for low, high in ends
+            if high > low
+        )
+
+    @property
+    def layers(self) -> tuple[Layer, ...]:
+        """All that the part is made of."""
+        return self.steps + self.bosses
+
+    @cached_property
+    def pockets(self) -> tuple[Layer, ...]:
+        """What is taken out of layers, from their upper face down."""
+        return tuple(
+            Layer(edge=mark.circle, low=self.width - mark.depth, high=self.width)
+            for mark in self.marks
+        )
+
+    @cached_property
+    def area(self) -> float:
+        """Outline (of a stepped part the lowest) less openings, mm^2."""
+        return self.steps[0].moments.area
+
+    @cached_property
+    def volume(self) -> float:
+        """Volume of the true shape, mm^3."""
+        whole = sum(layer.height * layer.moments.area for layer in self.layers)
+        return whole - sum(pocket.height * pocket.moments.area for pocket in self.pockets)
+
+    @cached_property
+    def region(self) -> Polygon:
+        """The (lowest) outline with its openings, chords within the tolerance."""
+        from shapely import Polygon
+
+        holes = [opening.shape.points(self.tolerance) for opening in self.steps[0].openings]
+        return Polygon(self.contour.vertices, holes)
+
+    @property
+    def thickness(self) -> float:
+        """Height from the lowest to the highest face, mm."""
+        ends = [(layer.low, layer.high) for layer in self.layers]
+        return max(high for _, high in ends) - min(low for low, _ in ends)

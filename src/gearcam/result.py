@@ -1,0 +1,286 @@
+"""Results: what comes of a design, stage by stage, on demand, and the writing of its files.
+
+A result computes nothing until it is asked for, and each stage is timed once. It knows neither
+readers nor files: what facts and files are made from it the folder of its kind says (see
+`gearcam.designs.kind`). Nothing is imported that the asked-for files do not need.
+"""
+
+from __future__ import annotations
+
+import platform
+import sys
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+from gearcam.designs.design import Design, document_of, hash_of
+from gearcam.designs.kind import KINDS
+from gearcam.errors import DesignError, Problem
+from gearcam.facts import Facts
+from gearcam.findings import Finding
+from gearcam.numerals import tree
+from gearcam.tolerances import DEFAULT, Tolerances
+from gearcam.version import __version__
+
+FORMAT: Final = 3
+"""Version of the summary's layout."""
+
+Progress = Callable[[str, int, int], None]
+"""Called with a stage's name, the stages done and their number."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Written:
+    """What a command has written.
+
+    Parameters
+    ----------
+    directory : Path
+        The folder.
+    files : tuple of str
+        The files written, in order.
+    removed : tuple of str
+        Files of the previous build that this one does not write.
+    summary : dict
+        The content of ``summary.json``.
+    facts : Facts
+        What the summary is told from.
+    findings : tuple of Finding
+        What the checks found.
+    complete : bool
+        Whether nothing was interrupted.
+    """
+
+    directory: Path
+    files: tuple[str, ...]
+    removed: tuple[str, ...]
+    summary: dict[str, Any]
+    facts: Facts
+    findings: tuple[Finding, ...]
+    complete: bool = True
+
+
+class Result(ABC):
+    """What comes of a design, computed on demand.
+
+    Parameters
+    ----------
+    design : Design
+        What is asked for.
+    tolerances : Tolerances
+        Inner accuracy.
+    """
+
+    stages: ClassVar[Mapping[str, str]]
+    """The attributes that a build computes before its files, by what they are called."""
+
+    def __init__(self, design: Any, tolerances: Tolerances = DEFAULT) -> None:
+        self.design = design
+        self.tolerances = tolerances
+        self.timings: dict[str, float] = {}
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time what is done within, under a `name`."""
+        start = time.perf_counter()
+        yield
+        self.timings[name] = self.timings.get(name, 0.0) + time.perf_counter() - start
+
+    @cached_property
+    @abstractmethod
+    def findings(self) -> tuple[Finding, ...]:
+        """What the checks found: errors first."""
+
+    @cached_property
+    def design_hash(self) -> str:
+        """The hash of the design as it was when its law or program was made."""
+        return hash_of(self.design)
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What is known of the result, under the names that docs/conventions.md explains."""
+        return self._facts({})
+
+    def _facts(self, measured: Mapping[str, Any]) -> Facts:
+        return KINDS[self.design.kind].room("facts").facts(self, measured)
+
+    def check(self, directory: str | Path = "output") -> Written:
+        """Run the checks and write the summary only; files of an earlier build stay.
+
+        They stay listed, under ``stale`` if they were made from another state of the design.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+
+        Returns
+        -------
+        Written
+            With the summary as its only file.
+        """
+        return self.keep({}, directory, {})
+
+    def write(
+        self,
+        directory: str | Path = "output",
+        files: Sequence[str] | None = None,
+        progress: Progress | None = None,
+    ) -> Written:
+        """Write the files of the design into ``directory/<name>/``, all or none.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+        files : sequence of str, optional
+            Kinds of files, instead of those the design lists.
+        progress : callable, optional
+            Called with a stage's name, the stages done and their number.
+
+        Returns
+        -------
+        Written
+            With the files written and the stale ones removed.
+
+        Raises
+        ------
+        DesignError
+            If designs of this kind have no such files.
+        InfeasibleError
+            If the design cannot be made; nothing is written or removed then.
+        WriteError
+            If the disk refuses.
+        """
+        kinds = tuple(self.design.output.files if files is None else files)
+        _demand_formats(self.design, kinds)
+        steps = [*self.stages, *kinds, "writing"]
+
+        def tell(step: str) -> None:
+            if progress is not None:
+                progress(step, steps.index(step), len(steps))
+
+        for step, attribute in self.stages.items():
+            tell(step)
+            getattr(self, attribute)
+        makers = KINDS[self.design.kind].room("files").FILES
+        contents: dict[str, bytes] = {}
+        measured: dict[str, Any] = {}
+        for kind in kinds:
+            tell(kind)
+            with self.stage(kind):
+                contents |= makers[kind](self, measured)
+        tell("writing")
+        there: dict[str, str | None] = dict.fromkeys(contents)
+        return self._write_all(directory, contents, there, measured, self.findings)
+
+    def keep(
+        self,
+        contents: Mapping[str, bytes],
+        directory: str | Path,
+        measured: Mapping[str, Any],
+        findings: Sequence[Finding] | None = None,
+    ) -> Written:
+        """Write some files beside those of an earlier build, which stay.
+
+        Parameters
+        ----------
+        contents : mapping of str to bytes
+            By name.
+        directory : path
+            Parent folder.
+        measured : mapping
+            What the summary says of them.
+        findings : sequence of Finding, optional
+            Those of the checks where left out.
+
+        Returns
+        -------
+        Written
+        """
+        from gearcam.export.write import previous_files
+
+        there = previous_files(Path(directory) / self.design.name)
+        found = self.findings if findings is None else findings
+        return self._write_all(
+            directory, contents, there | dict.fromkeys(contents), measured, found, keep=True
+        )
+
+    def _write_all(
+        self,
+        directory: str | Path,
+        contents: Mapping[str, bytes],
+        there: Mapping[str, str | None],
+        measured: Mapping[str, Any],
+        findings: Sequence[Finding],
+        *,
+        keep: bool = False,
+    ) -> Written:
+        """Write files with the summary of all that will be there, all or none."""
+        import json
+
+        from gearcam.export.write import SUMMARY, write_all
+
+        facts = self._facts(measured) if measured else self.facts
+        made = self.design_hash
+        hashes = {name: made if name in contents else old for name, old in there.items()}
+        stale = {name: old for name, old in hashes.items() if old != made}
+        summary = tree(
+            {
+                "format": FORMAT,
+                "name": self.design.name,
+                "kind": self.design.kind,
+                **facts.document,
+                "hash": made,
+                "files": {name: made for name in hashes if name not in stale},
+                **({"stale": stale} if stale else {}),
+                "findings": [finding.as_dict() for finding in findings],
+                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
+                "versions": _versions(),
+                "design": document_of(self.design),
+            }
+        )
+        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+        everything = {**contents, SUMMARY: (text + "\n").encode()}
+        folder = Path(directory) / self.design.name
+        removed = write_all(folder, everything, keep=keep)
+        return Written(
+            directory=folder,
+            files=tuple(everything),
+            removed=tuple(removed),
+            summary=summary,
+            facts=facts,
+            findings=tuple(findings),
+        )
+
+
+def _demand_formats(design: Design, kinds: Sequence[str]) -> None:
+    known = KINDS[design.kind].formats
+    problems = [
+        Problem(
+            f"{kind} is no file of designs of kind {design.kind}",
+            file=design.source,
+            key="output.files",
+            value=kind,
+            allowed=", ".join(known),
+        )
+        for kind in kinds
+        if kind not in known
+    ]
+    if problems:
+        raise DesignError(problems)
+
+
+def _versions() -> dict[str, str]:
+    """Return versions of what made the numbers: the program, Python, libraries loaded so far."""
+    found = {"gearcam": __version__, "python": platform.python_version()}
+    for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
+        module = sys.modules.get(name)
+        if module is not None and hasattr(module, "__version__"):
+            found[name] = str(module.__version__)
+    return found

@@ -1,0 +1,70 @@
+"""What a law must give for an example, known in closed form and independently of the code."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from gearcam.laws.base import RatioLaw
+from gearcam.laws.rises import RiseParameters
+from gearcam.laws.span import ONE_LOBE, Lobes
+from gearcam.tolerances import Tolerances
+
+
+class LawParameters(Protocol):
+    """What the parameters of a law can do."""
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`, or raise `InfeasibleError`."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawClaim:
+    """Values of a ratio law.
+
+    Parameters
+    ----------
+    parameters : LawParameters
+        The example.
+    lobes : Lobes
+        Its lobes.
+    ratio : mapping of float to float
+        i21 by driver angle, rad.
+    driven : mapping of float to float
+        phi2, rad, by driver angle, rad.
+    continuity : int
+        Least order of continuity over all knots (3 means at least 3).
+    """
+
+    parameters: LawParameters
+    lobes: Lobes = ONE_LOBE
+    ratio: Mapping[float, float]
+    driven: Mapping[float, float]
+    continuity: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class RiseClaim:
+    """Values of a rise.
+
+    Parameters
+    ----------
+    parameters : RiseParameters
+        The example.
+    values, velocities : mapping of float to float
+        S and S' by phi.
+    peak_velocity, peak_acceleration, peak_jerk : float
+        Largest absolute values; infinite where a derivative below jumps.
+    continuity : int
+        Order of continuity between dwells (3 means at least 3).
+    """
+
+    parameters: RiseParameters
+    values: Mapping[float, float]
+    velocities: Mapping[float, float] = field(default_factory=dict)
+    peak_velocity: float
+    peak_acceleration: float
+    peak_jerk: float
+    continuity: int

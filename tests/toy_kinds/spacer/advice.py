@@ -1,0 +1,11 @@
+from __future__ import annotations
+
+from typing import Any
+
+
+def seek(search: Any, refusal: Any) -> None:
+    search.follow(refusal.ways if refusal else ())
+
+
+def hopeless(_: Any) -> bool:
+    return False

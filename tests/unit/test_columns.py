@@ -1,0 +1,93 @@
+"""CSV files are read once, with commas or semicolons, and never with a comma taken for a point."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearcam.laws.columns import ColumnsError, FromFile, read_rows, rows_of
+from gearcam.laws.rise_points import TableRise
+from gearcam.laws.span import ONE_LOBE
+from gearcam.laws.table import TableLaw
+from gearcam.tolerances import DEFAULT
+
+POINTS = "x,y\n0,0\n0.25,0.125\n0.75,0.875\n1,1\n"
+
+
+def written(folder: Path, text: str) -> str:
+    file = folder / "points.csv"
+    file.write_text(text, encoding="utf-8")
+    return str(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "note"),
+    [
+        (POINTS, ""),
+        (POINTS.replace(",", ";"), "read with semicolons between columns"),
+        (
+            POINTS.replace(",", ";").replace(".", ","),
+            "read with semicolons and decimal commas",
+        ),
+        (
+            "# measured\nx ; why ; y\n0;a, b;0\n,25;1.2.3;0,125\n0,75;;8,75e-1\n1;;1\n",
+            "read with semicolons and decimal commas",
+        ),
+        ('x,y,note\n0,0,"a;b"\n0.25,0.125\n0.75,0.875,,\n1,1\n', ""),
+    ],
+)
+def test_separators_that_are_clear_are_read_and_told(tmp_path: Path, text: str, note: str) -> None:
+    rows = read_rows(written(tmp_path, text))
+    found, lines = rows.columns(("y", "x"))
+    expected = [[0.0, 0.0], [0.125, 0.25], [0.875, 0.75], [1.0, 1.0]]
+    np.testing.assert_array_equal(found, expected)
+    assert rows.note == note
+    assert np.diff(lines).tolist() == [1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("x,y\n0,0\n0,5,0,5\n1,1\n", "line 3: 4 values for 2 columns; use a decimal point"),
+        ("x,y\n0,0\n0.5,0,5\n1,1\n", "line 3: 3 values for 2 columns; use a decimal point"),
+        ('x,y\n0,0\n"0,5",0.5\n1,1\n', "line 3: '0,5' is not a number; use a decimal point"),
+        ("x;y\n0;0\n0,5;0.5\n1;1\n", "line 3: '0,5' is not a number; use a decimal point"),
+        ("x;y\n0;0\n1.000,5;0\n1;1\n", "line 3: '1.000,5' is not a number"),
+        ("x;y,z\n0;0,1\n", "line 1: the columns are x;y, z"),
+    ],
+)
+def test_what_is_not_clear_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(ColumnsError) as caught:
+        read_rows(written(tmp_path, text)).columns(("x", "y"))
+    assert str(caught.value) == message
+
+
+RATIOS = "phi1_deg,ratio\n" + "".join(f"{60 * k},1\n" for k in range(7))
+
+
+def test_a_table_reads_its_file_once(tmp_path: Path) -> None:
+    law = TableLaw(file=written(tmp_path, RATIOS))
+    rise = TableRise(file=str(tmp_path / "rise.csv"))
+    (tmp_path / "rise.csv").write_text(POINTS.replace("0,0\n", "0,1e-10\n"), encoding="utf-8")
+    assert not [*law.problems(), *rise.problems()]
+    for name in ("points.csv", "rise.csv"):
+        (tmp_path / name).unlink()
+    assert not [*law.problems(), *rise.problems()]
+    assert float(law.build(ONE_LOBE, DEFAULT).phi2(1.0)) == pytest.approx(1.0, abs=1e-15)
+    made = rise.build(DEFAULT)
+    assert float(made.function(0.25)) == pytest.approx(0.125, abs=1e-15)
+    assert float(made.function(0.0)) == 0.0
+    assert rise.points[0][0].tolist() == [0.0, 1e-10]
+
+
+def test_rows_are_found_wherever_their_parameters_stand(tmp_path: Path) -> None:
+    law = TableLaw(file=written(tmp_path, RATIOS))
+    rows = rows_of(str(law.file), (1, "a", (law,)))
+    assert rows is law.rows
+    assert rows is not None
+    assert rows.cells[0] == ["phi1_deg", "ratio"]
+    assert rows_of("other.csv", (law,)) is None
+    assert isinstance(law, FromFile)
+    assert TableLaw(phi1=(0.0,), ratio=(1.0,)).rows is None
