@@ -15,8 +15,8 @@ from gearcam.gears.outline import build_outline
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
 from gearcam.gears.track import ArcLength, Frames, Track
-from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.span import Lobes
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes
@@ -46,7 +46,13 @@ class Polar(Track):
         move = (dr + 1j * r) * np.exp(1j * phi)
         kappa = self._kappa(phi) if curved else np.empty(0)
         speed = np.abs(move)
-        return Frames((r + 0j) * np.exp(1j * phi), move / speed, kappa, speed, self.arc_length(phi))
+        return Frames(
+            np.asarray(r * np.exp(1j * phi), dtype=complex),
+            move / speed,
+            kappa,
+            speed,
+            self.arc_length(phi),
+        )
 
     def rotation(self, phi: Array) -> Array:
         return phi
