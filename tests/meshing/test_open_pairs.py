@@ -188,7 +188,7 @@ def dense_touch(name: str, side: int, phi: float, distance: float) -> float:
     """First touch by dense points: of every flank near the pitch point on both wheels' blanks."""
     gears, feeds = made(name).gears, made(name).law.feeds
     first, second = (gear.toothing for gear in gears)
-    s = float(first.rolling.arc_length(phi))
+    s = float(first.track.arc_length(phi))
     ahead = []
     for place, at in enumerate(second.tooth_places.tolist()):
         sf = at - side * second.half_tooth

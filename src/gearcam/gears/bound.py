@@ -29,8 +29,7 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
     float
         Smallest of any flank: from addendum curve to addendum curve, cusps taken off.
     """
-    half, places = first.half_tooth, first.tooth_places[first.whole]
-    sf, sigma = np.concatenate([places + half, places - half]), np.repeat([1.0, -1.0], len(places))
+    sf, sigma = (values[first.whole_flanks] for values in first.flanks)
     (low, high), (low2, high2) = _reach(first, sf, sigma), _reach(second, sf, -sigma)
     return float((np.minimum(high, -low2) - np.maximum(low, -high2)).min()) / first.pitch
 

@@ -110,6 +110,19 @@ class Toothing:
         first = self.numbers[0] - (1.0 if self.wheel == 1 else 0.5)
         return self.moved + self.pitch * np.arange(first, first + len(self.numbers))
 
+    @cached_property
+    def flanks(self) -> tuple[Array, Array]:
+        """Place sf, mm, and sigma of all flanks formed: sigma = +1 of every tooth, then -1."""
+        sigma = np.repeat([1.0, -1.0], len(self.numbers))
+        return np.tile(self.tooth_places, 2) + sigma * self.half_tooth, sigma
+
+    @property
+    def whole_flanks(self) -> Mask:
+        """Which of the flanks belong to whole teeth."""
+        whole = np.zeros(len(self.numbers), dtype=bool)
+        whole[self.whole] = True
+        return np.tile(whole, 2)
+
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
         """Return the frames of its track at driver angles, rad (see `Track.frames`)."""
         return self.track.frames(phi, curved=curved)

@@ -50,9 +50,7 @@ class _Tops(NamedTuple):
     slope: Array
 
 
-def round_tips(
-    toothing: Toothing, rows: Rows, flanks: tuple[Array, Array], tips: TipEnds
-) -> tuple[Rows, Array]:
+def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Array]:
     """Round the edges of the tips.
 
     Parameters
@@ -61,10 +59,8 @@ def round_tips(
         The wheel, with the radius ``rounding``.
     rows : Rows
         Its curves, loops taken out, open ends cut.
-    flanks : (sf, sigma), two (2z,) arrays, mm and 1
-        The flanks of all teeth formed, sigma = +1 first.
     tips : TipEnds
-        Their ends.
+        Ends of the flanks of all teeth formed.
 
     Returns
     -------
@@ -79,10 +75,10 @@ def round_tips(
         Naming the largest radius.
     """
     tops = _tops(toothing, rows, tips)
-    found = _arcs(toothing, rows, flanks, tips, tops, toothing.rounding)
+    found = _arcs(toothing, rows, tips, tops, toothing.rounding)
     if found is None:
         largest = largest_fitting(
-            lambda radius: _arcs(toothing, rows, flanks, tips, tops, radius) is not None,
+            lambda radius: _arcs(toothing, rows, tips, tops, radius) is not None,
             toothing.rounding,
             _HALVINGS,
         )
@@ -117,15 +113,10 @@ def _tops(toothing: Toothing, rows: Rows, tips: TipEnds) -> _Tops:
 
 
 def _arcs(
-    toothing: Toothing,
-    rows: Rows,
-    flanks: tuple[Array, Array],
-    tips: TipEnds,
-    tops: _Tops,
-    radius: float,
+    toothing: Toothing, rows: Rows, tips: TipEnds, tops: _Tops, radius: float
 ) -> tuple[Rows, Array] | None:
     """Return what `round_tips` does, or None where the radius is too large."""
-    (sf, sigma), z = flanks, len(toothing.numbers)
+    (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
     near, there = MISS * toothing.pitch, tops.row >= 0
