@@ -274,7 +274,7 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
 
 
 def begun(segments: ProfileSegments) -> ProfileSegments:
-    """Return `segments` that begin at a corner, as a `Sampler` wants them; one is made if needed."""
+    """Return segments that begin at a corner, as a `Sampler` wants; one is made if needed."""
     order = (np.arange(len(segments.start)) + segments.corner.argmax()) % len(segments.start)
     turned = {
         name: getattr(segments, name)[order] for name in ("piece", "start", "end", "jump", "corner")
