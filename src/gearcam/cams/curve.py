@@ -146,7 +146,7 @@ class ProfileSegments:
     curve : CamCurve
         What is drawn.
     inset : float, mm
-        Depth below a round follower's centre.
+        Depth below a round follower's centre; negative beyond it.
     piece : (n,) array of int
         Smooth piece of the lift that a sweep belongs to, or that begins at a jump.
     start, end : (n,) arrays
@@ -164,6 +164,11 @@ class ProfileSegments:
     end: Array
     jump: NDArray[np.bool_]
     corner: NDArray[np.bool_]
+
+    @property
+    def backward(self) -> NDArray[np.bool_]:
+        """Which are jumps that run backwards: about a corner of the pitch curve on their side."""
+        return self.jump & ((self.end - self.start) * (-1.0 if self.inset < 0.0 else 1.0) < 0.0)
 
     @property
     def breaks(self) -> tuple[Index, Array]:
@@ -220,7 +225,7 @@ class ProfileSegments:
         """
         theta, s, ds, d2s = self.states(index, parameter, 2)
         found = contact(self.curve.mechanism, Jet([s]), Jet([ds]), Jet([d2s]))
-        speed = found.speed if self.inset > 0.0 else found.pitch_speed
+        speed = found.speed if self.inset else found.pitch_speed
         points, tangents = self.curve.trace(theta, s, ds, self.inset)
         return points, np.where(self.jump[index], self._rolling(s, ds), speed.c[0]) * tangents
 
@@ -253,7 +258,7 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
     program = curve.program
     knots, count = program.knots, len(program.knots) - 1
     hard = {jump.theta: jump for jump in program.hard}
-    drawn = curve.mechanism.flat or inset > 0.0
+    drawn = curve.mechanism.flat or inset != 0.0
     rows: list[tuple[int, float, float, bool, bool]] = []
     for piece in range(count):
         jump = hard.get(float(knots[piece]))
@@ -274,7 +279,7 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
 
 
 def begun(segments: ProfileSegments) -> ProfileSegments:
-    """Return `segments` that begin at a corner, as a `Sampler` wants them; one is made if needed."""
+    """Return segments that begin at a corner, as a `Sampler` wants; one is made if needed."""
     order = (np.arange(len(segments.start)) + segments.corner.argmax()) % len(segments.start)
     turned = {
         name: getattr(segments, name)[order] for name in ("piece", "start", "end", "jump", "corner")

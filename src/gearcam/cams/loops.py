@@ -95,7 +95,7 @@ def _closed(
 
 def _span(segments: ProfileSegments, low: float, high: float) -> tuple[CurvePoint, CurvePoint]:
     """Return the places between which a stretch runs backwards, with jumps at its ends."""
-    count, back = len(segments.start), segments.jump & (segments.end < segments.start)
+    count, back = len(segments.start), segments.backward
     if low == high:
         theta = segments.curve.program.knots[segments.piece]
         k = int(np.flatnonzero(back & (theta == low))[0])

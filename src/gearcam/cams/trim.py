@@ -112,7 +112,7 @@ def trimmed(
 
 def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]]) -> bool:
     """Return whether anything is left that runs backwards."""
-    if np.any(segments.jump & (segments.end < segments.start)):
+    if np.any(segments.backward):
         return True
     start, end = segments.start[~segments.jump], segments.end[~segments.jump]
     return any(

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.numeric.bulges import Array, Complex, as_pairs
+from gearcam.numeric.chords import chord_shares, near_chords
 from gearcam.numeric.sampling import Curves
 
 Index = NDArray[np.int64]
@@ -44,9 +45,6 @@ _REAL = 8.0
 
 _GOLDEN = 2.399963229728653
 """The golden angle, rad: directions in which points are told apart never agree."""
-
-_TOGETHER = 64
-"""Boxes that are compared each with each: faster than halving so few."""
 
 _CELLS = 16
 _DEPTH = 6
@@ -177,15 +175,15 @@ def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
         chain only the part from its beginning to its end. Where chords cannot tell, nothing, and
         all of an open chain.
     """
+    if not chains:
+        return []
     tangles = [_tangle(chain) for chain in chains]
-    if not any(tangle.share.size for tangle in tangles):
-        return [[_ring(tangle, [_WHOLE])] for tangle in tangles]
     brackets = [tangle.brackets for tangle in tangles]
     index, low, high = (np.concatenate(column, axis=1) for column in zip(*brackets, strict=True))
-    parameter, gap = _refined(curves, index, low, high)
+    parameter, gap = _refined(curves, index, low, high) if index.size else (low, low[0])
     cuts = np.cumsum([tangle.share.shape[1] for tangle in tangles])[:-1]
     return [
-        [_ring(tangle, branches, places, gaps) for branches in _rings(tangle)]
+        [_ring(tangle, stays, places, gaps) for stays in _rings(tangle)]
         for tangle, places, gaps in zip(
             tangles, np.split(parameter, cuts, axis=1), np.split(gap, cuts), strict=True
         )
@@ -226,7 +224,7 @@ class _Tangle:
 
 
 _Stays = list[tuple[int, int]]
-"""Events between which a chain stays."""
+"""Pairs of events between which a chain is boundary."""
 
 _WHOLE = (-1, -1)
 
@@ -239,45 +237,24 @@ def _tangle(chain: Chain) -> _Tangle:
     step = np.roll(p, -1) - p
     number = np.flatnonzero(np.abs(step) > _REAL * nudge)
     number = number[number < len(chain.curve)]
-    one, two = _near(as_pairs(p[number]), as_pairs((p + step)[number]))
+    one, two = near_chords(as_pairs(p[number]), as_pairs((p + step)[number]))
     apart = two - one > 1
     if not chain.open:
         apart &= two - one < len(number) - 1
     i, j = number[one[apart]], number[two[apart]]
-    (x, y), area = _shares(p[i], p[i] + step[i], p[j], p[j] + step[j])
+    shares, area = chord_shares(p[i], p[i] + step[i], p[j], p[j] + step[j])
     along = np.concatenate([[0.0], np.cumsum(np.abs(step))])
     loop = along[j] - along[i + 1]
     touch = _TOUCH * along[len(chain.curve)]
-    hit = _within(x, y) & (loop > touch)
+    hit = _within(shares) & (loop > touch)
     if not chain.open:
         hit &= along[-1] - along[j + 1] + along[i] > touch
     return _Tangle(
         chain=chain,
         chord=np.stack([i, j])[:, hit],
-        share=np.stack([x, y])[:, hit],
+        share=shares[:, hit],
         turn=np.sign(area[hit]).astype(np.int64),
     )
-
-
-def _near(starts: Array, ends: Array) -> tuple[Index, Index]:
-    """Return pairs of chords (n, 2) whose boxes overlap, by boxes of ever fewer neighbours."""
-    size = 1 << (len(starts) - 1).bit_length()
-    rest = np.full((size - len(starts), 2), np.inf)
-    low = np.concatenate([np.minimum(starts, ends), rest])
-    high = np.concatenate([np.maximum(starts, ends), -rest])
-    levels = [(low, high)]
-    while len(low) > _TOGETHER:
-        low, high = np.minimum(low[::2], low[1::2]), np.maximum(high[::2], high[1::2])
-        levels.append((low, high))
-    one, two = np.triu_indices(len(low))
-    for number, (low, high) in enumerate(reversed(levels)):
-        if number:  # both halves of each
-            one = (2 * one[:, None] + [0, 0, 1, 1]).ravel()
-            two = (2 * two[:, None] + [0, 1, 0, 1]).ravel()
-        near = (low[one] <= high[two]).all(axis=1) & (low[two] <= high[one]).all(axis=1)
-        near &= one <= two
-        one, two = one[near], two[near]
-    return one, two
 
 
 def _rings(tangle: _Tangle) -> list[_Stays]:
@@ -293,12 +270,12 @@ def _rings(tangle: _Tangle) -> list[_Stays]:
     seam, rings = int(order[-1]), []
     while ends:
         start = event = seam if seam in ends else next(iter(ends))
-        branches: _Stays = []
+        stays: _Stays = []
         while event in ends:
-            branches.append((event, ends.pop(event)))
-            event = (branches[-1][1] + count) % (2 * count)
+            stays.append((event, ends.pop(event)))
+            event = (stays[-1][1] + count) % (2 * count)
         if event == start:  # else chords are too near each other
-            rings.append(branches[1:] + branches[:1])
+            rings.append(stays[1:] + stays[:1])
     if not tangle.chain.open:
         return rings
     if not rings or rings[0][-1][0] != seam:
@@ -325,24 +302,24 @@ def _right_of_start(chain: Chain, at: Array, change: Index) -> int:
     return (0 if turns_left else -1) - int(change[at < k].sum())
 
 
-def _ring(
-    tangle: _Tangle, branches: _Stays, parameter: Array | None = None, gap: Array | None = None
-) -> Ring:
-    """Return the ring of some branches, with the parameters (2, m) and gaps (m,) of crossings."""
+def _ring(tangle: _Tangle, stays: _Stays, parameter: Array, gap: Array) -> Ring:
+    """Return the ring of some stays, with the parameters (2, m) and gaps (m,) of crossings."""
     chain, at = tangle.chain, _events(tangle)[0]
     curve, count = chain.curve[tangle.chord].ravel(), len(tangle.turn)
-    ends = (
-        CurvePoint(int(chain.curve[0]), float(chain.low[0])),
-        CurvePoint(int(chain.curve[-1]), float(chain.high[-1])),
-    )
-
-    def place(event: int, side: int) -> CurvePoint:
-        if event < 0 or parameter is None:
-            return ends[side]
-        return CurvePoint(int(curve[event]), float(parameter.ravel()[event]))
-
+    places = parameter.ravel()
+    branches = [
+        Branch(
+            CurvePoint(int(curve[begin]), float(places[begin]))
+            if begin >= 0
+            else CurvePoint(int(chain.curve[0]), float(chain.low[0])),
+            CurvePoint(int(curve[end]), float(places[end]))
+            if end >= 0
+            else CurvePoint(int(chain.curve[-1]), float(chain.high[-1])),
+        )
+        for begin, end in stays
+    ]
     total, ways = len(chain.points), []
-    for begin, end in branches:
+    for begin, end in stays:
         first = float(at[begin]) if begin >= 0 else 0.0
         last = float(at[end]) if end >= 0 else float(len(chain.curve))
         last += total if last < first else 0
@@ -350,30 +327,18 @@ def _ring(
     way = np.concatenate(ways)
     number = way.astype(np.int64)
     low, high = (chain.points[(number + k) % total] for k in (0, 1))
-    crossings = [end % count for _, end in branches if end >= 0]
+    crossings = [end % count for _, end in stays if end >= 0]
     return Ring(
-        branches=tuple(Branch(place(begin, 0), place(end, 1)) for begin, end in branches),
+        branches=tuple(branches),
         crossed=bool(crossings),
         polygon=low + (way - number) * (high - low),
-        gap=float(gap[crossings].max()) if gap is not None and crossings else 0.0,
+        gap=float(gap[np.array(crossings, dtype=np.int64)].max(initial=0.0)),
     )
 
 
-def _shares(a: Complex, b: Complex, c: Complex, d: Complex) -> tuple[Array, Array]:
-    """Return the shares of the chords a-b and c-d where their lines cross, (2, ...), and an area.
-
-    The area is positive where c-d crosses from right to left; shares of parallels are not finite.
-    """
-    area = (np.conj(b - a) * (d - c)).imag
-    with np.errstate(divide="ignore", invalid="ignore"):
-        first = (np.conj(c - a) * (d - c)).imag / area
-        second = (np.conj(c - a) * (b - a)).imag / area
-    return np.stack([first, second]), area
-
-
-def _within(first: Array, second: Array) -> Mask:
-    """Return whether shares are of the chords, not beyond them."""
-    return (first >= 0.0) & (first <= 1.0) & (second >= 0.0) & (second <= 1.0)
+def _within(shares: Array) -> Mask:
+    """Return whether shares (2, ...) are of the chords, not beyond them."""
+    return np.all((shares >= 0.0) & (shares <= 1.0), axis=0)
 
 
 def _refined(curves: Curves, index: Index, low: Array, high: Array) -> tuple[Array, Array]:
@@ -395,10 +360,10 @@ def _refined(curves: Curves, index: Index, low: Array, high: Array) -> tuple[Arr
             low[..., None] + step[..., None] * np.arange(-1, _CELLS + 2), ends[0], ends[1]
         )
         one, two = at(grid)
-        shares, _ = _shares(
+        shares, _ = chord_shares(
             one[:, :-1, None], one[:, 1:, None], two[:, None, :-1], two[:, None, 1:]
         )
-        hit = _within(*shares).reshape(len(one), -1)
+        hit = _within(shares).reshape(len(one), -1)
         best = hit.argmax(axis=1)
         cell = np.stack(np.divmod(best, grid.shape[2] - 1))[..., None]
         near = np.take_along_axis(grid, cell, axis=2)[..., 0]

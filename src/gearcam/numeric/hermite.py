@@ -84,8 +84,7 @@ def on_cubics(p: Complex, t: Complex, step: Ints, share: Array) -> tuple[Complex
     chord, ends = p[step + 1] - p[step], (t[step], t[step + 1])
     arms = _arms(chord, *ends)
     way, slope = hermite_cubic(chord, ends[0] * arms, ends[1] * arms, share)
-    tangents: Complex = slope / np.abs(slope)
-    return p[step] + way, tangents
+    return p[step] + way, np.asarray(slope / np.abs(slope), dtype=np.complex128)
 
 
 def hermite_quintics(x: Array, y: Array, slopes: Array, bends: Array) -> Array:

@@ -1,0 +1,305 @@
+"""Walls of a cam: where one side of its follower's pitch motion cuts, trimmed.
+
+A cam is a list of walls of one *pitch motion*: a lift program that moves a follower. A disc cam has
+one wall, inside the pitch curve; a groove has one on either side.
+
+Nothing is computed before it is asked for. Everything is computed for a cam that turns
+counter-clockwise; only contours and drawn curves are mirrored for the other direction.
+
+Refused: profiles that cross themselves so that what is left cannot be told.
+
+Depends on curve, measures, loops, trim, lost and numeric.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from gearcam.cams.curve import Array, CamCurve, Plane, ProfileSegments, begun, segments
+from gearcam.cams.loops import without_small_loops
+from gearcam.cams.lost import lost_lift
+from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
+from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.trim import Corner, star_shaped, trimmed
+from gearcam.errors import InfeasibleError
+from gearcam.laws.lift import Program
+from gearcam.numeric.bulges import as_complex, as_pairs
+from gearcam.numeric.contour import Contour
+from gearcam.numeric.sampling import Sampler
+
+CHORD_TOLERANCE = 1e-3
+"""Chord tolerance where the design gives none, mm."""
+
+_TURN = [(0.0, 2.0 * math.pi)]
+"""The whole turn, as stretches of it."""
+
+_OVERSAMPLING = 8
+"""Dense points per chord: their own chord error is 1/64 of the polygon's."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PitchMotion:
+    """A follower that a lift moves against a cam.
+
+    Parameters
+    ----------
+    program : Program
+        The lift asked for.
+    mechanism : Mechanism
+        The follower.
+    clockwise : bool
+        Whether the cam turns clockwise.
+    tolerance : float, mm
+        Chord error of contours.
+    """
+
+    program: Program
+    mechanism: Mechanism
+    clockwise: bool = False
+    tolerance: float = CHORD_TOLERANCE
+
+    @cached_property
+    def curve(self) -> CamCurve:
+        """The curves of the cam as it turns counter-clockwise."""
+        return CamCurve(program=self.program, mechanism=self.mechanism)
+
+    def pressure(self, kind: str) -> Range | None:
+        """Return the signed pressure angles, rad, over all phases of a `kind` (rise, return)."""
+        return range_of(self.curve, lambda contact: contact.pressure, self.program.phases(kind))
+
+    def pitch_curvature(self, kind: str = "") -> Range | None:
+        """Return the pitch curve's curvature, 1/mm, over a turn or all phases of a `kind`.
+
+        None of a flat follower, whose profile is its pitch curve (see `face_radius`), and where
+        there is no such phase.
+        """
+        if self.mechanism.flat:
+            return None
+        return range_of(
+            self.curve,
+            lambda contact: contact.turning / contact.pitch_speed,
+            self.program.phases(kind) if kind else _TURN,
+        )
+
+    @cached_property
+    def contact_place(self) -> Range | None:
+        """Where a flat face is touched, mm (see `gearcam.cams.contact.Contact`)."""
+        if not self.mechanism.flat:
+            return None
+        return range_of(self.curve, lambda contact: contact.place, _TURN)
+
+    def motion(self, theta: Array) -> dict[str, Array]:
+        """Return the motion and the contact at cam angles.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles; at a knot the values after it count.
+
+        Returns
+        -------
+        dict of str to (n,) array
+            ``s, ds, d2s, d3s`` in mm or rad, ``pressure`` in rad, ``rho_pitch`` and
+            ``rho_profile`` in mm, infinite where straight.
+        """
+        s, ds, d2s, d3s = self.program.derivatives(theta, 3)
+        found = self.curve.contact(theta, 0)
+        turning = found.turning.c[0] + np.zeros_like(s)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            pitch, profile = (
+                np.where(turning == 0.0, np.inf, values.c[0] / turning)
+                for values in (found.pitch_speed, found.speed)
+            )
+        return {
+            "s": s,
+            "ds": ds,
+            "d2s": d2s,
+            "d3s": d3s,
+            "pressure": found.pressure.c[0] + np.zeros_like(s),
+            "rho_pitch": pitch,
+            "rho_profile": profile,
+        }
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Kept:
+    """What trimming leaves: as `drawn`, in a `sampler`, and `corners` of an unmirrored cam."""
+
+    drawn: ProfileSegments
+    sampler: Sampler
+    corners: tuple[Corner, ...]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Wall(PitchMotion):
+    """A wall: the parallel of the pitch curve at the follower's radius, or what a face envelops.
+
+    Parameters
+    ----------
+    side : {1, -1}
+        Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; lost lift
+        and smallest radii are told of walls inside only.
+    """
+
+    side: int = 1
+
+    @cached_property
+    def curve(self) -> CamCurve:
+        """The wall's curves as the cam turns counter-clockwise: outside at a negative depth."""
+        radius = self.side * self.mechanism.radius
+        return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
+
+    @cached_property
+    def profile_radius(self) -> tuple[float, float]:
+        """Smallest convex and smallest concave radius of the profile, mm; a corner has radius 0.
+
+        Infinite where there is no convex or no concave part.
+        """
+        if self.face_radius is not None:
+            convex, concave = self.face_radius.low.value, math.inf
+        else:
+            found, radius = self.pitch_curvature(), self.curve.mechanism.radius
+            low, high = (found.low.value, found.high.value) if found else (0.0, 0.0)
+            convex = 1.0 / high - radius if high > 0.0 else math.inf
+            concave = -1.0 / low + radius if low < 0.0 else math.inf
+            for jump in self.program.hard:
+                if jump.after > jump.before:  # it rolls about its own centre
+                    concave = min(concave, radius)
+                else:
+                    convex = 0.0
+        return (0.0 if self.corners else max(convex, 0.0)), concave
+
+    @cached_property
+    def face_radius(self) -> Range | None:
+        """Radius of curvature of a flat follower's profile, mm, negative where undercut."""
+        if not self.mechanism.flat:
+            return None
+        return range_of(self.curve, lambda contact: contact.speed / contact.turning, _TURN)
+
+    @cached_property
+    def undercut(self) -> list[tuple[float, float]]:
+        """Cam angles, rad, between which the profile runs backwards."""
+        return undercut(self.curve)
+
+    @property
+    def undercut_ranges(self) -> list[tuple[float, float]]:
+        """The same for people: one that goes on over the end of the turn ends beyond it."""
+        joined = over_the_end(self.undercut)
+        ends = (parts[0][1] + (2.0 * math.pi if len(parts) > 1 else 0.0) for parts in joined)
+        return [(parts[-1][0], end) for parts, end in zip(joined, ends, strict=True)]
+
+    @cached_property
+    def _kept(self) -> _Kept:
+        whole = segments(self.curve, self.curve.mechanism.radius)
+        size = self.mechanism.least + self.program.range[1] * self.mechanism.lever
+        kept, corners, left = without_small_loops(whole, self.undercut, size)
+        drawn = self._drawn(kept)
+        sampler = self._sampled(drawn)
+        if left or not star_shaped(*sampler.probes):
+            kept, more = trimmed(kept, left, self.tolerance)
+            starts = set(kept.states(np.arange(len(kept.start)), kept.start)[0].tolist())
+            corners = (*(corner for corner in corners if corner.after in starts), *more)
+            drawn = self._drawn(kept)
+            sampler = self._sampled(drawn)
+        corners = tuple(sorted(corners, key=lambda corner: corner.before))
+        return _Kept(drawn=drawn, sampler=sampler, corners=corners)
+
+    def _drawn(self, kept: ProfileSegments) -> ProfileSegments:
+        return replace(begun(kept), curve=replace(self.curve, mirrored=self.clockwise))
+
+    def _sampled(self, drawn: ProfileSegments) -> Sampler:
+        return Sampler(curves=drawn, tolerance=self.tolerance)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Where trimming has left corners, as the cam turns counter-clockwise."""
+        return self._kept.corners
+
+    @cached_property
+    def lost(self) -> tuple[Extreme, ...]:
+        """Largest lift, mm or rad, that each corner costs, with its cam angle, rad."""
+        return tuple(lost_lift(self.program, self.mechanism, corner) for corner in self.corners)
+
+    @cached_property
+    def shortfall(self) -> float:
+        """Largest lift that trimming costs, mm or rad."""
+        return max((loss.value for loss in self.lost), default=0.0)
+
+    @cached_property
+    def size(self) -> Size:
+        """Perimeter and area of the profile."""
+        return size_of(self._kept.drawn)
+
+    @property
+    def nearest_flat(self) -> float:
+        """Least distance of the axis from the inside of a straight piece, mm; inf without one."""
+        if not self.mechanism.flat:
+            return math.inf
+        kept = self._kept.drawn
+        inside = np.flatnonzero(kept.jump & (kept.start < 0.0) & (kept.end > 0.0))
+        return float(np.abs(kept.at(inside, np.zeros(len(inside)))[0]).min(initial=math.inf))
+
+    @property
+    def sampler(self) -> Sampler:
+        """The profile with the density of points that the tolerance asks for."""
+        return self._kept.sampler
+
+    @cached_property
+    def contour(self) -> Contour:
+        """The profile, counter-clockwise, proved to be a simple curve about the axis."""
+        made = self._contour(self.sampler)
+        points = as_complex(made.vertices)
+        seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
+        if not seen_whole and not made.polygon.is_valid:
+            raise InfeasibleError(
+                "the profile crosses itself, and what is left of it cannot be told",
+                where="[cam]",
+                nearest="no piece of it has a place in the order of the others",
+            )
+        return made
+
+    @cached_property
+    def pitch_contour(self) -> Contour:
+        """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
+        if self.mechanism.flat or self.mechanism.radius == 0.0:
+            return self.contour
+        return self._contour(self._sampled(self._drawn(segments(self.curve, 0.0))))
+
+    def _contour(self, sampler: Sampler) -> Contour:
+        _, points, error = sampler.chords
+        clockwise = not self.clockwise  # theta draws against the cam's turning
+        return Contour(
+            dense=lambda: sampler.runs(_OVERSAMPLING, reverse=clockwise),
+            vertices=as_pairs(points[::-1] if clockwise else points),
+            tolerance=self.tolerance,
+            chord_error=error,
+        )
+
+    def places(self, count: int) -> tuple[Array, Plane, Plane]:
+        """Return points of the profile at even cam angles, where they are left by trimming.
+
+        Parameters
+        ----------
+        count : int
+            Cam angles of a turn.
+
+        Returns
+        -------
+        theta : (n,) array, rad
+            At most `count`.
+        points, normals : (n,) complex arrays, mm and 1
+            Touched at those angles, with the outward normals of the metal.
+        """
+        kept = self._kept.drawn
+        theta = 2.0 * math.pi * np.arange(count) / count
+        sweeps = np.flatnonzero(~kept.jump)
+        inside = (kept.start[sweeps] <= theta[:, None]) & (theta[:, None] < kept.end[sweeps])
+        left = inside.any(axis=1)
+        index = sweeps[inside.argmax(axis=1)][left]
+        points, tangents = kept.at(index, theta[left])
+        # drawn against the cam's turning, the metal lies to the right, mirrored to the left
+        return theta[left], points, tangents * self.side * (-1j if self.clockwise else 1j)
