@@ -14,7 +14,7 @@ import gearcam
 from gearcam.design import GearPairDesign, OutputSpec
 from gearcam.gears.spec import PairSpec, Rack
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.laws.base import LAWS
+from gearcam.laws.ratio.base import LAWS
 from gearcam.parts.blank import Blank
 
 PROFILES = Path(__file__).parent.parent / "profiles"

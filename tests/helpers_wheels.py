@@ -13,9 +13,9 @@ from gearcam.gears.flank import Kind, Toothing, trace
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Wheel, roll
 from gearcam.gears.spec import BasicRack
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.phases import Phases
-from gearcam.laws.span import Lobes
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.phases import Phases
+from gearcam.laws.ratio.span import Lobes
 from gearcam.tolerances import DEFAULT
 from witness import laws
 from witness.kinematics import Basic, Rolling

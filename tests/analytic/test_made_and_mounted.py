@@ -15,7 +15,7 @@ import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.laws.constant import Constant
+from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.study import study
 from gearcam.parts.blank import Blank

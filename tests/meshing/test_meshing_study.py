@@ -16,7 +16,7 @@ from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.outline import build_outline
 from gearcam.gears.subject import Subject
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec

@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from gearcam.jobs.gear_pair import GearPairJob
-from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.halves import Halves, halve
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import job, profile

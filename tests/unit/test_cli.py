@@ -18,8 +18,8 @@ from gearcam.design import KINDS, GearPairDesign, load
 from gearcam.errors import InfeasibleError, WriteError
 from gearcam.findings import Finding
 from gearcam.jobs.remedies import Remedies, Remedy
-from gearcam.laws.base import LAWS
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 
 GOOD = """\
 kind = "gear-pair"

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from gearcam.design import GearPairDesign, OutputSpec, document_of, loads
 from gearcam.errors import DesignError
 from gearcam.gears.spec import PairSpec
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.phases import Phases
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.phases import Phases
 
 GOOD = """\
 kind = "gear-pair"

@@ -20,9 +20,9 @@ from gearcam.design import KINDS, GearPairDesign, document_of, loads
 from gearcam.design.gear_pair import law_table
 from gearcam.design.motion import phase_table, rise_table
 from gearcam.findings import CHECKS
-from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 from gearcam.parts.mass import mass_properties
 from gearcam.quantities import Param
 

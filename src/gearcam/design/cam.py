@@ -19,7 +19,7 @@ from gearcam.design.tables import Table, table_of
 from gearcam.design.wording import Fault, show
 from gearcam.errors import DesignError, Problem
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase
-from gearcam.laws.rises import RISES
+from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import CAM_KIND as PARTS_KIND
 from gearcam.parts.blank import Blank, WheelBlank
 

@@ -17,7 +17,7 @@ from gearcam.design.tables import Table, table_of
 from gearcam.design.wording import Fault, did_you_mean, quoted, show
 from gearcam.errors import DesignError, Problem
 from gearcam.gears.spec import HelixSpec, PairSpec, Rack
-from gearcam.laws.base import LAWS
+from gearcam.laws.ratio.base import LAWS
 from gearcam.meshing.settings import KIND as MESHING_KIND
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import KIND as PARTS_KIND

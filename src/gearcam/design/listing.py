@@ -9,9 +9,9 @@ from gearcam.design.gear_pair import law_table
 from gearcam.design.models import description
 from gearcam.design.motion import rise_table
 from gearcam.design.tables import Table
-from gearcam.laws.base import LAWS
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 
 
 @dataclass(frozen=True, kw_only=True)

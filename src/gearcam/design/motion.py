@@ -1,6 +1,6 @@
 """The array ``[[motion]]`` of a cam: its phases, each with the keys of its type and of its law.
 
-A rise and a return have a ``law`` of the registry `gearcam.laws.rises.RISES`, whose parameters
+A rise and a return have a ``law`` of the registry `gearcam.laws.rises.base.RISES`, whose parameters
 stand beside the keys of the phase.
 """
 
@@ -16,7 +16,7 @@ from gearcam.design.models import faults_of
 from gearcam.design.tables import Table, table_of
 from gearcam.design.wording import Fault, did_you_mean, quoted, show
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
-from gearcam.laws.rises import RISES
+from gearcam.laws.rises.base import RISES
 
 TITLE: Final = "motion"
 

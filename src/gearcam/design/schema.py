@@ -13,9 +13,9 @@ from gearcam.design.kinds import KINDS, Kind
 from gearcam.design.models import description, model_of
 from gearcam.design.motion import LIFT, WITH_LAW, phase_table, summary, twins
 from gearcam.design.tables import Table
-from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 

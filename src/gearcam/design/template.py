@@ -13,9 +13,9 @@ from gearcam.design.models import description
 from gearcam.design.motion import phase_table, rise_table, summary
 from gearcam.design.tables import Entry, Table
 from gearcam.design.wording import show
-from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 
 _COLUMN: Final = 36
 _WIDTH: Final = 96

@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.laws.base import RatioLaw
+from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.chebyshev import Expansion, expand
 from gearcam.numeric.jets import Jet, sqrt
 from gearcam.numeric.piecewise import extremes

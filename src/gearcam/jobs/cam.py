@@ -19,7 +19,7 @@ from gearcam.design import CamDesign
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.jobs.job import Job, Progress
 from gearcam.jobs.written import Written, finish
-from gearcam.laws.lift import Program, make_program
+from gearcam.laws.program import Program, make_program
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import CAM_KIND
 

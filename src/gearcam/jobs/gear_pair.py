@@ -27,7 +27,7 @@ from gearcam.gears.rolling import Wheel
 from gearcam.gears.spec import Finish
 from gearcam.jobs.job import Job, Progress
 from gearcam.jobs.written import Written, finish
-from gearcam.laws.base import RatioLaw
+from gearcam.laws.ratio.base import RatioLaw
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
