@@ -22,7 +22,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
-from gearcam.laws.formula import Formula
+from gearcam.laws.ratio.formula import Formula
 
 Array = NDArray[np.float64]
 Harmonics = tuple[tuple[int, float, float], ...]

@@ -14,7 +14,7 @@ import gearcam
 from gearcam.gears.spec import PairSpec, Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
-from gearcam.laws.base import LAWS
+from gearcam.laws.ratio.base import LAWS
 from gearcam.parts.blank import Blank
 
 PROFILES = Path(__file__).parent.parent / "profiles"

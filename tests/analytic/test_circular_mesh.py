@@ -15,7 +15,7 @@ import pytest
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import Rack
-from gearcam.laws.constant import Constant
+from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
 from gearcam.meshing.lens import lenses

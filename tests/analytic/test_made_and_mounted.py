@@ -15,7 +15,7 @@ import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.constant import Constant
+from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.study import study

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from gearcam.gears.rolling import Rolling, roll
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.formula import Formula
-from gearcam.laws.phases import Phases
-from gearcam.laws.span import Lobes
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.phases import Phases
+from gearcam.laws.ratio.span import Lobes
 from gearcam.tolerances import DEFAULT
 from witness import laws, oracle
 

@@ -12,10 +12,10 @@ import shapely
 from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.constant import Constant
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.phases import Phases
-from gearcam.laws.shapes import RoundedPolygon
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.phases import Phases
+from gearcam.laws.ratio.shapes import RoundedPolygon
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
 from helpers_pairs import job, profile

@@ -10,9 +10,9 @@ import pytest
 from claims.claim import LawParameters
 from gearcam.gears.checks import largest_module
 from gearcam.gears.spec import Rack
-from gearcam.laws.constant import Constant
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.formula import Formula
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.formula import Formula
 from helpers_pairs import job, profile
 
 SINE = math.sin(math.radians(20)) ** 2

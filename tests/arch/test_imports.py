@@ -187,26 +187,34 @@ def test_a_csv_build_loads_no_other_writer(tmp_path: Path) -> None:
     assert loaded.isdisjoint(UNWANTED)
 
 
-LAWS = {f"gearcam.laws.{path.stem}" for path in (rules.SOURCE / "laws").glob("*.py")}
+LAWS = {
+    ".".join(path.relative_to(rules.SOURCE.parent).with_suffix("").parts)
+    for path in (rules.SOURCE / "laws").rglob("*.py")
+}
 """All modules of laws and rises, with what they share."""
 
 
 @pytest.mark.parametrize(
     ("file", "other", "laws"),
     [
-        ("ellipse", "cams", {"base", "displacement", "driver", "ellipse", "entry", "span"}),
+        (
+            "ellipse",
+            "cams",
+            {"displacement", "entry"}
+            | {"ratio.base", "ratio.driver", "ratio.ellipse", "ratio.span"},
+        ),
         (
             "eccentric_cam",
             "gears",
             {
                 "displacement",
                 "entry",
-                "lift",
+                "program",
                 "phases_of_lift",
                 "placed",
-                "rise_pieces",
-                "rise_simple",
-                "rises",
+                "rises.pieces",
+                "rises.simple",
+                "rises.base",
             },
         ),
     ],
@@ -216,7 +224,7 @@ def test_a_build_loads_its_kind_and_its_law(
 ) -> None:
     loaded = _modules(tmp_path, f"profiles/{file}.toml", "--only", "csv")
     assert f"gearcam.{other}" not in loaded
-    assert {name.rpartition(".")[2] for name in loaded & LAWS} == laws
+    assert {name.removeprefix("gearcam.laws.") for name in loaded & LAWS} == laws
 
 
 def test_a_drawing_loads_its_writer(tmp_path: Path) -> None:

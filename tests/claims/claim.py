@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from gearcam.laws.base import RatioLaw
-from gearcam.laws.rises import RiseParameters
-from gearcam.laws.span import ONE_LOBE, Lobes
+from gearcam.laws.ratio.base import RatioLaw
+from gearcam.laws.ratio.span import ONE_LOBE, Lobes
+from gearcam.laws.rises.base import RiseParameters
 from gearcam.tolerances import Tolerances
 
 

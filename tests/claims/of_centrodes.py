@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from claims.claim import LawClaim
-from gearcam.laws.centrodes import EccentricCircle, Limacon, Lobed
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.rack import RackLaw
-from gearcam.laws.shapes import BSplineLaw, RoundedPolygon
-from gearcam.laws.span import Lobes
-from gearcam.laws.spiral import LogSpiral
+from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.rack import RackLaw
+from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
+from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.ratio.spiral import LogSpiral
 
 
 def eccentric_circle() -> tuple[LawClaim, ...]:

@@ -6,13 +6,13 @@ import math
 
 from claims.claim import LawClaim
 from claims.of_centrodes import CENTRODES
-from gearcam.laws.constant import Constant
-from gearcam.laws.formula import Formula
-from gearcam.laws.motion import MotionLaw
-from gearcam.laws.phases import Phases
-from gearcam.laws.programs import Fourier, Multispeed, ThreePhasePolynomial
-from gearcam.laws.span import Lobes
-from gearcam.laws.table import TableLaw
+from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.phases import Phases
+from gearcam.laws.ratio.position import MotionLaw
+from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.ratio.table import TableLaw
 
 
 def constant() -> tuple[LawClaim, ...]:

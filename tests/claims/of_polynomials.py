@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from claims.claim import RiseClaim
-from gearcam.laws.rise_polynomials import (
+from gearcam.laws.rises.base import RiseParameters
+from gearcam.laws.rises.polynomials import (
     Polynomial,
     Polynomial23,
     Polynomial345,
@@ -13,7 +14,6 @@ from gearcam.laws.rise_polynomials import (
     Polynomial4567,
     Polynomial56789,
 )
-from gearcam.laws.rises import RiseParameters
 
 
 def _claim(

@@ -6,11 +6,11 @@ import math
 
 from claims.claim import RiseClaim
 from claims.of_polynomials import POLYNOMIALS
-from gearcam.laws.rise_formula import FormulaRise
-from gearcam.laws.rise_points import BSplineRise, TableRise
-from gearcam.laws.rise_scca import ModifiedSine, ModifiedTrapezoid, Scca
-from gearcam.laws.rise_simple import ConstantAcceleration, ConstantVelocity, Cycloidal, Harmonic
-from gearcam.laws.rise_trapezoids import (
+from gearcam.laws.rises.formula import FormulaRise
+from gearcam.laws.rises.points import BSplineRise, TableRise
+from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
+from gearcam.laws.rises.simple import ConstantAcceleration, ConstantVelocity, Cycloidal, Harmonic
+from gearcam.laws.rises.trapezoids import (
     SineTrapezoidalVelocity,
     TrapezoidalAcceleration,
     TrapezoidalVelocity,

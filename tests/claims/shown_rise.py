@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.laws.rises import Rise
+from gearcam.laws.rises.base import Rise
 from gearcam.numeric.piecewise import extremes
 from gearcam.tolerances import DEFAULT
 

@@ -9,7 +9,7 @@ import pytest
 
 from claims.claim import LawClaim
 from claims.of_laws import LAW_CLAIMS
-from gearcam.laws.base import LAWS, RatioLaw
+from gearcam.laws.ratio.base import LAWS, RatioLaw
 from gearcam.tolerances import DEFAULT
 
 CLAIMS = [

@@ -17,9 +17,9 @@ from shapely import LinearRing
 
 from gearcam.gears.outline import Outline
 from gearcam.gears.track import Wheel
-from gearcam.laws.constant import Constant
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.formula import Formula
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.formula import Formula
 from gearcam.numeric.contour import polygon_area
 from helpers_distance import distances
 from helpers_pairs import job, profile

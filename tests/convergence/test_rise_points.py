@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from claims.shown_rise import ShownRise, shown
-from gearcam.laws.rise_points import TableRise
-from gearcam.laws.rise_simple import Cycloidal
+from gearcam.laws.rises.points import TableRise
+from gearcam.laws.rises.simple import Cycloidal
 from gearcam.tolerances import DEFAULT
 
 COUNTS = (8, 16, 32, 64)

@@ -11,7 +11,7 @@ import pytest
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import first_touch, touches
 from gearcam.meshing.idle import idle

@@ -100,7 +100,7 @@ def test_another_centre_distance_is_seen(shift: float) -> None:
     [("ratio = 1 + 0.25*cos(phi1)", (15, 30)), ("r1 = 1 + 0.1*cos(2*phi1)", (20, 30))],
 )
 def test_unequal_wheels_run_without_overlap_or_play(law: str, teeth: tuple[int, int]) -> None:
-    from gearcam.laws.formula import Formula
+    from gearcam.laws.ratio.formula import Formula
     from helpers_pairs import job
 
     name, text = law.split(" = ")

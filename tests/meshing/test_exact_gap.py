@@ -12,7 +12,7 @@ import pytest
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
 from helpers_pairs import job, profile

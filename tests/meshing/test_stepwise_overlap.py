@@ -12,7 +12,7 @@ import shapely
 from numpy.typing import NDArray
 
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.halves import Halves, halve
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import job, profile

@@ -22,17 +22,17 @@ import gearcam
 from gearcam.designs.design import changed
 from gearcam.errors import InfeasibleError
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.centrodes import EccentricCircle, Limacon, Lobed
-from gearcam.laws.constant import Constant
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.formula import Formula
-from gearcam.laws.motion import MotionLaw
-from gearcam.laws.phases import Phases
-from gearcam.laws.programs import Fourier, Multispeed, ThreePhasePolynomial
-from gearcam.laws.rack import RackLaw
-from gearcam.laws.shapes import BSplineLaw, RoundedPolygon
-from gearcam.laws.spiral import LogSpiral
-from gearcam.laws.table import TableLaw
+from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed
+from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.phases import Phases
+from gearcam.laws.ratio.position import MotionLaw
+from gearcam.laws.ratio.rack import RackLaw
+from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
+from gearcam.laws.ratio.spiral import LogSpiral
+from gearcam.laws.ratio.table import TableLaw
 from gearcam.meshing.halves import halve
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import explained, job
@@ -316,6 +316,6 @@ def test_two_hundred_designs_of_each_family(family: str) -> None:
 
 
 def test_every_family_of_the_registry_is_tried() -> None:
-    from gearcam.laws.base import LAWS
+    from gearcam.laws.ratio.base import LAWS
 
     assert set(FAMILIES) == set(LAWS)

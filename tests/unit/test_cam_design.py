@@ -29,7 +29,7 @@ from gearcam.laws.phases_of_lift import (
     RisePhase,
     SegmentPhase,
 )
-from gearcam.laws.rises import RISES
+from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import WheelBlank
 from helpers_cam_files import FLAT, ROLLER, SWINGING, changed, read
 

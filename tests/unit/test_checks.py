@@ -15,11 +15,11 @@ from gearcam.gears.centrode_checks import remote_cutter
 from gearcam.gears.checks import KIND, Subject, undercut
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.constant import Constant
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.formula import Formula
-from gearcam.laws.phases import Phases
-from gearcam.laws.programs import Fourier
+from gearcam.laws.ratio.composite import Fourier
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import job, profile
 
 HALF = (0.0, math.pi, 2 * math.pi)

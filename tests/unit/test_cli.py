@@ -19,8 +19,8 @@ from gearcam.errors import InfeasibleError, WriteError
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.laws.base import LAWS
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 
 GOOD = """\
 kind = "gear-pair"

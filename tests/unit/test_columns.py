@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from gearcam.laws.columns import ColumnsError, FromFile, read_rows, rows_of
-from gearcam.laws.rise_points import TableRise
-from gearcam.laws.span import ONE_LOBE
-from gearcam.laws.table import TableLaw
+from gearcam.laws.ratio.span import ONE_LOBE
+from gearcam.laws.ratio.table import TableLaw
+from gearcam.laws.rises.points import TableRise
 from gearcam.tolerances import DEFAULT
 
 POINTS = "x,y\n0,0\n0.25,0.125\n0.75,0.875\n1,1\n"

@@ -14,8 +14,8 @@ from gearcam.designs import document_of, loads
 from gearcam.errors import DesignError
 from gearcam.gears.spec import PairSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.phases import Phases
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.phases import Phases
 
 GOOD = """\
 kind = "gear-pair"

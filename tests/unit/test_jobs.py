@@ -16,10 +16,10 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.rolling import Centrode
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.constant import Constant
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.formula import Formula
-from gearcam.laws.phases import Phases
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.phases import Phases
 from gearcam.numeric.contour import polygon_area
 from helpers_pairs import job, profile
 

@@ -11,9 +11,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from gearcam.laws.lift import Program
 from gearcam.laws.phases_of_lift import PHASES, Phase, ReturnPhase, RisePhase, SegmentPhase
-from gearcam.laws.rises import ClosedForm
+from gearcam.laws.program import Program
+from gearcam.laws.rises.base import ClosedForm
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 from helpers_cams import TURN, back, dwell, program, rise, there_and_back
 

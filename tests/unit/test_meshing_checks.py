@@ -13,7 +13,7 @@ import pytest
 from gearcam.findings import CHECKS, Finding, run_checks
 from gearcam.gears.contact import DRIVE, flank_pairs
 from gearcam.gears.spec import Rack
-from gearcam.laws.constant import Constant
+from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.checks import KIND, clearances, spans
 from gearcam.meshing.drive_checks import contact_ratio
 from gearcam.meshing.settings import MeshingSpec

@@ -12,7 +12,7 @@ import pytest
 from gearcam.cli import main
 from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import BasicRack, Rack
-from gearcam.laws.ellipse import Ellipse
+from gearcam.laws.ratio.ellipse import Ellipse
 from helpers_pairs import job
 
 ELLIPSE = Ellipse(eccentricity=0.2)

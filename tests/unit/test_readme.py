@@ -20,9 +20,9 @@ from gearcam.designs import KINDS, document_of, loads
 from gearcam.findings import CHECKS
 from gearcam.kinds.cam.motion import phase_table, rise_table
 from gearcam.kinds.gear_pair.design import GearPairDesign, law_table
-from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 from gearcam.parts.mass import mass_properties
 from gearcam.quantities import Param
 

@@ -13,11 +13,11 @@ import shapely
 from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.constant import Constant
-from gearcam.laws.phases import Phases
-from gearcam.laws.programs import Fourier, Multispeed, ThreePhasePolynomial
-from gearcam.laws.shapes import RoundedPolygon
-from gearcam.laws.span import ONE_LOBE
+from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
+from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.phases import Phases
+from gearcam.laws.ratio.shapes import RoundedPolygon
+from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.tolerances import DEFAULT
 from helpers_pairs import job
 

@@ -19,7 +19,7 @@ from gearcam.console import remedy_lines
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.gears.bound import contact_bound
 from gearcam.gears.checks import Subject, largest_module
-from gearcam.laws.constant import Constant
+from gearcam.laws.ratio.constant import Constant
 from helpers_documents import followed, job_of, written
 from helpers_pairs import job
 from helpers_remedies import CIRCLE, ERRORS, NAIL, REFUSED, UNDER, WARNED, pair

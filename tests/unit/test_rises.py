@@ -16,10 +16,11 @@ from mpmath import mp
 from numpy.typing import NDArray
 
 from claims.shown_rise import ShownRise, shown
-from gearcam.laws.rise_formula import FormulaRise
-from gearcam.laws.rise_pieces import from_both_ends, lag
-from gearcam.laws.rise_points import BSplineRise, TableRise
-from gearcam.laws.rise_polynomials import (
+from gearcam.laws.rises.base import ClosedForm
+from gearcam.laws.rises.formula import FormulaRise
+from gearcam.laws.rises.pieces import from_both_ends, lag
+from gearcam.laws.rises.points import BSplineRise, TableRise
+from gearcam.laws.rises.polynomials import (
     Polynomial,
     Polynomial23,
     Polynomial345,
@@ -28,14 +29,13 @@ from gearcam.laws.rise_polynomials import (
     Polynomial56789,
     of_least_degree,
 )
-from gearcam.laws.rise_scca import ModifiedSine, ModifiedTrapezoid, Scca
-from gearcam.laws.rise_simple import ConstantAcceleration, Cycloidal, Harmonic
-from gearcam.laws.rise_trapezoids import (
+from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
+from gearcam.laws.rises.simple import ConstantAcceleration, Cycloidal, Harmonic
+from gearcam.laws.rises.trapezoids import (
     SineTrapezoidalVelocity,
     TrapezoidalAcceleration,
     TrapezoidalVelocity,
 )
-from gearcam.laws.rises import ClosedForm
 from gearcam.numeric.jets import Jet, polynomial, sin
 
 Array = NDArray[np.float64]

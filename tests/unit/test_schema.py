@@ -22,9 +22,9 @@ from gearcam.designs.schema import schema
 from gearcam.designs.template import template
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table
 from gearcam.kinds.gear_pair.design import law_table
-from gearcam.laws.base import LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.rises import RISES
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 
 PROFILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))
 GOOD: dict[str, Any] = {

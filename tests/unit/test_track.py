@@ -15,8 +15,8 @@ from gearcam.gears.outline import build_outline
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
 from gearcam.gears.track import ArcLength, Frames, Track
-from gearcam.laws.ellipse import Ellipse
-from gearcam.laws.span import Lobes
+from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes

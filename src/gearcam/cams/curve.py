@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from gearcam.cams.contact import Contact, contact
 from gearcam.cams.mechanism import Mechanism
-from gearcam.laws.lift import Program
+from gearcam.laws.program import Program
 from gearcam.numeric.jets import Jet
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.errors import InfeasibleError
-from gearcam.laws.lift import Program
+from gearcam.laws.program import Program
 
 _STANDSTILL = 1e-9
 """A face that swings down within this of the cam's own speed touches one point for a while."""

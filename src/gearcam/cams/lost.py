@@ -18,7 +18,7 @@ from gearcam.cams.curve import Array
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner
-from gearcam.laws.lift import Program
+from gearcam.laws.program import Program
 from gearcam.numeric.jets import Jet, acos, asin, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import extremes
 

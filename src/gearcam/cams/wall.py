@@ -26,7 +26,7 @@ from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, 
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, star_shaped, trimmed
 from gearcam.errors import InfeasibleError
-from gearcam.laws.lift import Program
+from gearcam.laws.program import Program
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.sampling import Sampler

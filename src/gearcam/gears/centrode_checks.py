@@ -9,7 +9,7 @@ import numpy as np
 
 from gearcam.findings import Finding, check
 from gearcam.gears.subject import KIND, ROUNDING, Subject
-from gearcam.laws.span import angle_text
+from gearcam.laws.ratio.span import angle_text
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
 CLOSURE = math.radians(1e-7)

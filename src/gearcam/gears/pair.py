@@ -17,8 +17,8 @@ from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import RACK, Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
 from gearcam.gears.track import Wheel
-from gearcam.laws.base import RatioLaw
-from gearcam.laws.span import Lobes
+from gearcam.laws.ratio.base import RatioLaw
+from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
 from gearcam.tolerances import Tolerances

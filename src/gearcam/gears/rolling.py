@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.gears.guide import Guide, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
-from gearcam.laws.base import RatioLaw
+from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.jets import Jet, sqrt

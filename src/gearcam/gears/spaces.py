@@ -15,8 +15,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.flank import Curve, Rows, Toothing
-from gearcam.gears.sampling import WheelCurves
+from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.tips import TipEnds
 from gearcam.gears.undercut import Undercut
 from gearcam.numeric.arrays import Plane

@@ -1,5 +1,5 @@
 """Transmission-ratio laws, rises and lift programs: what displacement is wanted.
 
-The registries `gearcam.laws.base.LAWS` and `gearcam.laws.rises.RISES` load a law when it is asked
-for. Depends on numpy alone.
+The registries `gearcam.laws.ratio.base.LAWS` and `gearcam.laws.rises.base.RISES` load a law when
+it is asked for. Depends on numpy alone.
 """

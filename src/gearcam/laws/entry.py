@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
+
+TYPED: Final = 1e-9
+"""Miss, in rad or in parts, that digits typed or printed may leave: it is taken out."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,88 +1,16 @@
-"""Laws by formula: the driven angle, the ratio, or the shape of the driver centrode, in phi1."""
+"""Formulas of laws as functions of jets, which bring their derivatives with them."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, RatioLaw, make_law
-from gearcam.laws.driver import demand_positive, law_of_centrode
-from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
-from gearcam.laws.span import (
-    PLACES,
-    TYPED,
-    Lobes,
-    Span,
-    angle_text,
-    open_travel,
-    rough,
-    span_of,
-    travel_problems,
-)
-from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
-from gearcam.numeric.piecewise import Piece
-from gearcam.quantities import TEXT, param
-from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
-
-_NAMES = ("phi2", "ratio", "r1")
-
-_PLACES_OF_LOBE = 257
-"""Places at which a lobe is compared with the first: two formulas that agree there are one."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Formula:
-    """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
-
-    With `driver_travel` and `driven_travel` the pair is open.
-    """
-
-    phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
-    ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
-    r1: str | None = param(TEXT, default=None, doc="driver centrode's radius at any scale")
-    driver_travel: float | None = open_travel("driver")
-    driven_travel: float | None = open_travel("driven wheel")
-
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
-        """Yield what is wrong by reading: field, index, message, allowed."""
-        given = [name for name in _NAMES if getattr(self, name) is not None]
-        if len(given) != 1:
-            state = "none is given" if not given else f"{' and '.join(given)} are given"
-            yield given[-1] if given else "phi2", None, state, "exactly one of phi2, ratio, r1"
-        for name in given:
-            yield from formula_problems(name, getattr(self, name))
-        yield from travel_problems(self.driver_travel, self.driven_travel)
-
-    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        """Return the law for `lobes`, to `tolerances`.
-
-        Raises
-        ------
-        InfeasibleError
-            Where the formula is not finite, smooth, monotonic or periodic, or does not close.
-        """
-        span = span_of(lobes, self.driver_travel, self.driven_travel)
-        if self.phi2 is not None:
-            return from_phi2(compiled(self.phi2), span, tolerances)
-        name = "ratio" if self.ratio is not None else "r1"
-        function = compiled(getattr(self, name) or "1")
-        demand_positive(values_of(function), name, span)
-        _demand_repeats(function, name, span)
-        if self.ratio is None:
-            return law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
-        try:
-            return _from_ratio(function, span, tolerances)
-        except NotSmoothError as error:
-            raise rough(name, error) from error
 
 
 def formula_problems(
@@ -114,25 +42,6 @@ def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:
     return lambda x: function(Jet.variable(x, 0)).derivatives()[0]
 
 
-def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
-    """Refuse a formula that is not the same in every lobe of the driver."""
-    x = np.linspace(0.0, lobes.period, _PLACES_OF_LOBE)
-    first = values_of(function)(x)
-    for lobe in range(1, lobes.n1):
-        other = values_of(function)(x + lobe * lobes.period)
-        bad = ~(np.abs(other - first) <= TYPED * np.abs(first).max())
-        if bad.any():
-            place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
-            raise InfeasibleError(
-                f"{name} is not periodic: it must repeat every "
-                f"{math.degrees(lobes.period):.6g} deg for these tooth counts",
-                where=angle_text(place + lobe * lobes.period),
-                value=wrong,
-                limit=right,
-                nearest=f"the limit is its value one lobe before; use functions of {lobes.n1}*phi1",
-            )
-
-
 def derivative(function: Callable[..., Jet]) -> Callable[..., Jet]:
     """Return the derivative of a function of jets, itself one.
 
@@ -152,72 +61,3 @@ def derivative(function: Callable[..., Jet]) -> Callable[..., Jet]:
         return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
 
     return slope
-
-
-def from_phi2(
-    phi2: Callable[[Jet], Jet],
-    lobes: Span,
-    tolerances: Tolerances,
-    solved: dict[str, float] | None = None,
-) -> RatioLaw:
-    """Make a law from phi2: the ratio is its derivative, and phi2 its integral in closed form.
-
-    Parameters
-    ----------
-    phi2 : callable
-        ``phi2(jet) -> jet``, rad, any constant.
-    lobes : Lobes or Travel
-        Over whose period.
-    tolerances : Tolerances
-        Accuracy.
-    solved : dict, optional
-        What was solved already.
-
-    Returns
-    -------
-    RatioLaw
-
-    Raises
-    ------
-    InfeasibleError
-        Where phi2 is not finite, smooth or rising, or does not close.
-    """
-    ratio = derivative(phi2)
-    x = np.linspace(0.0, lobes.period, PLACES)
-    values, slopes = phi2(Jet.variable(x, 1)).derivatives()
-    bad = ~np.isfinite(values) | ~np.isfinite(slopes)
-    if bad.any():
-        raise InfeasibleError("phi2 is not finite", where=angle_text(x[bad][0]))
-    if (slopes <= 0).any():
-        place = int(np.argmax(slopes <= 0))
-        raise InfeasibleError(
-            "phi2 is not monotonic: the driven wheel would turn back",
-            where=angle_text(x[place]),
-            value=float(slopes[place]),
-            limit=0.0,
-            nearest="this is the ratio there, which must be positive",
-        )
-    try:
-        expand(values_of(ratio), [0.0, lobes.period], tolerances.expansion)
-    except NotSmoothError as error:
-        raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
-    return make_law(lobes, [0.0, lobes.period], [Piece(ratio, phi2)], tolerances, solved)
-
-
-def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances) -> RatioLaw:
-    """Make a law from a ratio up to a factor, which closure decides."""
-    total = expand(values_of(shape), [0.0, lobes.period], tolerances.expansion).antiderivative()
-    factor = lobes.advance / total.last
-    piece = Piece(lambda x: factor * shape(x))
-    return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})
-
-
-LAWS.register(
-    LawEntry(
-        name="formula",
-        example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
-        doc="one formula in phi1: phi2 (closes by itself), ratio (scaled), or r1 (any scale)",
-        continuity="analytic where the formula is",
-        source="003 Table 1.1, the three hypotheses",
-    ),
-)

@@ -51,7 +51,7 @@ class DwellPhase:
 class RisePhase:
     """The follower rises by a law.
 
-    The law's parameters stand in `shape`, made by its entry in `gearcam.laws.rises.RISES`.
+    The law's parameters stand in `shape`, made by its entry in `gearcam.laws.rises.base.RISES`.
     """
 
     angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")

@@ -12,7 +12,7 @@ from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.mechanism import Mechanism, make_mechanism
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.kinds.cam.design import CamDesign
-from gearcam.laws.lift import Program, make_program
+from gearcam.laws.program import Program, make_program
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank

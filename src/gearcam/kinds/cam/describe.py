@@ -11,7 +11,7 @@ from gearcam.designs.template import entry_lines, key_line, law_comment
 from gearcam.kinds.cam.design import KIND
 from gearcam.kinds.cam.motion import LIFT, WITH_LAW, phase_table, rise_table, summary, twins
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.rises import RISES
+from gearcam.laws.rises.base import RISES
 
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:

@@ -20,7 +20,7 @@ from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase
-from gearcam.laws.rises import RISES
+from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param

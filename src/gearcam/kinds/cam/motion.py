@@ -1,6 +1,6 @@
 """The array ``[[motion]]`` of a cam: its phases, each with the keys of its type and of its law.
 
-A rise and a return have a ``law`` of the registry `gearcam.laws.rises.RISES`, whose parameters
+A rise and a return have a ``law`` of the registry `gearcam.laws.rises.base.RISES`, whose parameters
 stand beside the keys of the phase.
 """
 
@@ -17,7 +17,7 @@ from gearcam.designs.lines import Path
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
-from gearcam.laws.rises import RISES
+from gearcam.laws.rises.base import RISES
 
 TITLE: Final = "motion"
 

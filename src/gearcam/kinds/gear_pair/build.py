@@ -20,7 +20,7 @@ from gearcam.gears.spec import Finish
 from gearcam.gears.steps import leads, stepped
 from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.laws.base import RatioLaw
+from gearcam.laws.ratio.base import RatioLaw
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank

@@ -9,7 +9,7 @@ from gearcam.designs.listing import Listed, listed
 from gearcam.designs.schema import chosen, table_schema, told
 from gearcam.designs.template import beside, entry_lines, key_line, law_comment
 from gearcam.kinds.gear_pair.design import KIND, law_table
-from gearcam.laws.base import LAWS
+from gearcam.laws.ratio.base import LAWS
 
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:

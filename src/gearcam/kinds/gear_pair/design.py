@@ -16,7 +16,7 @@ from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
 from gearcam.gears.spec import PairSpec, Rack, StepsSpec
 from gearcam.gears.subject import KIND as TEETH_KIND
-from gearcam.laws.base import LAWS
+from gearcam.laws.ratio.base import LAWS
 from gearcam.meshing.settings import KIND as MESHING_KIND
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import KIND as PARTS_KIND

@@ -13,7 +13,7 @@ from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
 from gearcam.gears.subject import KIND
-from gearcam.laws.span import angle_text
+from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from fractions import Fraction
 from typing import ClassVar, Final
 
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rise_pieces import about, from_both_ends, product, total
-from gearcam.laws.rises import RISES, ClosedForm
+from gearcam.laws.rises.base import RISES, ClosedForm
+from gearcam.laws.rises.pieces import about, from_both_ends, product, total
 from gearcam.numeric.piecewise import Piecewise, piecewise
 from gearcam.quantities import NUMBER, param
 

@@ -9,10 +9,10 @@ import math
 from dataclasses import dataclass
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, RatioLaw, make_law
-from gearcam.laws.driver import LOBES, demand_lobes, law_of_centrode
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.driver import LOBES, demand_lobes, law_of_centrode
+from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import COUNT, NUMBER, param

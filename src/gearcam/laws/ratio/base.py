@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import RackTravel, Span, angle_text, continued, rough
+from gearcam.laws.ratio.span import RackTravel, Span, angle_text, continued, rough
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
@@ -145,7 +145,7 @@ class RatioLaw(Displacement):
 
 _HOMES: Final = {
     "phases": ("phases",),
-    "programs": ("three-phase-polynomial", "multispeed", "fourier"),
+    "composite": ("three-phase-polynomial", "multispeed", "fourier"),
     "constant": ("constant",),
     "ellipse": ("ellipse",),
     "centrodes": ("eccentric-circle", "limacon", "lobed"),
@@ -153,12 +153,12 @@ _HOMES: Final = {
     "spiral": ("log-spiral",),
     "formula": ("formula",),
     "table": ("table",),
-    "motion": ("motion",),
+    "position": ("motion",),
     "rack": ("rack",),
 }
 
 LAWS: Final[Registry[LawEntry]] = Registry(
-    "law", {f"gearcam.laws.{home}": names for home, names in _HOMES.items()}
+    "law", {f"gearcam.laws.ratio.{home}": names for home, names in _HOMES.items()}
 )
 """The laws by name."""
 

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes, Travel, demand_equal
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.span import Lobes, Travel, demand_equal
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import ANGLE, NUMBER, param

@@ -15,10 +15,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from gearcam.laws.entry import LawEntry
-from gearcam.laws.rise_pieces import from_half, lag
-from gearcam.laws.rises import NARROWEST, RISES, ClosedForm
-from gearcam.laws.span import TYPED
+from gearcam.laws.entry import TYPED, LawEntry
+from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
+from gearcam.laws.rises.pieces import from_half, lag
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import NUMBER, param

@@ -13,15 +13,14 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, FromFile
-from gearcam.laws.entry import LawEntry
-from gearcam.laws.rise_pieces import about, product, spline, total
-from gearcam.laws.rises import (
+from gearcam.laws.entry import TYPED, LawEntry
+from gearcam.laws.rises.base import (
     NARROWEST,
     RISES,
     ClosedForm,
     Rise,
 )
-from gearcam.laws.span import TYPED
+from gearcam.laws.rises.pieces import about, product, spline, total
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param

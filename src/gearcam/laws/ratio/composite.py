@@ -10,11 +10,11 @@ from itertools import zip_longest
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.phases import arcs_law, one_lobe
-from gearcam.laws.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
-from gearcam.laws.transitions import ARCS, SMOOTH
+from gearcam.laws.ratio.arcs import ARCS, SMOOTH
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.phases import arcs_law, one_lobe
+from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.numeric.jets import Jet, cos, sin
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rise_pieces import from_half, lag
-from gearcam.laws.rises import NARROWEST, RISES, ClosedForm
+from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
+from gearcam.laws.rises.pieces import from_half, lag
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import NUMBER, param

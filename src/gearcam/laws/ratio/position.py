@@ -9,12 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import compiled, formula_problems, from_phi2, values_of
+from gearcam.laws.formula import compiled, formula_problems, values_of
 from gearcam.laws.formula_syntax import VARIABLE
-from gearcam.laws.slider import crank_angle, make_slide
-from gearcam.laws.span import Lobes, Span, open_travel, span_of, travel_problems
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.formula import from_phi2
+from gearcam.laws.ratio.slider import crank_angle, make_slide
+from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of, travel_problems
 from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 

@@ -10,10 +10,10 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
-from gearcam.laws.transitions import ARCS, Arc
+from gearcam.laws.ratio.arcs import ARCS, Arc
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
 

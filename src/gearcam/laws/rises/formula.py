@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.entry import LawEntry
+from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import compiled, formula_problems
-from gearcam.laws.rises import RISES, Rise
-from gearcam.laws.span import TYPED
+from gearcam.laws.rises.base import RISES, Rise
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise

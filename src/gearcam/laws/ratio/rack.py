@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import compiled, derivative, formula_problems, values_of
-from gearcam.laws.span import PLACES, Lobes, RackTravel, angle_text, rough
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.span import PLACES, Lobes, RackTravel, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.quantities import TEXT, param

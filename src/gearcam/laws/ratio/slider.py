@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.formula import derivative
-from gearcam.laws.span import SAME, angle_text
+from gearcam.laws.ratio.span import SAME, angle_text
 from gearcam.numeric.jets import Jet, asin, atan, polynomial, slope, sqrt
 from gearcam.numeric.piecewise import Piece, extremes
 

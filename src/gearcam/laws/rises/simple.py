@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rise_pieces import from_half, lag, reflected
-from gearcam.laws.rises import NARROWEST, RISES, ClosedForm
+from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
+from gearcam.laws.rises.pieces import from_half, lag, reflected
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 from gearcam.quantities import NUMBER, param

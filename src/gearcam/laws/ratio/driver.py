@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import RatioLaw, make_law
-from gearcam.laws.span import PLACES, Lobes, Span, angle_text, rough
+from gearcam.laws.ratio.base import RatioLaw, make_law
+from gearcam.laws.ratio.span import PLACES, Lobes, Span, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, piecewise

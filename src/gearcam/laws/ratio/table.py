@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.columns import ColumnsError, CsvRows, FromFile
-from gearcam.laws.driver import law_of_centrode
-from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import TYPED, Lobes, Span, Travel, angle_text, demand_equal, open_travel
+from gearcam.laws.entry import TYPED, LawEntry
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.driver import law_of_centrode
+from gearcam.laws.ratio.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
 from gearcam.numeric.jets import polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics

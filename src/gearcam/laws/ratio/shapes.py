@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.base import LAWS, RatioLaw, make_law
-from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes
+from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.driver import law_of_centrode
+from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root

@@ -84,19 +84,19 @@ class ClosedForm(ABC):
 
 
 _HOMES: Final = {
-    "rise_simple": ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal"),
-    "rise_polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
-    "rise_trapezoids": (
+    "simple": ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal"),
+    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
+    "trapezoids": (
         "trapezoidal-velocity",
         "sine-trapezoidal-velocity",
         "trapezoidal-acceleration",
     ),
-    "rise_scca": ("modified-trapezoid", "modified-sine", "scca"),
-    "rise_points": ("b-spline", "table"),
-    "rise_formula": ("formula",),
+    "scca": ("modified-trapezoid", "modified-sine", "scca"),
+    "points": ("b-spline", "table"),
+    "formula": ("formula",),
 }
 
 RISES: Final[Registry[LawEntry]] = Registry(
-    "rise", {f"gearcam.laws.{home}": names for home, names in _HOMES.items()}
+    "rise", {f"gearcam.laws.rises.base.{home}": names for home, names in _HOMES.items()}
 )
 """The rises by name."""

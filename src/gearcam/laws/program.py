@@ -29,7 +29,7 @@ from gearcam.laws.phases_of_lift import (
     program_problems,
 )
 from gearcam.laws.placed import PlacedLaws, PlacedPiece, placed
-from gearcam.laws.rises import Rise, RiseParameters
+from gearcam.laws.rises.base import Rise, RiseParameters
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import polynomial
 from gearcam.numeric.piecewise import (
