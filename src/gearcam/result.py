@@ -109,6 +109,32 @@ class Result(ABC):
     def _facts(self, measured: Mapping[str, Any]) -> Facts:
         return KINDS[self.design.kind].room("facts").facts(self, measured)
 
+    def files(self, kind: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:
+        """Return the files of one kind.
+
+        Parameters
+        ----------
+        kind : str
+            One that ``output.files`` may list.
+        measured : dict, optional
+            What is measured on them is written down here.
+
+        Returns
+        -------
+        dict of str to bytes
+            Contents by file name.
+
+        Raises
+        ------
+        DesignError
+            If designs of this kind have no such files.
+        InfeasibleError
+            If they cannot be made.
+        """
+        _demand_formats(self.design, (kind,))
+        makers = KINDS[self.design.kind].room("files").FILES
+        return makers[kind](self, {} if measured is None else measured)
+
     def check(self, directory: str | Path = "output") -> Written:
         """Run the checks and write the summary only; files of an earlier build stay.
 
@@ -168,13 +194,12 @@ class Result(ABC):
         for step, attribute in self.stages.items():
             tell(step)
             getattr(self, attribute)
-        makers = KINDS[self.design.kind].room("files").FILES
         contents: dict[str, bytes] = {}
         measured: dict[str, Any] = {}
         for kind in kinds:
             tell(kind)
             with self.stage(kind):
-                contents |= makers[kind](self, measured)
+                contents |= self.files(kind, measured)
         tell("writing")
         there: dict[str, str | None] = dict.fromkeys(contents)
         return self._write_all(directory, contents, there, measured, self.findings)

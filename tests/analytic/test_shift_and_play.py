@@ -16,6 +16,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.shapes import RoundedPolygon
+from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
 from helpers_pairs import job, profile
@@ -75,7 +76,7 @@ FREE: dict[str, tuple[Any, tuple[int, int]]] = {
 def test_shifted_wheels_still_run_exactly(name: str, x: float) -> None:
     law, teeth = FREE[name]
     made = job(law, teeth, module=2.0, x=x)
-    found = study(made.gears, MeshingSpec(steps=60)).summary
+    found = numbers(study(made.gears, MeshingSpec(steps=60)))
     assert found["transmission_error"]["peak_to_peak"] < 1e-13
     assert abs(found["transmission_error"]["mean_lag"]) < 1e-13
     assert found["interference_steps"] == 0
@@ -87,7 +88,7 @@ def test_the_play_is_what_was_asked_for(name: str) -> None:
     """To first order in it: the wheels turn about their shafts, not along the pitch line."""
     law, teeth = FREE[name]
     made = job(law, teeth, module=2.0, backlash=0.02)
-    found = study(made.gears, MeshingSpec(steps=60)).summary
+    found = numbers(study(made.gears, MeshingSpec(steps=60)))
     assert found["backlash_mm"]["min"] == pytest.approx(0.02, rel=5e-2)
     assert found["backlash_mm"]["max"] == pytest.approx(0.02, rel=5e-2)
 

@@ -127,7 +127,7 @@ def test_numbers_without_their_file_fail() -> None:
 
 @pytest.mark.parametrize("name", sorted(EXPECTED))
 def test_a_file_shows_its_numbers(name: str) -> None:
-    summary = profile(name).summary()
+    summary = profile(name).facts.document
     assert summary["name"] == name
     assert list(misses(summary, EXPECTED[name])) == []
     assert [gear["undercut_teeth"] for gear in summary["gears"]] == UNDERCUT[name]
@@ -136,7 +136,7 @@ def test_a_file_shows_its_numbers(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(CAM_NUMBERS))
 def test_a_cam_shows_its_numbers(name: str) -> None:
-    summary = gearcam.build(gearcam.load(PROFILES / f"{name}.toml")).summary()
+    summary = gearcam.build(gearcam.load(PROFILES / f"{name}.toml")).facts.document
     assert summary["name"] == name
     assert list(misses(summary, CAM_NUMBERS[name])) == []
     errors = [finding for finding in summary["findings"] if finding["severity"] == "error"]
@@ -144,7 +144,7 @@ def test_a_cam_shows_its_numbers(name: str) -> None:
 
 
 def test_a_wrong_number_is_seen() -> None:
-    summary = profile("ellipse").summary()
+    summary = profile("ellipse").facts.document
     off = {"pair.center_distance_mm": (41.9606757804 + 2e-10, 1e-10)}
     assert len(list(misses(summary, off))) == 1
 

@@ -298,7 +298,7 @@ def test_a_pair_has_a_file_for_each_wheel_and_one_for_both() -> None:
     output = replace(design.output, chord_tolerance=0.01, kerf=KERF)
     made = GearPairResult(
         replace(design, output=output, blank=Blank(bore_diameter=(8.0, 6.0)))
-    )._export("cut-svg", {})
+    ).files("cut-svg", {})
     assert set(made) == {"gear1_cut.svg", "gear2_cut.svg", "cut.svg"}
     assert "half a kerf of 0.2 mm" in made["cut.svg"].decode()
     sheets = {name: sheet_of(data) for name, data in made.items()}
@@ -316,7 +316,7 @@ def test_a_cam_is_cut_without_its_pitch_curve(kerf: float) -> None:
 
     design = read(ROLLER)
     job = CamResult(replace(design, output=replace(design.output, kerf=kerf)))
-    made = job._export("cut-svg", {})
+    made = job.files("cut-svg", {})
     assert set(made) == {"cam_cut.svg", "cut.svg"}
     (line,) = sheet_of(made["cam_cut.svg"]).lines
     size = job.cam.size
@@ -328,7 +328,7 @@ def test_a_cam_is_cut_without_its_pitch_curve(kerf: float) -> None:
 def test_stepped_wheels_have_a_file_for_each_step() -> None:
     design = profile("stepped_ellipse").design
     output = replace(design.output, chord_tolerance=0.02)
-    made = GearPairResult(replace(design, output=output))._export("cut-svg", {})
+    made = GearPairResult(replace(design, output=output)).files("cut-svg", {})
     wheels = [f"gear{wheel}_step{step}_cut.svg" for wheel in (1, 2) for step in (1, 2, 3, 4)]
     assert set(made) == {*wheels, "cut.svg"}
     assert len(sheet_of(made["cut.svg"]).regions("outline")) == 8

@@ -13,7 +13,6 @@ import pytest
 
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
-from gearcam.kinds.gear_pair.files import export
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 
@@ -29,7 +28,7 @@ def job(name: str, count: int = 7, **blank: Any) -> GearPairResult:
 
 def read(made: GearPairResult) -> dict[str, np.ndarray]:
     """The file, by the standard library's reader."""
-    text = export(made, "inspection", {})["inspection.csv"].decode("ascii")
+    text = made.files("inspection")["inspection.csv"].decode("ascii")
     rows = list(csv.DictReader(io.StringIO(text)))
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 

@@ -52,7 +52,7 @@ def job(kerf: float = 0.0, **sizes: Any) -> GearPairResult:
 @cache
 def files(kind: str, kerf: float = 0.0, **sizes: Any) -> dict[str, bytes]:
     extras: dict[str, Any] = {}
-    made = job(kerf, **sizes)._export(kind, extras)
+    made = job(kerf, **sizes).files(kind, extras)
     if kind == "dxf":
         assert max(extras["dxf"]["error_mm"].values()) <= TOLERANCE
     return made
@@ -97,7 +97,7 @@ def test_the_pair_is_drawn_as_it_is_whatever_the_kerf() -> None:
 
 
 def test_what_is_said_of_the_part_is_the_same_but_for_the_kerf() -> None:
-    plain, cut = job().summary(), job(KERF).summary()
+    plain, cut = job().facts.document, job(KERF).facts.document
     assert cut.pop("kerf_mm") == KERF
     for one in (plain, cut):
         one.pop("timings_s")
@@ -143,7 +143,7 @@ def test_paths_are_measured_however_they_are_drawn(curves: str) -> None:
     output = replace(made.design.output, dxf_curves=curves)
     other = GearPairResult(replace(made.design, output=output))
     extras: dict[str, Any] = {}
-    data = other._export("dxf", extras)["gear1.dxf"]
+    data = other.files("dxf", extras)["gear1.dxf"]
     assert 0.05 * TOLERANCE < extras["dxf"]["error_mm"]["gear1.dxf"] <= TOLERANCE
     layers = {entity.dxf.layer for entity in read_dxf(data).modelspace()}
     assert layers == {"OUTLINE_KERF", "BORE_KERF", "HOLE_KERF", "MARK"}
@@ -163,15 +163,15 @@ def cam(kerf: float = 0.0, clearance: float = 0.0, **blank: Any) -> CamResult:
 def test_a_cam_s_path_has_the_area_that_steiner_says() -> None:
     """A parallel at d of a closed curve: A + L*d + pi*d^2, A and L by quadrature."""
     made, d = cam(kerf=0.3), 0.15
-    ((path,),) = (regions(made._export("dxf", {})["cam.dxf"])["PROFILE_KERF"],)
+    ((path,),) = (regions(made.files("dxf", {})["cam.dxf"])["PROFILE_KERF"],)
     size = made.cam.size
     wanted = size.area + size.perimeter * d + math.pi * d**2
     assert path.area == pytest.approx(wanted, abs=size.perimeter * 1e-3)
     (true, *_) = cut_drawing(wheel_drawing(made.part), 0.3).contours
     assert true.moments.area == pytest.approx(wanted, rel=1e-9)
     assert abs(path.area - size.area) > 20.0
-    assert made._export("csv", {}) == cam()._export("csv", {})
-    assert made._export("stl", {}) == cam()._export("stl", {})
+    assert made.files("csv", {}) == cam().files("csv", {})
+    assert made.files("stl", {}) == cam().files("stl", {})
 
 
 def test_clearance_makes_another_part() -> None:
@@ -179,20 +179,20 @@ def test_clearance_makes_another_part() -> None:
     made, c = cam(clearance=0.25), 0.25
     size, width = made.cam.size, made.design.cam.thickness
     area = size.area - size.perimeter * c + math.pi * c**2
-    mesh = trimesh.load(io.BytesIO(made._export("stl", {})["cam.stl"]), file_type="stl")
+    mesh = trimesh.load(io.BytesIO(made.files("stl", {})["cam.stl"]), file_type="stl")
     assert isinstance(mesh, trimesh.Trimesh)
     assert mesh.volume == pytest.approx(area * width, abs=size.perimeter * width * 2e-3)
-    found = made.summary()["cam"]["profile"]
+    found = made.facts.document["cam"]["profile"]
     assert found["area_mm2"] == pytest.approx(area, rel=1e-9)
     assert found["clearance_mm"] == c
     assert "perimeter_mm" not in found
-    rows = made._export("csv", {})["profile.csv"].decode().splitlines()[1:]
+    rows = made.files("csv", {})["profile.csv"].decode().splitlines()[1:]
     ring = shapely.Polygon([tuple(map(float, row.split(","))) for row in rows])
     assert ring.area == pytest.approx(area, abs=size.perimeter * 1e-3)
-    ((drawn,),) = (regions(made._export("dxf", {})["cam.dxf"])["PROFILE"],)
+    ((drawn,),) = (regions(made.files("dxf", {})["cam.dxf"])["PROFILE"],)
     assert drawn.area == pytest.approx(area, abs=size.perimeter * 1e-3)
     points = np.genfromtxt(
-        io.BytesIO(made._export("inspection", {})["inspection.csv"]), delimiter=",", names=True
+        io.BytesIO(made.files("inspection", {})["inspection.csv"]), delimiter=",", names=True
     )
     away = shapely.distance(drawn.boundary, shapely.points(points["x_mm"], points["y_mm"]))
     assert len(points) == made.design.output.inspection_points
@@ -200,8 +200,11 @@ def test_clearance_makes_another_part() -> None:
 
 
 def test_clearance_is_in_all_that_is_said_of_a_wheel() -> None:
-    plain, clear = job().summary()["gears"][0], job(0.0, clearance=(0.1, 0.0)).summary()["gears"][0]
-    other = job(0.0, clearance=(0.1, 0.0)).summary()["gears"][1]
+    plain, clear = (
+        job().facts.document["gears"][0],
+        job(0.0, clearance=(0.1, 0.0)).facts.document["gears"][0],
+    )
+    other = job(0.0, clearance=(0.1, 0.0)).facts.document["gears"][1]
     assert clear["clearance_mm"] == 0.1
     assert plain["root_radius_min_mm"] - clear["root_radius_min_mm"] == pytest.approx(0.1, abs=5e-3)
     ring = job().gear1.profile.contour.polygon.buffer(-0.1)
@@ -216,10 +219,10 @@ def test_clearance_is_in_all_that_is_said_of_a_wheel() -> None:
 
 
 def test_a_path_is_no_profile_to_follow() -> None:
-    data = cam(kerf=0.3)._export("dxf", {})["cam.dxf"]
+    data = cam(kerf=0.3).files("dxf", {})["cam.dxf"]
     with pytest.raises(DxfError, match="PROFILE_KERF holds the path of a cutter"):
         read_outline(data)
-    assert len(read_outline(cam()._export("dxf", {})["cam.dxf"])[0]) > 10
+    assert len(read_outline(cam().files("dxf", {})["cam.dxf"])[0]) > 10
 
 
 def part(**sizes: Any) -> Part:

@@ -17,7 +17,7 @@ import pytest
 
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
-from gearcam.kinds.gear_pair.files import export, poses
+from gearcam.kinds.gear_pair.files import poses
 from gearcam.parts.blank import Blank
 from gearcam.parts.mass import mass_properties
 from helpers_pairs import profile
@@ -35,7 +35,7 @@ def job(name: str = "ellipse") -> GearPairResult:
 
 @cache
 def files(kind: str) -> dict[str, bytes]:
-    return export(job(), kind, {})
+    return job().files(kind)
 
 
 def centroid(corners: np.ndarray) -> tuple[float, np.ndarray]:

@@ -9,7 +9,6 @@ import pytest
 
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
-from gearcam.kinds.gear_pair.files import export
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 from helpers_step_read import read_step
@@ -27,7 +26,7 @@ def job() -> GearPairResult:
 
 @pytest.fixture(scope="module")
 def files(job: GearPairResult) -> dict[str, bytes]:
-    return export(job, "step", {})
+    return job.files("step")
 
 
 @pytest.mark.parametrize("number", [0, 1])
@@ -68,7 +67,7 @@ def test_a_non_circular_wheel_keeps_its_volume(name: str, bore: float) -> None:
         blank=Blank(bore_diameter=(bore, 0.0), tip_rounding=(0.3, 0.0)),
     )
     job = GearPairResult(design)
-    made = export(job, "step", {})
+    made = job.files("step")
     for part in job.parts:
         (solid,) = read_step(made[f"{part.name}.step"])
         assert solid.volume == pytest.approx(part.volume, rel=1e-6)

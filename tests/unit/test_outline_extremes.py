@@ -76,7 +76,7 @@ def json_clean(made: GearPairResult) -> bool:
     """Whether no number of the summary is infinite or not a number."""
     import json
 
-    return bool(json.dumps(made.summary(), allow_nan=False))
+    return bool(json.dumps(made.facts.document, allow_nan=False))
 
 
 def built(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairResult:
