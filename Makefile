@@ -3,6 +3,8 @@
 # make lint    style, types, import contracts
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
 # make peers   compare flanks with those of another package
+# make compare BASE=COMMIT [N=50] [SEED=1] [MORE=...]   what both make of N random designs of each
+#              kind and of the gallery; MORE goes to tools/compare.py, which tells of its options
 # make matrix  the tests with every supported Python found, and with the lowest and the newest versions
 # make lock    renew requirements.lock    make clean   remove environments, caches and output
 #
@@ -20,7 +22,7 @@ RUN    := run install
 TEST   := $(RUN) step test
 
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench peers matrix lock clean help
+.PHONY: demo test lint slow bench peers compare matrix lock clean help
 
 help:
 	@sed -n '/^$$/q; s/^# \{0,1\}//p' Makefile
@@ -45,6 +47,9 @@ bench: $(VENV)/.bench
 
 peers: $(VENV)/.bench
 	$(BIN)/python benchmarks/agreement.py
+
+compare: $(VENV)/.test
+	$(BIN)/python tools/compare.py $(BASE) --count $(or $(N),50) --seed $(or $(SEED),1) $(MORE)
 
 matrix:
 	@MAKE="$(MAKE)" tools/matrix

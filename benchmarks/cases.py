@@ -61,11 +61,15 @@ over all; the last doubling may cost 10 % more than twice, for the noise."""
 OVERLAP_NOTE = """\
 Driver 0.005 degrees ahead; gearcam in blocks of phases, as in the study. The whole outlines are
 turned and intersected by shapely at every phase, which gives one number; gearcam's rows say the
-tooth pair, length and place of every piece. Both give the same area. How many times faster:
-{listed}."""
+tooth pair, length and place of every piece. Both give the same area. The target was 20 times, while
+facing halves were overlapped as graphs of their edges. That saved a tenth of a study and took 480
+lines beside the polygons, which were needed anyway: what is asked for since is what the polygons
+alone do. How many times faster: {listed}."""
 CHILD = """
 import json, resource, statistics, sys, time, tracemalloc
 import gearcam
+from gearcam.numeric.memory import keep_freed_memory
+keep_freed_memory()
 design = gearcam.load(sys.argv[1])
 def both():
     job = gearcam.build(design)
@@ -255,7 +259,7 @@ def growth() -> Result:
 
 def against_whole_outlines(tries: int = 7) -> Result:
     """(e) Overlap by pair of teeth against the intersection of the whole outlines."""
-    advance, rows, linear = math.radians(0.005), [], {}
+    overclosure, rows, linear = math.radians(0.005), [], {}
     designs = {"nail machine": gearcam.load(NAIL)} | {
         f"ellipse, z = {teeth}": load(ELLIPSE.format(teeth=teeth, tolerance="0.001"))
         for teeth in (40, 160, 640)
@@ -273,11 +277,11 @@ def against_whole_outlines(tries: int = 7) -> Result:
         )
         phases = {n: np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (360, 1440)}
         cases = {
-            f"gearcam, {name}, {n} steps": partial(_by_blocks, turning, p, advance)
+            f"gearcam, {name}, {n} steps": partial(_by_blocks, turning, p, overclosure)
             for n, p in phases.items()
         }
         cases[f"whole outlines, {name}, 360 steps"] = partial(
-            _whole, outlines, turning, phases[360], advance
+            _whole, outlines, turning, phases[360], overclosure
         )
         *mine, whole = in_turns(cases, tries)
         rows += [*mine, whole]
@@ -287,25 +291,27 @@ def against_whole_outlines(tries: int = 7) -> Result:
     listed = ", ".join(f"{name} {value:.1f}" for name, value in ratios.items())
     return Result(
         title="(e) Overlap of 360 phases against whole outlines",
-        asked="at least 20 times faster at 1 um; linear in steps",
+        asked="at least 5 times faster at 1 um; linear in steps",
         found=f"{ratio:.1f} times on the nail machine; 4 times the steps take "
         f"{max(linear.values()):.1f} times as long at most",
-        passed=ratio >= 20 and max(linear.values()) <= 4.8,
+        passed=ratio >= 5 and max(linear.values()) <= 4.8,
         body=[*table(rows), "", OVERLAP_NOTE.format(listed=listed)],
     )
 
 
-def _by_blocks(turning: Turning, phases: Any, advance: float) -> list[Any]:
+def _by_blocks(turning: Turning, phases: Any, overclosure: float) -> list[Any]:
     """Overlaps as the study asks for them."""
-    return [turning.overlaps(part, advance) for part in np.split(phases, len(phases) // BLOCK)]
+    return [turning.overlaps(part, overclosure) for part in np.split(phases, len(phases) // BLOCK)]
 
 
-def _whole(outlines: tuple[Any, Any], turning: Turning, phases: Any, advance: float) -> list[float]:
+def _whole(
+    outlines: tuple[Any, Any], turning: Turning, phases: Any, overclosure: float
+) -> list[float]:
     """Areas of the whole outlines' intersections."""
     areas = []
     for phi in phases:
         turned = (
-            outlines[0] * np.exp(-1j * (phi + advance)),
+            outlines[0] * np.exp(-1j * (phi + overclosure)),
             outlines[1] * np.exp(1j * turning.rolling.law.phi2(phi)) + turning.distance,
         )
         one, two = (shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in turned)

@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 import cam_cases
 import cases
 import law_cases
+from gearcam.numeric.memory import keep_freed_memory
 from measuring import ROOT, Result, environment
 
 PAGE = ROOT / "docs" / "performance.md"
@@ -32,6 +33,7 @@ def page(results: list[Result]) -> str:
 
 
 def main() -> int:
+    keep_freed_memory()  # as the command line does
     results = []
     for case in (
         cases.whole_process,

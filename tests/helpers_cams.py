@@ -165,6 +165,12 @@ def dense(made: DiscCam) -> Plane:
     return -np.conj(points) if made.clockwise else points
 
 
+def pieces_of(made: DiscCam) -> list[Plane]:
+    """Return the points of each smooth piece, seen as if the cam turned counter-clockwise."""
+    runs = [run.points @ [1.0, 1j] for whole in made.contour.runs for run in whole.pieces]
+    return [-np.conj(points) for points in runs] if made.clockwise else runs
+
+
 def corners_of(made: DiscCam) -> Plane:
     """Return the vertices of the polygon, seen as if the cam turned counter-clockwise."""
     points = made.contour.vertices @ [1.0, 1j]

@@ -14,9 +14,9 @@ from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
 from gearcam.gears.track import Wheel
-from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.phases import Phases
+from gearcam.laws.span import Lobes
 from gearcam.tolerances import DEFAULT
 from witness import laws
 from witness.kinematics import Basic, Rolling

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import logging
 import os
 import shlex
 import sys
 import textwrap
 import time
 import traceback
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -31,6 +29,7 @@ from gearcam.console import (
     infeasible_text,
     law_lines,
     progress_bar,
+    quieten,
     remedy_lines,
     say,
 )
@@ -82,9 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="backslashreplace")  # pyright: ignore[reportAttributeAccessIssue]
     words = list(sys.argv[1:] if arguments is None else arguments)
     if arguments is None and not (sys.warnoptions or "--debug" in words or os.environ.get(DEBUG)):
-        # libraries warn programmers; errors are told all the same
-        warnings.simplefilter("ignore")
-        logging.getLogger().addHandler(logging.NullHandler())
+        quieten()
     try:
         _dispatch(words)
     except SystemExit as stop:
@@ -356,6 +353,9 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     start = time.perf_counter()
     design = load(file) if adapt is None else adapt(load(file))
     _demand_new_name(design, file, names)
+    from gearcam.numeric.memory import keep_freed_memory
+
+    keep_freed_memory()
     result = build(design)
     try:
         with progress_bar(file) as progress:

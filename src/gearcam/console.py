@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import os
 import sys
 import textwrap
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
@@ -208,6 +210,12 @@ def progress_bar(file: str) -> Iterator[Callable[[str, int, int], None] | None]:
             bar.update(task, description=f"{file}: {stage}", completed=done, total=total)
 
         yield advance
+
+
+def quieten() -> None:
+    """Keep back what libraries warn programmers of; errors are told all the same."""
+    warnings.simplefilter("ignore")
+    logging.getLogger().addHandler(logging.NullHandler())
 
 
 def say(text: str) -> None:

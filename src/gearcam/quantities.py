@@ -80,7 +80,7 @@ class Param:
 
 
 def param(quantity: Quantity = NUMBER, *, default: Any = REQUIRED, **rest: Any) -> Any:
-    """Return a dataclass field that knows its quantity; `rest` and meaning as of `Param`."""
+    """Return a dataclass field of a `quantity` with a `default`; `rest` goes to `Param`."""
     return dataclasses.field(default=default, metadata={"param": Param(quantity, **rest)})
 
 

@@ -96,6 +96,8 @@ def solid(body: Body) -> Mesh:
     ------
     SolidError
         If the solid comes out empty or open, or lost a part of its volume.
+    TypeError
+        If this kind of body is not registered.
     """
     raise TypeError(f"a {type(body).__name__} makes no solid")
 
@@ -163,6 +165,11 @@ def volume_error(body: Body) -> float:
     float, mm^3
         Chord error and grid times length, for every edge over its height: every chord lies within
         its error of the curve, so the area between them is at most that.
+
+    Raises
+    ------
+    TypeError
+        If this kind of body is not registered.
     """
     raise TypeError(f"a {type(body).__name__} makes no solid")
 

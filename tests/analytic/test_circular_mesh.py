@@ -154,9 +154,9 @@ def test_play_at_another_centre_distance(teeth: tuple[int, int], rack: Rack, mor
 @pytest.mark.parametrize(("teeth", "rack"), CASES)
 def test_lens_areas(teeth: tuple[int, int], rack: Rack) -> None:
     _, gears = spur(teeth, rack)
-    advance = math.radians(0.005)
+    overclosure = math.radians(0.005)
     phases = np.linspace(0.0, 2.0 * math.pi / teeth[0], 41)
-    found = lenses(flank_pairs(gears, DRIVE), phases, advance)
+    found = lenses(flank_pairs(gears, DRIVE), phases, overclosure)
     whole = np.isfinite(found.closed)
     assert np.count_nonzero(whole) > 30
     # near the base circle the curvature changes within the lens

@@ -11,8 +11,8 @@ from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
-from gearcam.laws.base import Lobes
 from gearcam.laws.constant import Constant
+from gearcam.laws.span import Lobes
 from gearcam.tolerances import DEFAULT
 from witness import oracle
 from witness.oracle import mp

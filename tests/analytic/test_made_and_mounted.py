@@ -17,6 +17,7 @@ from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.constant import Constant
 from gearcam.meshing.contact import contacts
+from gearcam.meshing.numbers import numbers
 from gearcam.meshing.study import study
 from gearcam.parts.blank import Blank
 from helpers_pairs import job
@@ -107,7 +108,7 @@ def test_the_ladder_of_distances_is_told(distance: float, ratio: float) -> None:
     """20 : 20, m = 2: what a person reads after ``mesh --center``."""
     made = Wheels((20, 20)).job
     spec = replace(made.design.meshing, center_distance=distance, steps=40)
-    found = study(made.gears, spec).summary["contact_ratio"]
+    found = numbers(study(made.gears, spec))["contact_ratio"]
     assert found["min"] == pytest.approx(ratio, abs=5e-5)
     assert found["max"] == pytest.approx(ratio, abs=5e-5)
 
@@ -116,7 +117,7 @@ def test_the_ladder_of_distances_is_told(distance: float, ratio: float) -> None:
 def test_play_of_the_parts_is_what_the_study_and_the_note_say(case: dict) -> None:
     truth = Wheels(**case)
     made = truth.job
-    found = study(made.gears, replace(made.design.meshing, steps=36)).summary
+    found = numbers(study(made.gears, replace(made.design.meshing, steps=36)))
     assert found["backlash_mm"]["min"] == pytest.approx(
         2.0 * truth.lag(truth.designed) * truth.radii[1], abs=1e-9
     )

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from gearcam.gears.rolling import Rolling, roll
-from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
+from gearcam.laws.span import Lobes
 from gearcam.tolerances import DEFAULT
 from witness import laws, oracle
 

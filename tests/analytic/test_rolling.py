@@ -10,10 +10,10 @@ import pytest
 
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.track import Wheel
-from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
+from gearcam.laws.span import Lobes
 from gearcam.tolerances import DEFAULT
 
 LAWS = {

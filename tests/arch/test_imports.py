@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import re
@@ -122,6 +123,41 @@ def test_an_early_import_is_caught(tmp_path: Path, code: str, caught: bool) -> N
     sample = tmp_path / "sample.py"
     sample.write_text(code)
     assert bool(rules.heavy_import_faults(sample)) is caught
+
+
+def _foreign_to_witnesses(code: str) -> set[str]:
+    """What a witness imports beside the standard library and what it may depend on."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(code)):
+        if isinstance(node, ast.ImportFrom):
+            names.add(node.module or ".")
+        elif isinstance(node, ast.Import):
+            names.update(name.name for name in node.names)
+    return {name.split(".")[0] for name in names} - sys.stdlib_module_names - WITNESSES
+
+
+WITNESSES = frozenset({"witness", "helpers_distance", "numpy", "shapely", "mpmath"})
+
+
+def test_witnesses_share_no_code_with_the_program() -> None:
+    tests = rules.ROOT / "tests"
+    files = [*rules.python_files(tests / "witness"), tests / "helpers_distance.py"]
+    assert len(files) > 5
+    found = {path.name: _foreign_to_witnesses(path.read_text(encoding="utf-8")) for path in files}
+    assert {name: what for name, what in found.items() if what} == {}
+
+
+@pytest.mark.parametrize(
+    ("code", "caught"),
+    [
+        ("from gearcam.cams.follow import follow\n", {"gearcam"}),
+        ("def f():\n    import gearcam.gears\n", {"gearcam"}),
+        ("from helpers_cams import cam\n", {"helpers_cams"}),
+        ("import math\nfrom witness.cam_sweep import pairs\nimport numpy as np\n", set()),
+    ],
+)
+def test_a_witness_that_imports_the_program_is_caught(code: str, caught: set[str]) -> None:
+    assert _foreign_to_witnesses(code) == caught
 
 
 def _modules(tmp_path: Path, *arguments: str) -> set[str]:

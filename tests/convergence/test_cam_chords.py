@@ -57,7 +57,7 @@ def test_the_area_converges_with_the_square_of_the_vertices(kind: str) -> None:
 def test_the_lift_converges_with_the_square_of_the_vertices(kind: str) -> None:
     theta, errors = angles(500), []
     for made in (at(kind, float(tolerance)) for tolerance in TOLERANCES):
-        found = follow(corners_of(made), made.mechanism, theta, smooth=False)
+        found = follow(corners_of(made), made.mechanism, theta)
         errors.append(np.abs(found.lift - made.program.derivatives(theta, 0)[0]).max())
     assert slope(counts(kind), errors) == pytest.approx(-2.0, abs=0.1)
     assert errors[-1] * lever(at(kind, float(TOLERANCES[-1]))) < 2.0 * TOLERANCES[-1]

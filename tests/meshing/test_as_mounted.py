@@ -15,7 +15,7 @@ from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import first_touch, touches
 from gearcam.meshing.idle import idle
-from gearcam.meshing.numbers import harmonics
+from gearcam.meshing.numbers import harmonics, numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, study
 from gearcam.parts.blank import Blank
@@ -99,15 +99,15 @@ def test_what_drives_where_no_flanks_touch(more: float, edges: bool) -> None:
 
 
 def test_stepwise_outlines_count_the_pairs_that_are_told_off_centre() -> None:
-    """Outlines with a small advance: as many overlap as have a common normal, but at changes."""
+    """A small overclosure: as many outlines overlap as have a common normal, but at changes."""
     made = profile("ellipse")
     spec = MeshingSpec(
-        steps=90, advance=math.radians(5e-4), center_distance=made.pair.center_distance + 0.2
+        steps=90, overclosure=math.radians(5e-4), center_distance=made.pair.center_distance + 0.2
     )
     found = study(made.gears, spec)
-    assert found.summary["interference_steps"] == 0
-    assert found.summary["agreement"]["steps_apart"] <= 1
-    assert found.summary["agreement"]["inside"] < 0.02
+    assert numbers(found)["interference_steps"] == 0
+    assert numbers(found)["agreement"]["steps_apart"] <= 1
+    assert numbers(found)["agreement"]["inside"] < 0.02
 
 
 def mounted(more: float, **settings: object) -> Meshing:
@@ -120,7 +120,7 @@ def test_harmonics_make_up_the_lag() -> None:
     """The series, with its mean, is the lag again, as far as its orders go; the rest is small."""
     found = mounted(0.1, steps=32 * 8)
     lead = found.every("lead")
-    error = found.summary["transmission_error"]
+    error = numbers(found)["transmission_error"]
     assert error["mean_lag"] == pytest.approx(-lead.mean(), abs=1e-15)
     assert error["peak_to_peak"] == pytest.approx(np.ptp(lead), abs=1e-15)
     assert [one["order"] for one in error["harmonics"]] == list(range(1, 3 * 32 + 1))
@@ -154,7 +154,7 @@ def test_harmonics_of_a_known_lag(turns: int) -> None:
     ],
 )
 def test_harmonics_are_refused_with_the_reason(settings: dict, reason: str) -> None:
-    error = mounted(0.0, **settings).summary["transmission_error"]
+    error = numbers(mounted(0.0, **settings))["transmission_error"]
     assert "harmonics" not in error
     assert reason in error["no_harmonics"]
 

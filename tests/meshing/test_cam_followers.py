@@ -1,9 +1,10 @@
 """From a motion to a profile and back: the follower on the finished cam moves as it was asked to.
 
-The follower sees points only. On the exact curve it repeats the lift within 1e-9 mm, on the polygon
-within the chord tolerance: a profile that is off by d along its normal lifts the follower by
-``d/cos(alpha)``, over its lever if it swings. On an undercut cam it does so wherever it does not
-rest on a corner, and there it loses what the cam says.
+On the exact curve the witness, which sees the points of its smooth pieces only, repeats the lift
+within 1e-9 mm; on the polygon the program does within the chord tolerance: a profile that is off by
+d along its normal lifts the follower by ``d/cos(alpha)``, over its lever if it swings. On an
+undercut cam the witness does so wherever it does not rest on a corner, and there it loses what the
+cam says.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ import pytest
 
 from gearcam.cams.disc import DiscCam
 from gearcam.cams.follow import follow
-from gearcam.cams.mechanism import Mechanism
 from helpers_cams import (
     KINDS,
     TURN,
@@ -27,13 +27,14 @@ from helpers_cams import (
     angles,
     cam,
     corners_of,
-    dense,
     lever,
+    pieces_of,
     resting,
     stiffness,
     witness_of,
 )
-from witness.cam_sweep import Exact, Motion, dot, mp
+from witness.cam_sweep import Exact, Follower, Motion, dot, mp
+from witness.follower import rest
 
 DEGREES = (80.0, 70.0, 110.0, 100.0)
 CHORD = 1e-3
@@ -41,10 +42,13 @@ EXACT = 1e-9
 THETA = angles(180)
 
 
-def missing(made: DiscCam, theta: Array, follower: Mechanism | None = None) -> Array:
-    """Lift asked for less that found on the exact curve, mm or rad."""
-    found = follow(dense(made), follower or made.mechanism, theta, smooth=True)
-    return made.program.derivatives(theta, 0)[0] - found.lift
+def missing(made: DiscCam, follower: Follower, theta: Array, **changed: float) -> Array:
+    """Lift asked for less that found by the witness on the exact curve, mm or rad.
+
+    `changed` are other sizes of the follower, which begins at the place of this one all the same.
+    """
+    position = rest(pieces_of(made), replace(follower, **changed), theta).position
+    return made.program.derivatives(theta, 0)[0] - (position - float(follower.start(mp)))
 
 
 @pytest.mark.parametrize("clockwise", [False, True])
@@ -52,14 +56,14 @@ def missing(made: DiscCam, theta: Array, follower: Mechanism | None = None) -> A
 def test_the_exact_profile_gives_the_lift_asked_for(kind: str, clockwise: bool) -> None:
     made = cam(kind, "3-4-5", 8.0, DEGREES, clockwise=clockwise, tolerance=3e-4)
     assert made.corners == ()
-    assert np.abs(missing(made, THETA)).max() * lever(made) < EXACT
+    assert np.abs(missing(made, witness_of(kind), THETA)).max() * lever(made) < EXACT
 
 
 @pytest.mark.parametrize("clockwise", [False, True])
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_polygon_gives_it_within_the_tolerance(kind: str, clockwise: bool) -> None:
     made = cam(kind, "3-4-5", 8.0, DEGREES, clockwise=clockwise, tolerance=CHORD)
-    found = follow(corners_of(made), made.mechanism, THETA, smooth=False)
+    found = follow(corners_of(made), made.mechanism, THETA)
     asked = made.program.derivatives(THETA, 0)[0]
     # in mm along the normal; the contact moves by half a chord, and alpha with it by a few percent
     off = (found.lift - asked) / stiffness(made, THETA)
@@ -72,24 +76,24 @@ def test_the_polygon_gives_it_within_the_tolerance(kind: str, clockwise: bool) -
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_cam_read_backwards_is_seen(kind: str) -> None:
     made = cam(kind, "3-4-5", 8.0, DEGREES)
-    points = np.conj(dense(made)) * -1.0
-    found = follow(points, made.mechanism, THETA, smooth=True)
-    off = found.lift - made.program.derivatives(THETA, 0)[0]
+    follower, pieces = witness_of(kind), [-np.conj(piece) for piece in pieces_of(made)]
+    lift = rest(pieces, follower, THETA).position - float(follower.start(mp))
+    off = lift - made.program.derivatives(THETA, 0)[0]
     assert np.abs(off).max() * lever(made) > 1.0
 
 
 @pytest.mark.parametrize("kind", ["point", "roller, offset", "roller, offset back", "domed"])
 def test_the_sign_of_the_offset_is_seen(kind: str) -> None:
     made = cam(kind, "3-4-5", 8.0, DEGREES)
-    other = replace(made.mechanism, offset=-made.mechanism.offset)
-    assert np.abs(missing(made, THETA, other)).max() > 0.5
+    follower = witness_of(kind)
+    assert np.abs(missing(made, follower, THETA, offset=-follower.offset)).max() > 0.5
 
 
 @pytest.mark.parametrize("kind", ["swinging face, near", "swinging face, far"])
 def test_the_sign_of_the_face_offset_is_seen(kind: str) -> None:
     made = cam(kind, "3-4-5", 8.0, DEGREES)
-    other = replace(made.mechanism, face_offset=-made.mechanism.face_offset)
-    assert np.abs(missing(made, THETA, other)).max() * lever(made) > 5.0
+    follower = witness_of(kind)
+    assert np.abs(missing(made, follower, THETA, face=-follower.face)).max() * lever(made) > 5.0
 
 
 @pytest.mark.parametrize(
@@ -100,15 +104,15 @@ def test_the_sign_of_the_face_offset_is_seen(kind: str) -> None:
         ("domed", "radius"),
         ("swinging roller", "radius"),
         ("swinging dome", "radius"),
-        ("swinging face", "face_offset"),
-        ("swinging face, far", "face_offset"),
+        ("swinging face", "face"),
+        ("swinging face, far", "face"),
     ],
 )
 def test_a_micrometre_is_seen(kind: str, size: str) -> None:
     """A face that is 1 um larger lifts by 1 um over cos(alpha), to first order."""
     made = cam(kind, "3-4-5", 8.0, DEGREES)
-    larger = replace(made.mechanism, **{size: getattr(made.mechanism, size) + CHORD})
-    rise = -missing(made, THETA, larger)
+    follower = witness_of(kind)
+    rise = -missing(made, follower, THETA, **{size: getattr(follower, size) + CHORD})
     np.testing.assert_allclose(rise, CHORD * stiffness(made, THETA), rtol=2e-3)
 
 
@@ -206,8 +210,9 @@ def test_a_velocity_that_falls_undercuts_at_a_point(name: str) -> None:
     [*((name, False) for name in (*UNDERCUT, *CORNERS)), ("roller", True), ("swinging face", True)],
 )
 def test_a_trimmed_cam_loses_what_it_says(name: str, clockwise: bool) -> None:
-    made = built(name, clockwise)
-    off, rests = missing(made, THETA) * lever(made), resting(made, THETA)
+    made, case = built(name, clockwise), {**UNDERCUT, **CORNERS}[name]
+    follower = witness_of(case[0], **case[4])
+    off, rests = missing(made, follower, THETA) * lever(made), resting(made, THETA)
     assert rests.any()
     assert np.abs(off[~rests]).max() < EXACT
     assert off.min() > -EXACT
@@ -215,10 +220,12 @@ def test_a_trimmed_cam_loses_what_it_says(name: str, clockwise: bool) -> None:
     assert off.max() <= max(lost) + EXACT
     assert max(lost) == pytest.approx(made.shortfall * lever(made), rel=1e-15)
     at = np.array([loss.theta for loss in made.lost])
-    np.testing.assert_allclose(missing(made, at) * lever(made), lost, rtol=0.0, atol=EXACT)
+    np.testing.assert_allclose(
+        missing(made, follower, at) * lever(made), lost, rtol=0.0, atol=EXACT
+    )
     # it is the largest: the lift beside it is lost less
     for turn in (-1e-3, 1e-3):
-        assert np.all(missing(made, at + turn) * lever(made) < np.array(lost))
+        assert np.all(missing(made, follower, at + turn) * lever(made) < np.array(lost))
 
 
 @pytest.mark.parametrize("name", [*UNDERCUT, *CORNERS])

@@ -17,10 +17,10 @@ from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
 from gearcam.gears.track import Wheel
-from gearcam.laws.base import Lobes
 from gearcam.laws.ellipse import Ellipse
 from gearcam.laws.formula import Formula
 from gearcam.laws.phases import Phases
+from gearcam.laws.span import Lobes
 from gearcam.tolerances import DEFAULT
 from witness import laws, oracle
 from witness.oracle import mp

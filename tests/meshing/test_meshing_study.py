@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,20 +17,20 @@ from gearcam.gears.subject import Subject
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
-from gearcam.meshing.numbers import pairs_in_contact
+from gearcam.meshing.numbers import numbers, pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, Setup, mount, run, study
 from gearcam.tolerances import DEFAULT
 from helpers_pairs import job, profile
 
 NAILS = ("nail_machine_two_phase", "nail_machine_three_phase")
-ADVANCE = math.radians(0.005)
+OVERCLOSURE = math.radians(0.005)
 TURN = np.radians(np.arange(360.0))
 
 
 @cache
-def full_turn(name: str, advance: float) -> Meshing:
-    return study(profile(name).gears, MeshingSpec(advance=advance))
+def full_turn(name: str, overclosure: float) -> Meshing:
+    return study(profile(name).gears, MeshingSpec(overclosure=overclosure))
 
 
 def codes(meshing: Meshing) -> dict[str, str]:
@@ -41,14 +40,11 @@ def codes(meshing: Meshing) -> dict[str, str]:
 def moved(setup: Setup, tooth: int, by: float) -> Setup:
     """The pair with a tooth of the driver moved along the pitch curve, outline and flanks."""
     halves, count = setup.turning.driver, setup.turning.driver.count
-    parts: list[Any] = []
     angle = by / float(np.abs(setup.turning.rolling.tracks[0].frames(np.array([0.0])).p[0]))
-    for some in (halves, halves.edges):
-        points = some.points.copy()
-        for half in (2 * tooth - 2, (2 * tooth - 3) % count):
-            points[some.starts[half] : some.starts[half + 1]] *= np.exp(1j * angle)
-        parts.append(replace(some, points=points))
-    driver = replace(parts[0], edges=parts[1])
+    points = halves.points.copy()
+    for half in (2 * tooth - 2, (2 * tooth - 3) % count):
+        points[halves.starts[half] : halves.starts[half + 1]] *= np.exp(1j * angle)
+    driver = replace(halves, points=points)
     sf = setup.pairs[DRIVE].flanks[0].sf.copy()
     sf[[tooth - 1, count // 2 + tooth - 1]] += by
     pairs = {
@@ -60,10 +56,10 @@ def moved(setup: Setup, tooth: int, by: float) -> Setup:
 
 
 @pytest.mark.parametrize("name", NAILS)
-@pytest.mark.parametrize("advance", [ADVANCE, -ADVANCE])
-def test_a_full_turn_runs_clean(name: str, advance: float) -> None:
-    meshing = full_turn(name, advance)
-    found = meshing.summary
+@pytest.mark.parametrize("overclosure", [OVERCLOSURE, -OVERCLOSURE])
+def test_a_full_turn_runs_clean(name: str, overclosure: float) -> None:
+    meshing = full_turn(name, overclosure)
+    found = numbers(meshing)
     assert found["complete"]
     assert found["steps_done"] == 360
     assert found["interference_steps"] == 0
@@ -76,9 +72,9 @@ def test_a_full_turn_runs_clean(name: str, advance: float) -> None:
 
 
 @pytest.mark.parametrize("name", NAILS)
-@pytest.mark.parametrize("advance", [ADVANCE, -ADVANCE])
-def test_outlines_and_exact_flanks_agree(name: str, advance: float) -> None:
-    agreement = full_turn(name, advance).summary["agreement"]
+@pytest.mark.parametrize("overclosure", [OVERCLOSURE, -OVERCLOSURE])
+def test_outlines_and_exact_flanks_agree(name: str, overclosure: float) -> None:
+    agreement = numbers(full_turn(name, overclosure))["agreement"]
     assert agreement["inside"] < 0.02
     assert agreement["steps_apart"] <= 1
     assert agreement["clipped_mm2"] < 3e-3
@@ -86,11 +82,11 @@ def test_outlines_and_exact_flanks_agree(name: str, advance: float) -> None:
 
 @pytest.mark.parametrize("name", NAILS)
 def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(name: str) -> None:
-    """Edges overlap by half a lens outside their arcs: the advance must be small.
+    """Edges overlap by half a lens outside their arcs: the overclosure must be small.
 
     Where an undercut flank ends its mate is nearly parallel, and the lens is long.
     """
-    meshing = study(profile(name).gears, MeshingSpec(advance=math.radians(5e-4), steps=180))
+    meshing = study(profile(name).gears, MeshingSpec(overclosure=math.radians(5e-4), steps=180))
     pairs, phi = meshing.setup.pairs[DRIVE], meshing.phi1
     stepwise, unloaded = pairs_in_contact(meshing), pairs.carrying(phi)
     assert np.all(stepwise >= unloaded)
@@ -106,11 +102,11 @@ def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(name: s
 
 
 @pytest.mark.parametrize("name", NAILS)
-def test_held_back_the_flanks_come_apart_by_the_advance(name: str) -> None:
-    meshing = full_turn(name, ADVANCE)
-    held, setup = meshing.summary["held_back_gap_mm"], meshing.setup
+def test_held_back_the_flanks_come_apart_by_the_overclosure(name: str) -> None:
+    meshing = full_turn(name, OVERCLOSURE)
+    held, setup = numbers(meshing)["held_back_gap_mm"], meshing.setup
     assert held["min"] == pytest.approx(setup.penetration, rel=0.02)
-    assert held["max"] <= ADVANCE * setup.lever * 1.01
+    assert held["max"] <= OVERCLOSURE * setup.lever * 1.01
 
 
 @pytest.mark.parametrize("by", [0.02, -0.02])
@@ -130,7 +126,7 @@ def test_a_tooth_moved_by_20_um_is_found(by: float) -> None:
         # where it is alone the driven wheel lags until it touches; where not, the others carry
         assert broken.every("lead").min() == pytest.approx(-shift, rel=0.05)
         assert broken.every("lead").max() == pytest.approx(0.0, abs=1e-9)
-        assert broken.summary["pairs_in_contact"] == whole.summary["pairs_in_contact"]
+        assert numbers(broken)["pairs_in_contact"] == numbers(whole)["pairs_in_contact"]
 
 
 def test_a_tooth_that_only_the_outline_moves_is_found_by_its_depth() -> None:
@@ -149,7 +145,7 @@ def test_half_a_pitch_off_phase_is_found() -> None:
     setup = mount(made.gears, MeshingSpec())
     radius = np.abs(made.pair.rolling.tracks[1].frames(TURN[::10]).p)
     lead = 0.5 * math.pi * made.pair.module / radius
-    found = setup.turning.overlaps(TURN[::10], ADVANCE, lead)
+    found = setup.turning.overlaps(TURN[::10], OVERCLOSURE, lead)
     areas = np.bincount(found.step, found.area, minlength=36)
     assert areas.min() > made.pair.module**2
 
@@ -158,11 +154,11 @@ def test_half_a_pitch_off_phase_is_found() -> None:
 def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
     made = profile(name)
     close = study(made.gears, MeshingSpec(steps=72, center_distance=179.9))
-    assert close.summary["interference_steps"] == 72
+    assert numbers(close)["interference_steps"] == 72
     assert codes(close)["interference"] == "error"
     wide = study(made.gears, MeshingSpec(steps=72, center_distance=180.1))
-    assert wide.summary["interference_steps"] == 0
-    play = wide.every("play")
+    assert numbers(wide)["interference_steps"] == 0
+    turns = wide.every("backlash") / wide.every("along")
     phi = wide.phi1
     tangent = made.pair.rolling.tracks[0].frames(phi).t * np.exp(-1j * phi)
     tilt = np.arctan2(tangent.real, tangent.imag)
@@ -170,13 +166,13 @@ def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
     radius = np.abs(made.pair.rolling.tracks[1].frames(phi).p)
     # to first order: the force lines of both sides cut the line of centres at alpha +- tilt
     expected = 0.1 * (np.tan(alpha + tilt) + np.tan(alpha - tilt)) / radius
-    assert np.all(np.abs(play / expected - 1.0) < 0.01)
+    assert np.all(np.abs(turns / expected - 1.0) < 0.01)
     along = 0.1 * (np.tan(alpha + tilt) + np.tan(alpha - tilt)) * np.cos(tilt)
     assert np.all(np.abs(wide.every("backlash") / along - 1.0) < 0.01)
-    # and the outlines say the same: turned by all of the play, the other flanks touch
+    # and the outlines say the same: turned by all of the backlash, the other flanks touch
     turning, error = wide.setup.turning, wide.every("lead")
     for share, free in ((0.999, True), (1.001, False)):
-        found = turning.overlaps(phi, 0.0, error + share * play)
+        found = turning.overlaps(phi, 0.0, error + share * turns)
         touched = np.unique(found.step[found.depth > wide.setup.noise])
         assert (len(touched) == 0) == free
 
@@ -197,7 +193,7 @@ def test_an_interruption_keeps_the_steps_done() -> None:
             raise KeyboardInterrupt
 
     meshing = study(profile(NAILS[0]).gears, MeshingSpec(steps=300), stop)
-    found = meshing.summary
+    found = numbers(meshing)
     assert not found["complete"]
     assert 0 < found["steps_done"] < found["steps"] == 300
     assert meshing.columns["phi1_deg"].max() < 180.0
@@ -215,8 +211,8 @@ def test_teeth_choose_the_phases() -> None:
 
 def test_both_sides_are_those_of_the_motion() -> None:
     """With the driver ahead it is the drive side that overlaps, held back the other."""
-    for advance, side in ((ADVANCE, DRIVE), (-ADVANCE, COAST)):
-        columns = full_turn(NAILS[0], advance).columns
+    for overclosure, side in ((OVERCLOSURE, DRIVE), (-OVERCLOSURE, COAST)):
+        columns = full_turn(NAILS[0], overclosure).columns
         assert set(columns["side"].tolist()) == {float(side)}
 
 

@@ -1,9 +1,10 @@
-"""Stepwise overlap against the intersection of the whole outlines, and graphs against polygons."""
+"""Stepwise overlap against the intersection of the whole outlines, and of every two halves."""
 
 from __future__ import annotations
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from helpers_pairs import job, profile
 
 Array = NDArray[np.float64]
 
-ADVANCE = math.radians(0.005)
+OVERCLOSURE = math.radians(0.005)
 TURN = np.radians(np.arange(360.0))
 
 
@@ -38,7 +39,7 @@ def whole_areas(made: GearPairResult, distance: float, angles: Array, lead: floa
     areas = []
     for phi in angles:
         turned = (
-            made.gear1.outline @ [1, 1j] * np.exp(-1j * (phi + ADVANCE)),
+            made.gear1.outline @ [1, 1j] * np.exp(-1j * (phi + OVERCLOSURE)),
             made.gear2.outline @ [1, 1j] * np.exp(1j * (made.law.phi2(phi) + lead)) + distance,
         )
         one, two = (shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in turned)
@@ -69,43 +70,45 @@ def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float) -> N
     turning = turning_of(made, shift * module)
     angles = np.radians(np.linspace(0.0, 360.0, 9) + 0.3)
     for lead in np.array([0.0, 0.01, -0.01, 0.2, -0.4]) * module / turning.distance:
-        found = turning.overlaps(angles, ADVANCE, lead)
+        found = turning.overlaps(angles, OVERCLOSURE, lead)
         areas = np.bincount(found.step, found.area, minlength=len(angles))
         expected = whole_areas(made, turning.distance, angles, lead)
         assert areas == pytest.approx(expected, rel=1e-9, abs=1e-12 * module**2)
-
-
-@pytest.mark.parametrize(("lead", "share"), [(0.0, 0.0), (2e-4, 0.0), (-0.03, 1.0)])
-def test_polygons_are_asked_where_a_graph_cannot_tell(lead: float, share: float) -> None:
-    """Half a tooth off, tips stand in roots; in place, nothing goes beyond its half."""
-    turning = turning_of(profile("nail_machine_two_phase"))
-    asked: list[int] = []
-    cut = turning._cut
-    turning.__dict__["_cut"] = lambda step, facing: asked.extend(step) or cut(step, facing)
-    turning.overlaps(TURN, ADVANCE, lead)
-    assert len(set(asked)) == pytest.approx(share * len(TURN), abs=8)
 
 
 @pytest.mark.parametrize("name", OVERLAPPING)
 @pytest.mark.parametrize(
     ("shift", "lead"), [(0.0, 0.0), (0.1, 0.3), (0.0, -1.5), (-0.3, 0.0), (-0.4, 0.02), (-0.5, 0.4)]
 )
-def test_graphs_and_polygons_find_the_same_pieces(name: str, shift: float, lead: float) -> None:
+def test_pieces_are_those_of_every_two_halves(name: str, shift: float, lead: float) -> None:
     """Shift and lead in modules: tips in roots, and flanks through flanks."""
     made = overlapping(name)
     turning = turning_of(made, shift * made.pair.module)
     angle = lead * made.pair.module / turning.distance
-    angles = TURN[::5]
-    graphs = turning.overlaps(angles, ADVANCE, angle)
-    turn, shifts = turning.pose(angles, ADVANCE, angle)
-    polygons = turning._cut(*turning._near(angles, turn, shifts))
-    keys = [
-        (found.step * turning.driver.count + found.half[0]) * turning.driven.count + found.half[1]
-        for found in (graphs, polygons)
-    ]
-    a, b = (np.argsort(key) for key in keys)
-    assert np.array_equal(keys[0][a], keys[1][b])
-    assert np.array_equal(graphs.facing[a], polygons.facing[b])
-    assert graphs.area[a] == pytest.approx(polygons.area[b], rel=1e-8, abs=1e-13)
-    assert graphs.radius[:, a] == pytest.approx(polygons.radius[:, b], rel=1e-4)
-    assert graphs.length[a] == pytest.approx(polygons.length[b], rel=1e-9, abs=1e-9)
+    angles = TURN[::40]
+    found = turning.overlaps(angles, OVERCLOSURE, angle)
+    for step, phi in enumerate(angles):
+        back = np.exp(-1j * (made.law.phi2(phi) + angle))
+        seen = np.exp(-1j * (phi + OVERCLOSURE)) * back, -turning.distance * back
+        one = placed(turning.driver, *seen)
+        tree = shapely.STRtree(placed(turning.driven, 1.0, 0.0))
+        pairs = tree.query(one)
+        pairs = pairs[:, np.lexsort(pairs[::-1])]
+        shared = shapely.intersection(one[pairs[0]], tree.geometries[pairs[1]])
+        some = shapely.area(shared) > 0.0
+        mine = np.flatnonzero(found.step == step)
+        mine = mine[np.lexsort(found.half[::-1, mine])]
+        assert np.array_equal(found.half[:, mine], pairs[:, some])
+        corners = [shapely.get_coordinates(piece) @ [1, 1j] - seen[1] for piece in shared[some]]
+        spans = [np.hypot(np.ptp(piece.real), np.ptp(piece.imag)) for piece in corners]
+        ends = [[f(np.abs(piece)) for piece in corners] for f in (np.min, np.max)]
+        areas = shapely.area(shared[some])
+        assert found.area[mine] == pytest.approx(areas, rel=1e-8, abs=1e-13)
+        assert found.length[mine] == pytest.approx(spans, rel=1e-9, abs=1e-9)
+        assert found.radius[:, mine] == pytest.approx(np.array(ends), rel=1e-4)
+
+
+def placed(halves: Halves, turn: Any, shift: Any) -> Any:
+    """All halves of a closed wheel, turned and shifted."""
+    parts: Any = np.split(halves.points * turn + shift, halves.starts[1:-1])
+    return np.array([shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in parts])

@@ -145,7 +145,7 @@ def demand_cam(design: Given) -> DiscCam | None:
 
 def demand_motion(made: DiscCam) -> None:
     theta = angles(120)
-    found = follow(corners_of(made), made.mechanism, theta, smooth=False)
+    found = follow(corners_of(made), made.mechanism, theta)
     missing = made.program.derivatives(theta, 0)[0] - found.lift
     # steep contacts move along the profile by more than a first order tells
     room = 1.5 * CHORD * stiffness(made, theta) + 1e-9

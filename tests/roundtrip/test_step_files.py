@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearcam.export.step import read_step
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import export
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
+from helpers_step_read import read_step
 
 
 @pytest.fixture(scope="module")

@@ -167,7 +167,7 @@ def test_an_extreme_cam_moves_its_follower(name: str) -> None:
     """On the polygon; nowhere too high, and too low only at corners, by what they say."""
     made = built(name)
     theta = np.sort(np.concatenate([angles(180), [loss.theta for loss in made.lost]]))
-    found = follow(corners_of(made), made.mechanism, theta, smooth=False)
+    found = follow(corners_of(made), made.mechanism, theta)
     missing = made.program.derivatives(theta, 0)[0] - found.lift
     room = 2.0 * made.tolerance * stiffness(made, theta)
     rests = resting(made, theta)
@@ -212,7 +212,7 @@ def test_a_head_is_cut_off_at_its_neck() -> None:
     assert left.area == pytest.approx(made.size.area, rel=1e-3)
     assert left.area > made.size.area
     at = np.array([made.lost[0].theta])
-    found = follow(corners_of(made), made.mechanism, at, smooth=False)
+    found = follow(corners_of(made), made.mechanism, at)
     asked = float(made.program.derivatives(at, 0)[0][0])
     assert made.shortfall == pytest.approx(asked - found.lift[0], abs=1e-9)
     assert made.shortfall > 0.9 * lift

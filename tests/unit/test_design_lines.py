@@ -75,9 +75,8 @@ def test_a_decimal_comma_is_noticed(text: str, line: int, hint: str) -> None:
 
 def test_what_is_not_near_is_not_meant() -> None:
     known = ["arm", "arm_mm", "pivot_distance_mm", "radius_mm"]
-    assert [nearest(word, known) for word in ("rpm", "tip", "raduis_mm", "Arm_mm")] == [
-        "", "", "radius_mm", "arm_mm",
-    ]  # fmt: skip
+    words = ("rpm", "tip", "raduis_mm", "Arm_mm", "tadius_mm")
+    assert [nearest(word, known) for word in words] == ["", "", "radius_mm", "arm_mm", "radius_mm"]
 
 
 @pytest.mark.parametrize("text", ["a = " + "[" * 5000, "a = " + "9" * 5000, "a = 2020-13-45\n"])

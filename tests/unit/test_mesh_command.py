@@ -66,11 +66,13 @@ def test_rows_and_numbers_are_written(design: str, capsys: pytest.CaptureFixture
 
 
 def test_options_stand_before_the_file(design: str) -> None:
-    code, folder = run(design, "--steps", "5", "--from", "-3", "--to", "7", "--advance", "-0.01")
+    code, folder = run(
+        design, "--steps", "5", "--from", "-3", "--to", "7", "--overclosure", "-0.01"
+    )
     found = summary(folder)["meshing"]
     assert code == 0
     assert isinstance(found, dict)
-    assert (found["steps"], found["advance_deg"]) == (5, pytest.approx(-0.01))
+    assert (found["steps"], found["overclosure_deg"]) == (5, pytest.approx(-0.01))
 
 
 def test_contact_ratio_is_told_for_the_mounting_only(design: str) -> None:
@@ -105,8 +107,8 @@ def test_a_close_mounting_ends_with_an_error(design: str) -> None:
     ("options", "words"),
     [
         (["--steps", "0"], "meshing.steps"),
-        (["--advance", "0"], "without an advance"),
-        (["--advance", "nan"], "meshing.advance_deg"),
+        (["--overclosure", "0"], "without an overclosure"),
+        (["--overclosure", "nan"], "meshing.overclosure_deg"),
         (["--from", "40"], "before it begins"),
         (["--teeth", "21"], "no tooth 21"),
         (["--teeth", "2,2"], "listed twice"),
@@ -128,7 +130,7 @@ def test_a_wrong_setting_is_refused(
     [
         (["--center", "500"], "do not mesh"),
         (["--teeth", "12"], "take more steps or another range"),
-        (["--advance", "1e-9"], "at least"),
+        (["--overclosure", "1e-9"], "at least"),
     ],
 )
 def test_an_impossible_setting_says_what_is_possible(
@@ -189,12 +191,12 @@ def test_an_interruption_before_the_first_step_writes_nothing(
 
 
 def test_settings_from_python_meet_the_same_rules() -> None:
-    design = with_meshing(loads(TEXT), {"advance_deg": -0.5, "teeth": [3, 4]})
-    assert design.meshing.advance == pytest.approx(math.radians(-0.5))
+    design = with_meshing(loads(TEXT), {"overclosure_deg": -0.5, "teeth": [3, 4]})
+    assert design.meshing.overclosure == pytest.approx(math.radians(-0.5))
     assert design.meshing.teeth == (3, 4)
     assert design.meshing.steps == 12
-    with pytest.raises(DesignError, match=r"meshing\.advance_deg"):
-        with_meshing(design, {"advance_deg": 2})
+    with pytest.raises(DesignError, match=r"meshing\.overclosure_deg"):
+        with_meshing(design, {"overclosure_deg": 2})
 
 
 def test_progress_is_told(design: str) -> None:

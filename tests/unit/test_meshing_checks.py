@@ -56,8 +56,8 @@ def test_interference(more: float, bad: bool) -> None:
     if finding is not None:
         assert finding.severity == "error"
         assert finding.value is not None
-        # along the pitch line 2*tan(alpha) of the missing distance; less than the advance, so that
-        # the outlines cannot show it
+        # along the pitch line 2*tan(alpha) of the missing distance; less than the overclosure, so
+        # that the outlines cannot show it
         assert finding.value == pytest.approx(0.001 * math.tan(math.radians(20.0)), rel=1e-3)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import stat
 from pathlib import Path
@@ -77,6 +78,14 @@ def test_it_is_refused_beside_everything_else_that_is_wrong() -> None:
     assert "blank.clearance_mm stands there already: keep one" in found["blank.offset_mm"].allowed
 
 
+def test_the_old_word_for_overclosure_is_refused_with_the_new_one() -> None:
+    (found,) = problems(f"{HEAD}[meshing]\nadvance_deg = 0.01\n")
+    assert (found.line, found.key) == (10, "meshing.advance_deg")
+    assert found.message == "is now overclosure_deg (its value is 0.01)"
+    assert found.allowed == "overclosure_deg = 0.01"
+    assert found.hint == "the command migrate writes it so"
+
+
 def test_offsets_of_other_tables_are_what_they_were() -> None:
     design = loads(ROLLER)
     assert isinstance(design, CamDesign)
@@ -133,6 +142,10 @@ CASES = {
         "output.files = ['csv']  # f\n[blank]\n\"offset_mm\" = +5e-2\n",
         "output.files = ['csv']  # f\noutput.kerf_mm = 0.1\n[blank]\n",
     ),
+    "overclosure": (
+        "[meshing]\nsteps = 90\n  advance_deg = -5e-3  # back\n",
+        "[meshing]\nsteps = 90\n  overclosure_deg = -0.005  # back\n",
+    ),
     "nothing": ("[blank]\noffset_mm = 0\nbolts = 0\n", "[blank]\nbolts = 0\n"),
 }
 
@@ -156,7 +169,8 @@ def test_a_file_is_rewritten_and_nothing_else_in_it_changes(
     content, changes = migrate(str(file))
     assert content == mark + placed(new).replace("\n", newline).encode()
     assert len(changes) == 1
-    assert changes[0].startswith("blank.offset_mm -> ")
+    retired = "meshing.advance_deg" if name == "overclosure" else "blank.offset_mm"
+    assert changes[0].startswith(f"{retired} -> ")
     file.write_bytes(content)
     assert migrate(str(file)) == (content, ())
     design = load(file)
@@ -166,6 +180,8 @@ def test_a_file_is_rewritten_and_nothing_else_in_it_changes(
     assert design.blank.clearance == expected
     assert design.blank.clearance_bores == any(expected)
     assert design.output.kerf == (0.1 if name.startswith("kerf") else 0.0)
+    back = math.radians(-0.005)
+    assert (design.meshing.overclosure == pytest.approx(back)) == (name == "overclosure")
 
 
 def test_a_cam_is_rewritten_too(tmp_path: Path) -> None:

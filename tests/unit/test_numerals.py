@@ -12,7 +12,7 @@ import pytest
 from arch import rules
 from gearcam.export.table import table_bytes
 from gearcam.findings import Finding
-from gearcam.numerals import ULPS, decimal, exact, rounded_down, settled, shown, tree
+from gearcam.numerals import decimal, exact, rounded_down, settled, shown, tree
 
 
 @pytest.mark.parametrize("degrees", [60.0, 0.1, 22.5, 359.99, 123.456, 7e-3, -60.0, 1e5])
@@ -35,14 +35,14 @@ def test_no_number_moves_by_more_than_two_units_in_the_last_place() -> None:
     values = (random.standard_normal(20000) * 10.0 ** random.integers(-12, 12, 20000)).tolist()
     values += [math.nextafter(k / 8.0, math.inf) for k in range(-999, 1000)]
     moved = [abs(exact(value) - value) / math.ulp(value) for value in values]
-    assert max(moved) <= ULPS <= 2
+    assert max(moved) <= 2.0
     assert sum(move > 0.0 for move in moved[:20000]) < 20
 
 
 def test_three_units_beside_a_round_number_is_no_round_number() -> None:
     for value in (60.0, 0.1, 1234.5):
         beside = value
-        for _ in range(ULPS):
+        for _ in range(2):
             beside = math.nextafter(beside, math.inf)
             assert exact(beside) == value
         beside = math.nextafter(beside, math.inf)

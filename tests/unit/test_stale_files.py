@@ -86,7 +86,7 @@ MEANS_THE_SAME = {
     "default written out": ("module_mm = 2\n", "module_mm = 2\nx = 0\n"),
     "default left out": ("[rack]\npressure_angle_deg = 20\n", ""),
     "which files": ('["csv", "svg"]', '["stl"]'),
-    "meshing": ("steps = 12", "steps = 90\nadvance_deg = 0.01"),
+    "meshing": ("steps = 12", "steps = 90\noverclosure_deg = 0.01"),
     "limits": ("tool_diameter_mm = 1", "tool_diameter_mm = 3"),
 }
 MEANS_ANOTHER = {

@@ -29,10 +29,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.profile_points import Pieces, ProfilePoints, profile_points
+from gearcam.cams.profile_points import ProfilePoints, profile_points
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.bulges import Complex
-from gearcam.numeric.roots import bracketed_root
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -58,9 +57,8 @@ class Followed:
     lift : (m,) array, mm or rad
         Lift at them.
     error : (m,) array, mm or rad
-        Estimated error of the lift, with points that are exact. Of a smooth profile the difference
-        of two degrees of its polynomials; of a polygon what a curve through the points may differ
-        from the chords (a corner between points, cut off by its chord, is not known to it).
+        Estimated error of the lift, with points that are exact: what a curve through the points may
+        differ from the chords (a corner between points, cut off by its chord, is not known to it).
     contact : (m,) complex array, mm
         Where the follower touches, in the cam's frame.
     """
@@ -81,10 +79,8 @@ class _Places:
     point: Complex
 
 
-def follow(
-    points: Complex | Array, mechanism: Mechanism, theta: ArrayLike, *, smooth: bool
-) -> Followed:
-    """Return the lift that a profile gives.
+def follow(points: Complex | Array, mechanism: Mechanism, theta: ArrayLike) -> Followed:
+    """Return the lift that a profile gives: the polygon of some points.
 
     Parameters
     ----------
@@ -95,10 +91,6 @@ def follow(
         The follower; the cam turns counter-clockwise by theta.
     theta : (m,) array, rad
         Cam angles.
-    smooth : bool
-        Whether the points lie on a curve that is smooth but for a few corners and jumps of its
-        curvature, unknown where, seven points and more apart. Otherwise the profile is the polygon
-        of the points, chords included.
 
     Returns
     -------
@@ -113,11 +105,10 @@ def follow(
     _demand_clear_pivot(profile, mechanism)
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
     noise = _NOISE * (1.0 if mechanism.oscillating else profile.size + mechanism.radius)
-    find = _on_curve if smooth else _on_chords
     parts = []
     for first in range(0, max(len(angles), 1), _TOGETHER):
         some = angles[first : first + _TOGETHER]
-        places = find(profile, mechanism, np.exp(1j * some), _ROUNDING * profile.size)
+        places = _on_chords(profile, mechanism, np.exp(1j * some), _ROUNDING * profile.size)
         parts.append(_highest(places, some))
     position, error, contact = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Followed(
@@ -223,17 +214,6 @@ def _reached(
     return np.where(room >= -(tolerance**2), position, -np.inf)
 
 
-def _outward(mechanism: Mechanism, z: Complex) -> Complex:
-    """Return the direction from places to the follower that rests on them: the common normal."""
-    position = _rest(mechanism, z)[0]
-    if not mechanism.oscillating:
-        if mechanism.flat:
-            return np.full(z.shape, 1j)
-        return mechanism.offset + 1j * position - z
-    arm = np.exp(-1j * position)
-    return 1j * arm if mechanism.flat else mechanism.pivot - mechanism.arm * arm - z
-
-
 # --- one chord ---------------------------------------------------------------------------------
 
 
@@ -290,9 +270,6 @@ def _candidates(
     return angle[keep], chord[keep], upper[keep]
 
 
-# --- the two ways to read the points -------------------------------------------------------------
-
-
 def _on_chords(
     profile: ProfilePoints, mechanism: Mechanism, turn: Complex, tolerance: float
 ) -> _Places:
@@ -303,32 +280,3 @@ def _on_chords(
     # half of what the bound leaves: it counts the heights of the curve twice
     error = 0.5 * np.maximum(upper - position, 0.0)
     return _Places(angle=angle, position=position, error=error, point=start + part * step)
-
-
-def _on_curve(
-    profile: ProfilePoints, mechanism: Mechanism, turn: Complex, tolerance: float
-) -> _Places:
-    """Return the contacts with the smooth curve over chords: one for each of its pieces."""
-    angle, chord, upper = _candidates(profile, mechanism, turn, tolerance)
-    pieces = profile.pieces(chord)
-    angle, upper = angle[pieces.owner], upper[pieces.owner]
-    turned = turn[angle]
-    # the far ends are the near ones of the next pieces
-    way = pieces.low.copy()
-    rises = _climb(mechanism, pieces, turned, pieces.low) > 0.0
-    peak = rises & (_climb(mechanism, pieces, turned, pieces.high) < 0.0)
-    part, turned_part = pieces.select(peak), turned[peak]
-    way[peak] = bracketed_root(
-        lambda at: _climb(mechanism, part, turned_part, at), part.low, part.high, 1e-3 * tolerance
-    )
-    point, rough = pieces.at(way)[0], pieces.at(way, low=True)[0]
-    position = _reached(mechanism, turned * point, 0.0, tolerance)
-    error = np.abs(_rest(mechanism, turned * rough)[0] - _rest(mechanism, turned * point)[0])
-    error[pieces.guessed] = (upper - position)[pieces.guessed]
-    return _Places(angle=angle, position=position, error=error, point=point)
-
-
-def _climb(mechanism: Mechanism, pieces: Pieces, turned: Complex, way: Array) -> Array:
-    """Return how the position rises along pieces, turned, at ways: its sign is exact."""
-    point, slope = pieces.at(way)
-    return (np.conj(_outward(mechanism, turned * point)) * turned * slope).real

@@ -192,6 +192,7 @@ RETIRED: Final = (
     _renamed("helix", "steps", "count", "steps"),
     _renamed("helix", "offset_mm", "offset_mm", "steps"),
     _renamed("meshing", "helix_step", "step"),
+    _renamed("meshing", "advance_deg", "overclosure_deg"),
     Retired(
         title="law",
         key="way",

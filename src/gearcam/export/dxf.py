@@ -21,29 +21,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import (
-    BORE,
-    CENTER,
-    CENTRODE,
-    DASHED,
-    FOLLOWER,
-    HOLE,
-    INNER,
-    MARK,
-    OUTLINE,
-    PITCH,
-    PRIME,
-    PROFILE,
-    SLOT,
-    TOOL,
-    Circle,
-    Cross,
-    Drawing,
-    Loop,
-    Path,
-    Shape,
-    reach,
-)
+from gearcam import drawings
+from gearcam.drawings import Circle, Cross, Drawing, Loop, Path, Shape, reach
 from gearcam.numerals import shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
@@ -66,8 +45,9 @@ CURVE_PART: Final = 0.96
 dense points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
 
 COLORS: Final = {
-    OUTLINE: 7, BORE: 5, HOLE: 4, SLOT: 6, INNER: 7, MARK: 1, CENTRODE: 3, CENTER: 8, PROFILE: 7,
-    PITCH: 3, PRIME: 8, FOLLOWER: 8, TOOL: 1,
+    drawings.OUTLINE: 7, drawings.BORE: 5, drawings.HOLE: 4, drawings.SLOT: 6, drawings.INNER: 7,
+    drawings.MARK: 1, drawings.CENTRODE: 3, drawings.CENTER: 8, drawings.PROFILE: 7,
+    drawings.PITCH: 3, drawings.PRIME: 8, drawings.FOLLOWER: 8, drawings.TOOL: 1,
 }  # fmt: skip
 """Colour numbers: 7 black or white, blue, cyan, magenta, red, green, 8 grey."""
 
@@ -158,7 +138,7 @@ def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
     document.linetypes.add("DASHED", [3.0, 2.0, -1.0], description="_ _ _ _ _")
     for feature in drawing.features:
         if feature.layer not in document.layers:
-            dashed = "DASHED" if feature.kind in DASHED else "Continuous"
+            dashed = "DASHED" if feature.kind in drawings.DASHED else "Continuous"
             document.layers.add(feature.layer, color=COLORS.get(feature.kind, 7), linetype=dashed)
     space = document.modelspace()
     low, high = _bounds(drawing)

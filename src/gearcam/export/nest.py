@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, place, reach
 from gearcam.export.lettering import strokes, text_width
+from gearcam.numerals import NOISE
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -117,7 +118,7 @@ def _rows(order: Sequence[int], sizes: Array, width: float) -> list[list[int]]:
     left = 0.0
     for k in order:
         wide = float(sizes[k, 0]) + GAP
-        if not rows or wide > left * (1.0 + 1e-12):
+        if not rows or wide > left * (1.0 + NOISE):
             rows.append([])
             left = width
         rows[-1].append(k)

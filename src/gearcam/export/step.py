@@ -5,8 +5,7 @@ more than one part make an assembly in which each is turned and shifted to its p
 and roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores,
 hubs and marks are cylinders and planes. The same parts give the same bytes: the file bears no date.
 
-Refused: no parts at all; solids that come out invalid (see `step_shapes`); on reading, what is no
-STEP file.
+Refused: no parts at all; solids that come out invalid (see `step_shapes`).
 
 Depends on parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT, only inside
 the functions: it is large, and an extra of the package.
@@ -16,17 +15,13 @@ from __future__ import annotations
 
 import io
 import re
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gearcam.errors import MissingExtraError
-from gearcam.export.step_shapes import occt, properties, solids_of, subshapes
+from gearcam.export.step_shapes import occt, solids_of
 from gearcam.parts.body import Part
 from gearcam.solids import SolidError
 
@@ -72,31 +67,6 @@ class Placed:
     offset: tuple[float, float] = (0.0, 0.0)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class StepSolid:
-    """What a STEP file says about a solid, where the assembly has put it.
-
-    Parameters
-    ----------
-    name : str
-        Of its product.
-    faces : dict of str to int
-        How many faces of each kind: ``"plane"``, ``"cylinder"``, ``"bspline"``.
-    volume : float, mm^3
-        Integrated over its faces, to a billionth on each.
-    center : (3,) array, mm
-        Its centre of mass.
-    bounds : (2, 3) array, mm
-        Lower and upper corner of the box around it.
-    """
-
-    name: str
-    faces: dict[str, int]
-    volume: float
-    center: NDArray[np.float64]
-    bounds: NDArray[np.float64]
-
-
 def step_bytes(items: Sequence[Placed], name: str, tolerance: float) -> bytes:
     """Write parts as STEP.
 
@@ -134,39 +104,6 @@ def step_bytes(items: Sequence[Placed], name: str, tolerance: float) -> bytes:
         _fill(document, items, made, tokens[name], tokens)
         written = _write(document, tokens[f"{name}.step"])
     return _normal(written.decode("ascii"), tokens).encode("ascii")
-
-
-def read_step(data: bytes) -> list[StepSolid]:
-    """Read the solids of a STEP file.
-
-    Parameters
-    ----------
-    data : bytes
-        The file.
-
-    Returns
-    -------
-    list of StepSolid
-        In the order of the file; those of a part that comes twice, twice.
-
-    Raises
-    ------
-    MissingExtraError
-        If OCP is not installed.
-    ValueError
-        If it is no STEP file, or holds no shape.
-    """
-    _require()
-    with _silent(), _document() as document:
-        _set_all()
-        reader = occt.STEPCAFControl_Reader()
-        reader.SetNameMode(True)
-        status = reader.ReadStream("step", io.BytesIO(data))
-        if status != occt.IFSelect_ReturnStatus.IFSelect_RetDone or not reader.Transfer(document):
-            raise ValueError("this is no STEP file with shapes")
-        roots = occt.Sequence_TDF_Label()
-        occt.XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(roots)
-        return [solid for root in roots for solid in _solids(root, occt.TopLoc_Location())]
 
 
 def _require() -> None:
@@ -263,11 +200,6 @@ def _call(label: Any, name: str) -> None:
     occt.TDataStd_Name.Set_s(label, occt.TCollection_ExtendedString(name, True))  # True: UTF-8
 
 
-def _name(label: Any) -> str:
-    found = occt.TDataStd_Name()
-    return found.Get().ToExtString() if label.FindAttribute(found.GetID_s(), found) else ""
-
-
 def _write(document: Any, file: str) -> bytes:
     """Return the document as STEP, as the kernel writes it."""
     _set_all()
@@ -315,41 +247,3 @@ def _literal(name: str) -> str:
 
     safe = name.replace("\\", "\\\\").replace("'", "''")
     return "'" + re.sub(r"[^\x20-\x7e]+", encoded, safe) + "'"
-
-
-def _solids(label: Any, place: Any) -> Iterator[StepSolid]:
-    """Walk down an assembly."""
-    if not occt.XCAFDoc_ShapeTool.IsAssembly_s(label):
-        shape = occt.XCAFDoc_ShapeTool.GetShape_s(label).Moved(place)
-        yield from (_described(solid, _name(label)) for solid in subshapes(shape, "SOLID"))
-        return
-    components = occt.Sequence_TDF_Label()
-    occt.XCAFDoc_ShapeTool.GetComponents_s(label, components, False)
-    for component in components:
-        target = occt.TDF_Label()
-        occt.XCAFDoc_ShapeTool.GetReferredShape_s(component, target)
-        yield from _solids(target, place * occt.XCAFDoc_ShapeTool.GetLocation_s(component))
-
-
-def _described(solid: Any, name: str) -> StepSolid:
-    kinds = Counter(
-        occt.BRepAdaptor_Surface(occt.TopoDS.Face(face)).GetType().name
-        for face in subshapes(solid, "FACE")
-    )
-    box = occt.Bnd_Box()
-    occt.BRepBndLib.AddOptimal_s(solid, box, False, False)
-    found = properties(solid)
-    return StepSolid(
-        name=name,
-        faces={
-            re.sub("GeomAbs_|SurfaceOf|Surface", "", kind).lower(): count
-            for kind, count in sorted(kinds.items())
-        },
-        volume=found.Mass(),
-        center=_numbers(found.CentreOfMass()),
-        bounds=np.stack([_numbers(box.CornerMin()), _numbers(box.CornerMax())]),
-    )
-
-
-def _numbers(point: Any) -> NDArray[np.float64]:
-    return np.array([point.X(), point.Y(), point.Z()])

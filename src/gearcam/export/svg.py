@@ -62,6 +62,7 @@ DECIMALS: Final = 4
 _number: Final = partial(decimal, decimals=DECIMALS)
 
 _ROUNDING: Final = 1e-12
+"""Of an angle, rad, that is a quarter of a circle."""
 
 GLYPH: Final = 0.6
 """Width of a letter, part of the font's size, on the safe side."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Toothing
 from gearcam.gears.tips import find_tips
 from gearcam.gears.undercut import find_cusps
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 _FAR = 1.5
 """How far flanks are followed, over the reach of a rack's: in concave parts they go farther."""
@@ -31,8 +29,7 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
     float
         Smallest of any flank: from addendum curve to addendum curve, cusps taken off.
     """
-    half, places = first.half_tooth, first.tooth_places[first.whole]
-    sf, sigma = np.concatenate([places + half, places - half]), np.repeat([1.0, -1.0], len(places))
+    sf, sigma = (values[first.whole_flanks] for values in first.flanks)
     (low, high), (low2, high2) = _reach(first, sf, sigma), _reach(second, sf, -sigma)
     return float((np.minimum(high, -low2) - np.maximum(low, -high2)).min()) / first.pitch
 

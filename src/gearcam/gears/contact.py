@@ -16,18 +16,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.gears.normals import Mounting, touch
 from gearcam.gears.track import WHEELS, Wheel
+from gearcam.numeric.arrays import Array, Ints, Mask
 
 if TYPE_CHECKING:  # what cuts wheels needs more than numpy
     from gearcam.gears.outline import Flanks
     from gearcam.gears.pair import Gear
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 DRIVE, COAST = -1, 1
 """Sides of the driver's teeth: the one that drives, and the one that holds back."""

@@ -11,15 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
-from gearcam.gears.track import Plane
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _WINDOW = 1.25
 _WIDE = 4.0
@@ -84,7 +79,7 @@ def highest_corners(
     body = shapely.Polygon(mate_outline()).buffer(-2.0 * tolerance)
     shapely.prepare(body)
 
-    def hits(some: Index, reach: Array) -> Mask:
+    def hits(some: Ints, reach: Array) -> Mask:
         window = _WIDE if tight else _WINDOW
         path = _in_mate(toothing, mate, (sf[some], sigma[some]), reach, window)
         return np.any(shapely.contains_xy(body, path.real, path.imag), axis=1)
@@ -99,39 +94,31 @@ def highest_corners(
     return result
 
 
-def _corners(
+def _paths(
     toothing: Toothing, flanks: tuple[Array, Array], reach: Array, window: float
-) -> tuple[Plane, Array]:
-    """Return the ends of flanks at a reach, (n, 1), and the rolls over which to follow them."""
+) -> tuple[Array, Plane]:
+    """Return rolls as driver angles, and where ends of flanks are there from P, seen along T."""
     sf, sigma = flanks
-    corner = toothing.flank_points(
-        toothing.frames(toothing.track.angle(sf - sigma * reach), curved=False), sf, sigma
-    )
+    ends = toothing.track.angle(sf - sigma * reach)
+    corner = toothing.flank_points(toothing.frames(ends, curved=False), sf, sigma)
     steps = np.arange(-window, window + 0.5 / _ROLLS, 1.0 / _ROLLS)
-    rolls = sf[:, None] + toothing.pitch * steps
-    return corner[:, None], rolls
+    phi = toothing.track.angle(sf[:, None] + toothing.pitch * steps)
+    own = toothing.frames(phi, curved=False)
+    return phi, np.conj(own.t) * (corner[:, None] - own.p)
 
 
 def _in_mate(
-    toothing: Toothing,
-    mate: Toothing,
-    flanks: tuple[Array, Array],
-    reach: Array,
-    window: float,
+    toothing: Toothing, mate: Toothing, flanks: tuple[Array, Array], reach: Array, window: float
 ) -> Plane:
     """Return the paths of corners in the mate's frame, (n, rolls)."""
-    corner, rolls = _corners(toothing, flanks, reach, window)
-    phi = toothing.track.angle(rolls)
-    own, other = toothing.frames(phi, curved=False), mate.frames(phi, curved=False)
+    phi, along = _paths(toothing, flanks, reach, window)
+    other = mate.frames(phi, curved=False)
     # both tangents are one, and the outward normals opposite
-    along = np.conj(own.t) * (corner - own.p)
     return other.p + other.t * along
 
 
 def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:
     """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll."""
-    corner, rolls = _corners(toothing, flanks, reach, _WINDOW)
-    frames = toothing.frames(toothing.track.angle(rolls), curved=False)
-    down = np.real(np.conj(toothing.turn * frames.t) * (corner - frames.p))
+    down = np.real(np.conj(toothing.turn) * _paths(toothing, flanks, reach, _WINDOW)[1])
     clearance = cutter.dedendum - toothing.cutter.addendum
     return np.any(down > cutter.dedendum - _CAUTION * clearance, axis=1)

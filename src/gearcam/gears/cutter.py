@@ -13,12 +13,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.gears.spec import BasicRack
+from gearcam.numeric.roots import largest_fitting
 
 _CONCAVE_MARGIN = 1.15
 """kc over the sharpest concave curvature: enough for clearance, and still a large cutter."""
 
 _FLAT = 1e-9
 """Curvature times module below which a centrode counts as straight, not concave (rounding)."""
+
+_HALVINGS = 60
+"""Of a length or curvature in search of the largest that fits: to rounding."""
 
 _LAND = 1e-9
 """Share of half a space by which a cutter's tooth may be pointed: rounding of the search for it."""
@@ -99,12 +103,10 @@ class Cutter:
     @cached_property
     def least_concave_radius(self) -> float:
         """Smallest concave radius that leaves a sharp-cornered pinion's tooth a land, mm."""
-        low, high = 0.0, self.kc
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            fits = replace(self, kc=middle).offset <= self.half_space
-            low, high = (middle, high) if fits else (low, middle)
-        return _CONCAVE_MARGIN / low if low > 0.0 else math.inf
+        most = largest_fitting(
+            lambda kc: replace(self, kc=kc).offset <= self.half_space, self.kc, _HALVINGS
+        )
+        return _CONCAVE_MARGIN / most if most > 0.0 else math.inf
 
 
 def choose_cutter(
@@ -180,9 +182,9 @@ def widened(cutter: Cutter, by: float) -> Cutter:
 
 def _blunt(cutter: Cutter) -> Cutter:
     """Round the tip less, so that the pinion's narrower tooth keeps a land; 0 at the least."""
-    low, high = 0.0, cutter.tip_radius
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        fits = replace(cutter, tip_radius=middle).offset <= cutter.half_space
-        low, high = (middle, high) if fits else (low, middle)
-    return replace(cutter, tip_radius=low)
+    most = largest_fitting(
+        lambda radius: replace(cutter, tip_radius=radius).offset <= cutter.half_space,
+        cutter.tip_radius,
+        _HALVINGS,
+    )
+    return replace(cutter, tip_radius=most)

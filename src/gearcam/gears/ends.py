@@ -12,16 +12,14 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import TipEnds
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
-
-Array = NDArray[np.float64]
 
 _BELOW = 1.0
 """Depth of the end faces below the roots, in modules."""

@@ -14,13 +14,10 @@ from enum import IntEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.cutter import Cutter
-from gearcam.gears.track import Frames, Plane, Track, Wheel
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from gearcam.gears.track import Frames, Track, Wheel
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 
 class Curve(IntEnum):
@@ -113,6 +110,19 @@ class Toothing:
         first = self.numbers[0] - (1.0 if self.wheel == 1 else 0.5)
         return self.moved + self.pitch * np.arange(first, first + len(self.numbers))
 
+    @cached_property
+    def flanks(self) -> tuple[Array, Array]:
+        """Place sf, mm, and sigma of all flanks formed: sigma = +1 of every tooth, then -1."""
+        sigma = np.repeat([1.0, -1.0], len(self.numbers))
+        return np.tile(self.tooth_places, 2) + sigma * self.half_tooth, sigma
+
+    @property
+    def whole_flanks(self) -> Mask:
+        """Which of the flanks belong to whole teeth."""
+        whole = np.zeros(len(self.numbers), dtype=bool)
+        whole[self.whole] = True
+        return np.tile(whole, 2)
+
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
         """Return the frames of its track at driver angles, rad (see `Track.frames`)."""
         return self.track.frames(phi, curved=curved)
@@ -163,7 +173,7 @@ class Rows:
         Tooth number, from 1, that the row belongs to (for lands: the tooth before the space).
     """
 
-    kind: NDArray[np.int64]
+    kind: Ints
     sf: Array
     sigma: Array
     start: Array
@@ -171,12 +181,10 @@ class Rows:
     low: Array
     high: Array
     corner: Mask
-    tooth: NDArray[np.int64]
+    tooth: Ints
 
 
-def trace(
-    toothing: Toothing, rows: Rows, index: NDArray[np.int64], phi: Array
-) -> tuple[Plane, Plane]:
+def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plane, Plane]:
     """Return points and forward unit tangents of rows at driver angles.
 
     Parameters
@@ -252,3 +260,48 @@ def _tip_center(cutter: Cutter, frames: Frames, x: Array, w: complex) -> Plane:
     beta = roll * kc
     lift = 2.0 * np.sin(0.5 * beta) ** 2 / kc
     return frames.t * ((1.0 / kc + d) * np.sin(beta) + (lift - d * np.cos(beta)) * w)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WheelCurves:
+    """The rows of a wheel, as `gearcam.numeric.sampling.Curves` over the driver angle, rad.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        The wheel.
+    rows : Rows
+        Its curves, in order.
+    """
+
+    toothing: Toothing
+    rows: Rows
+
+    @property
+    def start(self) -> Array:
+        """Driver angle at which each row begins, (n,), rad."""
+        return self.rows.start
+
+    @property
+    def end(self) -> Array:
+        """Driver angle at which each row ends, (n,), rad."""
+        return self.rows.end
+
+    @property
+    def corner(self) -> Mask:
+        """Whether a corner precedes each row, (n,)."""
+        return self.rows.corner
+
+    @property
+    def breaks(self) -> tuple[Ints, Array]:
+        """Rows and driver angles, rad, of the law's knots inside rows."""
+        rows = self.rows
+        low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
+        phi = self.toothing.track.knots_near(0.5 * (low + high))
+        curved = rows.kind != Curve.ROUND  # an arc knows nothing of the law
+        row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]) & curved[:, None])
+        return row, phi[row, knot]
+
+    def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
+        """Return points, mm, and forward unit tangents of rows at driver angles, rad."""
+        return trace(self.toothing, self.rows, index, parameter)

@@ -13,12 +13,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.gears.track import Plane
 from gearcam.laws.base import RatioLaw
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array, Plane
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,18 +18,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
 from gearcam.gears.guide import Guide
-from gearcam.gears.track import Frames, Plane, Track, Wheel
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
-
-_STEPS = 40
-"""Newton steps; five serve at a changed distance, one as designed."""
+from gearcam.gears.track import Frames, Track, Wheel
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.newton import damped_newton, solve
 
 _SMALL = 1e-7
 """Step, in pitches, after which the next one is below rounding."""
@@ -131,7 +125,7 @@ class Normals:
     @property
     def rates(self) -> Array:
         """Derivatives of both rolls (as driver angles) and the lead by the phase, (3, n)."""
-        return -_solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
+        return -solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
 
 
 def normals(mounting: Mounting, pose: Pose, separation: Array) -> Normals:
@@ -220,39 +214,17 @@ def touch(
     found : (n,) bool array
         Whether that led to a contact within `_FAR` pitches of the nominal roll.
     """
-    x = np.stack([start, start, start, np.zeros(start.shape)])
-    free = _FREE[np.broadcast_to(known, start.shape)].T
-    rows = np.arange(start.size)
-    speed = mounting.track.frames(start, curved=False).speed
-    longest = 0.5 * mounting.pitch
-    at = normals(mounting, Pose(*x), separation)
-    for _ in range(_STEPS):
-        step = -_solve(at.slopes[:, free, rows], at.equations)
-        size = np.abs(step[:2]).max(axis=0) * speed
-        with np.errstate(invalid="ignore", divide="ignore"):
-            step = step * np.minimum(1.0, longest / size)
-        x[free, rows] += np.where(np.isfinite(step), step, 0.0)
-        at = normals(mounting, Pose(*x), separation)
-        if not np.any(size > _SMALL * mounting.pitch):
-            break
+    every = np.stack([start, start, start, np.zeros(start.shape)])
+    free, rows = _FREE[np.broadcast_to(known, start.shape)].T, np.arange(start.size)
+    scale = mounting.track.frames(start, curved=False).speed / mounting.pitch
+
+    def evaluate(x: Array) -> tuple[Normals, Array, Array]:
+        every[free, rows] = x
+        at = normals(mounting, Pose(*every), separation)
+        return at, at.equations, at.slopes[:, free, rows]
+
+    _, at = damped_newton(evaluate, every[free, rows], scale, _SMALL)
     found = np.abs(at.equations[0]) <= _MISS
     found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * mounting.pitch
-    found &= np.abs(x[:3] - start).max(axis=0) * speed <= _FAR * mounting.pitch
-    return Pose(*x), found
-
-
-def _solve(matrix: Array, right: Array) -> Array:
-    """Solve systems of three equations, (3, 3, n) and (3, n), by determinants."""
-    a, b, c = matrix[:, 0], matrix[:, 1], matrix[:, 2]
-
-    def triple(p: Array, q: Array, r: Array) -> Array:
-        return (
-            p[0] * (q[1] * r[2] - q[2] * r[1])
-            + p[1] * (q[2] * r[0] - q[0] * r[2])
-            + p[2] * (q[0] * r[1] - q[1] * r[0])
-        )
-
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.stack([triple(right, b, c), triple(a, right, c), triple(a, b, right)]) / triple(
-            a, b, c
-        )
+    found &= np.abs(every[:3] - start).max(axis=0) * scale <= _FAR
+    return Pose(*every), found

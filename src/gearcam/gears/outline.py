@@ -6,14 +6,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
-from gearcam.gears.flank import Curve, Rows, Toothing
+from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
-from gearcam.gears.sampling import WheelCurves
 from gearcam.gears.spaces import (
     ROWS_PER_TOOTH,
     entangled,
@@ -23,17 +21,13 @@ from gearcam.gears.spaces import (
     untangle,
 )
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
-from gearcam.gears.track import Plane
 from gearcam.gears.undercut import Undercut, find_cusps
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
 from gearcam.numeric.crossings import CurvePoint
 from gearcam.numeric.sampling import Sampler
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
 
 _NO_MATE = 3.0
 """Reach in pitches that no flank has."""
@@ -158,13 +152,6 @@ class Outline:
         ends = self.toothing.flank_points(frames, self.flanks.sf, self.flanks.sigma)
         return np.abs(ends[:z] - ends[z:])[self.toothing.whole]
 
-    @property
-    def whole_flanks(self) -> Mask:
-        """Which flanks belong to whole teeth, (2z,)."""
-        whole = np.zeros(len(self.toothing.numbers), dtype=bool)
-        whole[self.toothing.whole] = True
-        return np.tile(whole, 2)
-
     def flank_places(self, reach: Array) -> tuple[Plane, Plane]:
         """Return points and outward unit normals of all flanks at some reaches.
 
@@ -252,9 +239,7 @@ def build_outline(
 def _find_flanks(
     toothing: Toothing, mate: Toothing | None, tolerance: float | None, tolerances: Tolerances
 ) -> Flanks:
-    half, z = toothing.half_tooth, len(toothing.numbers)
-    sf = np.concatenate([toothing.tooth_places + half, toothing.tooth_places - half])
-    sigma = np.repeat([1.0, -1.0], z)
+    sf, sigma = toothing.flanks
     mate_reach = _NO_MATE * toothing.pitch if mate is None else mate.cutter.reach
     cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
     tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
@@ -268,11 +253,11 @@ def _find_flanks(
         if (allowed < reach).any():
             limit = np.where(allowed < reach, allowed, np.minimum(cusps.addendum, mate_reach))
             tips = find_tips(toothing, sf, sigma, limit)
-    tips = _sharpen(toothing, sf, sigma, tips)
+    tips = _sharpen(toothing, tips)
     highest = sigma * (sf - toothing.track.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
     addendum = np.where(cusps.addendum <= highest * (1.0 + _AT_TIP), cusps.addendum, np.inf)
-    lowest = np.full(2 * z, -toothing.cutter.reach)
+    lowest = np.full(sf.shape, -toothing.cutter.reach)
     return Flanks(
         sf=sf,
         sigma=sigma,
@@ -283,9 +268,9 @@ def _find_flanks(
     )
 
 
-def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipEnds:
+def _sharpen(toothing: Toothing, tips: TipEnds) -> TipEnds:
     """End the flanks of pointed teeth where they cross."""
-    z = len(toothing.numbers)
+    (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     pointed = np.flatnonzero(tips.foot[:z] <= tips.foot[z:])
     if pointed.size == 0:
         return tips
@@ -305,9 +290,7 @@ def _sharpen(toothing: Toothing, sf: Array, sigma: Array, tips: TipEnds) -> TipE
     return replace(tips, phi=phi, foot=foot, height=height, full=full)
 
 
-def _assemble(
-    toothing: Toothing, rows: Rows, flanks: Flanks, spaces: NDArray[np.int64]
-) -> tuple[Rows, Flanks]:
+def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> tuple[Rows, Flanks]:
     """Replace entangled spaces by untangled ones and shorten the flanks they trim."""
     lowest = flanks.lowest.copy()
     parts, done = [], 0
@@ -325,7 +308,7 @@ def _assemble(
     flanks = replace(flanks, lowest=lowest)
     if not toothing.rounding:
         return joined, flanks
-    joined, highest = round_tips(toothing, joined, (flanks.sf, flanks.sigma), flanks.tips)
+    joined, highest = round_tips(toothing, joined, flanks.tips)
     return joined, replace(flanks, highest=np.where(np.isfinite(highest), highest, flanks.highest))
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.bound import demand_cutters
@@ -20,10 +19,9 @@ from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
 from gearcam.gears.track import Wheel
 from gearcam.laws.base import RatioLaw
 from gearcam.laws.span import Lobes
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: finer ones would be lost in rounding."""

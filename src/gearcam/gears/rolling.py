@@ -14,17 +14,16 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.gears.guide import Guide, Shaft, Slideway
-from gearcam.gears.track import ArcLength, Frames, Plane, Track, Wheel
+from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.base import RatioLaw
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.jets import Jet, sqrt
 from gearcam.numeric.piecewise import extremes
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 WHEEL: Final = 1
 RACK: Final = 0

@@ -15,17 +15,13 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import MISS, ROUGH, TipEnds, cross, flank_at, flank_crossings
-from gearcam.gears.track import Plane
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.roots import largest_fitting
 
 _EDGE = 1e-12
 """Driver angle, rad, by which an arc may touch a tip beyond its end: rounding."""
@@ -54,9 +50,7 @@ class _Tops(NamedTuple):
     slope: Array
 
 
-def round_tips(
-    toothing: Toothing, rows: Rows, flanks: tuple[Array, Array], tips: TipEnds
-) -> tuple[Rows, Array]:
+def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Array]:
     """Round the edges of the tips.
 
     Parameters
@@ -65,10 +59,8 @@ def round_tips(
         The wheel, with the radius ``rounding``.
     rows : Rows
         Its curves, loops taken out, open ends cut.
-    flanks : (sf, sigma), two (2z,) arrays, mm and 1
-        The flanks of all teeth formed, sigma = +1 first.
     tips : TipEnds
-        Their ends.
+        Ends of the flanks of all teeth formed.
 
     Returns
     -------
@@ -83,14 +75,14 @@ def round_tips(
         Naming the largest radius.
     """
     tops = _tops(toothing, rows, tips)
-    found = _arcs(toothing, rows, flanks, tips, tops, toothing.rounding)
+    found = _arcs(toothing, rows, tips, tops, toothing.rounding)
     if found is None:
-        low, high = 0.0, toothing.rounding
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            fits = _arcs(toothing, rows, flanks, tips, tops, middle) is not None
-            low, high = (middle, high) if fits else (low, middle)
-        largest = float(f"{low * (1.0 - _INSIDE):.6g}")
+        largest = largest_fitting(
+            lambda radius: _arcs(toothing, rows, tips, tops, radius) is not None,
+            toothing.rounding,
+            _HALVINGS,
+        )
+        largest = float(f"{largest * (1.0 - _INSIDE):.6g}")
         raise InfeasibleError(
             "tips rounded so much leave nothing of a flank above the pitch curve",
             where=f"wheel {toothing.wheel}, blank.tip_rounding_mm",
@@ -116,21 +108,15 @@ def _tops(toothing: Toothing, rows: Rows, tips: TipEnds) -> _Tops:
         row_turn[z] = tip_turn[0] = toothing.track.around
     span, rise = (values[:z] - values[z:] for values in (tips.foot, tips.height))
     slope = rise / np.where(span == 0.0, 1.0, span)
-    both = (tip, tip_turn, tips.foot[z:], tips.height[z:], slope)
-    tip, tip_turn, start, height, slope = (np.tile(values, 2) for values in both)
-    return _Tops(row, tip, row_turn, tip_turn, start, height, slope)
+    of_teeth = (tip_turn, tips.foot[z:], tips.height[z:], slope)
+    return _Tops(row, np.tile(tip, 2), row_turn, *(np.tile(values, 2) for values in of_teeth))
 
 
 def _arcs(
-    toothing: Toothing,
-    rows: Rows,
-    flanks: tuple[Array, Array],
-    tips: TipEnds,
-    tops: _Tops,
-    radius: float,
+    toothing: Toothing, rows: Rows, tips: TipEnds, tops: _Tops, radius: float
 ) -> tuple[Rows, Array] | None:
     """Return what `round_tips` does, or None where the radius is too large."""
-    (sf, sigma), z = flanks, len(toothing.numbers)
+    (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
     near, there = MISS * toothing.pitch, tops.row >= 0

@@ -108,11 +108,7 @@ class PairSpec:
         NUMBER, default=0.0, ge=-1, le=1, doc="profile shift in modules: + on wheel 1, - on wheel 2"
     )
     backlash: float = param(
-        LENGTH,
-        default=0.0,
-        ge=0,
-        le=1e4,
-        doc="along the pitch curve, shared by both wheels",
+        LENGTH, default=0.0, ge=0, le=1e4, doc="backlash along the pitch curve, of both wheels"
     )
     face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="width of the wheels")
 

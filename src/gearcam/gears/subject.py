@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear, GearPair
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import extremes
 from gearcam.quantities import NUMBER, Param
-
-Array = NDArray[np.float64]
 
 KIND = "teeth"
 """The checks of a pair's teeth and centrodes."""

@@ -7,14 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
-from gearcam.gears.track import Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import newton_in_bracket
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 MISS = 1e-12
 """Distance at which curves meet, in addenda or pitches: rounding."""
@@ -172,8 +168,8 @@ def flank_crossings(
     """
     one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
     near = MISS * toothing.pitch
-    *phi, miss = cross(one, two, *start, near)
-    return np.stack(phi), miss <= ROUGH * near
+    first, second, miss = cross(one, two, start[0], start[1], near)
+    return np.stack([first, second]), miss <= ROUGH * near
 
 
 def _search(
@@ -187,7 +183,7 @@ def _search(
         np.stack([sf, sf - sigma * highest, sf - around, sf + around, near])
     )
 
-    def distance(phi: Array, at: NDArray[np.int64] | slice) -> tuple[Array, Array, Array]:
+    def distance(phi: Array, at: Ints | slice) -> tuple[Array, Array, Array]:
         frames = toothing.frames(phi)
         points = toothing.flank_points(frames, sf[at], sigma[at])
         foot = feet(toothing, points, low[at], high[at], guess[at])

@@ -24,14 +24,13 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.hermite import hermite_cubic
 from gearcam.numeric.roots import newton_in_bracket
 
-Array = NDArray[np.float64]
-Plane = NDArray[np.complex128]
 Wheel = Literal[1, 2]
 WHEELS: tuple[Wheel, Wheel] = (1, 2)
 
@@ -65,12 +64,6 @@ class Frames(NamedTuple):
     kappa: Array
     speed: Array
     s: Array
-
-    def take(self, index: NDArray[np.int64] | int) -> Frames:
-        """Return the frames at some places (or of one row)."""
-        return Frames(
-            self.p[index], self.t[index], self.kappa[index], self.speed[index], self.s[index]
-        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -11,13 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.flank import Toothing
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.roots import bracketed_root
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _STEPS = 33
 """Places along a flank at which a change of sign is looked for, the knots' apart."""
@@ -83,7 +80,7 @@ def find_cusps(
 def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
     """First zero of the regularity between w = 0 and `reach`, or an infinity of its sign."""
 
-    def regularity(phi: Array, at: Index) -> Array:
+    def regularity(phi: Array, at: Ints) -> Array:
         return toothing.regularity(toothing.frames(phi), sf[at], sigma[at])
 
     grid = _cusp_grid(toothing, sf, sigma, reach)
@@ -118,7 +115,7 @@ def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Arr
 
 
 def _refine_minima(
-    grid: Array, values: Array, function: Callable[[Array, Index], Array]
+    grid: Array, values: Array, function: Callable[[Array, Ints], Array]
 ) -> tuple[Array, Array]:
     """Replace samples at positive local minima near zero by the true minimum (golden section)."""
     low = values[:, 1:-1]

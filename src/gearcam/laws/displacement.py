@@ -60,14 +60,14 @@ class Displacement(ABC):
         """Driver's angle, rad, after which it repeats; if it is open, its whole travel."""
 
     @property
-    @abstractmethod
     def advance(self) -> float:
-        """What is gained over the period."""
+        """What is gained over the period; nothing, unless it says so."""
+        return 0.0
 
     @property
-    @abstractmethod
     def closed(self) -> bool:
-        """Whether it repeats."""
+        """Whether it repeats; it does, unless it says no."""
+        return True
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import RatioLaw, make_law
-from gearcam.laws.span import Lobes, Span, angle_text, rough
+from gearcam.laws.span import PLACES, Lobes, Span, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -17,6 +17,12 @@ from gearcam.numeric.roots import newton_in_bracket
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
+_APART = 1e-9
+"""Least distance of the driven shaft from the largest radius, in this: nearer, all is lost."""
+
+_LAST_DIGIT = 1e-15
+"""To which a centre distance is solved, in the largest possible: its rounding."""
+
 LOBES = "lobes of driver and driven wheel; in lowest terms as the tooth counts when left out"
 """What the key ``lobes`` means."""
 
@@ -59,7 +65,7 @@ def law_of_centrode(
     between the largest r and the c that would close a wheel of that radius all around.
     """
     radius = piecewise(knots, shapes)
-    demand_positive(radius(np.linspace(0.0, lobes.period, 2049)), "r1", lobes)
+    demand_positive(radius, "r1", lobes)
     try:
         center = solve_center(radius, knots, lobes, tolerances)
     except NotSmoothError as error:
@@ -70,15 +76,15 @@ def law_of_centrode(
     return make_law(lobes, knots, pieces, tolerances, found)
 
 
-def demand_positive(values: Array, name: str, lobes: Span) -> None:
+def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) -> None:
     """Refuse what is not finite or not positive somewhere.
 
     Parameters
     ----------
-    values : (n,) array
-        Evenly over the period, ends included.
+    function : callable
+        ``function(phi1) -> values``.
     name : str
-        What they are.
+        What the values are.
     lobes : Lobes or Travel
         With the period.
 
@@ -87,7 +93,8 @@ def demand_positive(values: Array, name: str, lobes: Span) -> None:
     InfeasibleError
         Naming the first place.
     """
-    angles = np.linspace(0.0, lobes.period, len(values))
+    angles = np.linspace(0.0, lobes.period, PLACES)
+    values = function(angles)
     for bad, state in ((~np.isfinite(values), "is not finite"), (values <= 0, "is not positive")):
         if bad.any():
             raise InfeasibleError(f"{name} {state}", where=angle_text(angles[bad][0]), limit=0.0)
@@ -128,7 +135,7 @@ def solve_center(
     """
     ends, tolerance = np.asarray(knots, dtype=float), tolerances.expansion
     mean = expand(radius, ends, tolerance).antiderivative().last / lobes.period
-    largest = float(radius(np.append(np.linspace(0.0, lobes.period, 2049), ends)).max())
+    largest = float(radius(np.append(np.linspace(0.0, lobes.period, PLACES), ends)).max())
     ratio = lobes.period / lobes.advance
 
     def excess(c: Array) -> tuple[Array, Array]:
@@ -142,9 +149,9 @@ def solve_center(
         miss = lobes.advance - driven.antiderivative().last
         return np.asarray(miss), np.asarray(slope.antiderivative().last)
 
-    low, high = largest * (1.0 + 1e-9), largest * (1.0 + ratio) * (1.0 + 1e-9)
+    low, high = largest * (1.0 + _APART), largest * (1.0 + ratio) * (1.0 + _APART)
     start = min(max(mean * (1.0 + ratio), 0.75 * low + 0.25 * high), high)
-    return float(newton_in_bracket(excess, low, high, start, 1e-15 * high))
+    return float(newton_in_bracket(excess, low, high, start, _LAST_DIGIT * high))
 
 
 def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import LAWS, RatioLaw, make_law
@@ -14,6 +15,8 @@ from gearcam.laws.driver import demand_positive, law_of_centrode
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.laws.span import (
+    PLACES,
+    TYPED,
     Lobes,
     Span,
     angle_text,
@@ -28,7 +31,12 @@ from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
 
+Array = NDArray[np.float64]
+
 _NAMES = ("phi2", "ratio", "r1")
+
+_PLACES_OF_LOBE = 257
+"""Places at which a lobe is compared with the first: two formulas that agree there are one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,8 +75,7 @@ class Formula:
             return from_phi2(compiled(self.phi2), span, tolerances)
         name = "ratio" if self.ratio is not None else "r1"
         function = compiled(getattr(self, name) or "1")
-        x = np.linspace(0.0, span.period, 2049)
-        demand_positive(function(Jet.variable(x, 0)).derivatives()[0], name, span)
+        demand_positive(values_of(function), name, span)
         _demand_repeats(function, name, span)
         if self.ratio is None:
             return law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
@@ -102,13 +109,18 @@ def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
     return function
 
 
+def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:
+    """Return a function of jets as one of places."""
+    return lambda x: function(Jet.variable(x, 0)).derivatives()[0]
+
+
 def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
     """Refuse a formula that is not the same in every lobe of the driver."""
-    x = np.linspace(0.0, lobes.period, 257)
-    first = function(Jet.variable(x, 0)).derivatives()[0]
+    x = np.linspace(0.0, lobes.period, _PLACES_OF_LOBE)
+    first = values_of(function)(x)
     for lobe in range(1, lobes.n1):
-        other = function(Jet.variable(x + lobe * lobes.period, 0)).derivatives()[0]
-        bad = ~(np.abs(other - first) <= 1e-9 * np.abs(first).max())
+        other = values_of(function)(x + lobe * lobes.period)
+        bad = ~(np.abs(other - first) <= TYPED * np.abs(first).max())
         if bad.any():
             place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
             raise InfeasibleError(
@@ -171,7 +183,7 @@ def from_phi2(
         Where phi2 is not finite, smooth or rising, or does not close.
     """
     ratio = derivative(phi2)
-    x = np.linspace(0.0, lobes.period, 2049)
+    x = np.linspace(0.0, lobes.period, PLACES)
     values, slopes = phi2(Jet.variable(x, 1)).derivatives()
     bad = ~np.isfinite(values) | ~np.isfinite(slopes)
     if bad.any():
@@ -186,11 +198,7 @@ def from_phi2(
             nearest="this is the ratio there, which must be positive",
         )
     try:
-        expand(
-            lambda t: ratio(Jet.variable(t, 0)).derivatives()[0],
-            [0.0, lobes.period],
-            tolerances.expansion,
-        )
+        expand(values_of(ratio), [0.0, lobes.period], tolerances.expansion)
     except NotSmoothError as error:
         raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
     return make_law(lobes, [0.0, lobes.period], [Piece(ratio, phi2)], tolerances, solved)
@@ -198,11 +206,7 @@ def from_phi2(
 
 def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances) -> RatioLaw:
     """Make a law from a ratio up to a factor, which closure decides."""
-    total = expand(
-        lambda t: shape(Jet.variable(t, 0)).derivatives()[0],
-        [0.0, lobes.period],
-        tolerances.expansion,
-    ).antiderivative()
+    total = expand(values_of(shape), [0.0, lobes.period], tolerances.expansion).antiderivative()
     factor = lobes.advance / total.last
     piece = Piece(lambda x: factor * shape(x))
     return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})

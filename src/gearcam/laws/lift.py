@@ -109,16 +109,6 @@ class Program(Displacement):
         """A turn of the cam, rad."""
         return _TURN
 
-    @property
-    def advance(self) -> float:
-        """Nothing: the follower comes back."""
-        return 0.0
-
-    @property
-    def closed(self) -> bool:
-        """Always: the cam turns for ever."""
-        return True
-
     def cuts_between(self, low: float, high: float) -> Array:
         """Return the cuts between two cam angles, with both of these.
 

@@ -11,11 +11,10 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import compiled, formula_problems, from_phi2
+from gearcam.laws.formula import compiled, formula_problems, from_phi2, values_of
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.slider import crank_angle, make_slide
 from gearcam.laws.span import Lobes, Span, open_travel, span_of, travel_problems
-from gearcam.numeric.jets import Jet
 from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
@@ -78,7 +77,7 @@ class MotionLaw:
     def _from_y(self, span: Span, tolerances: Tolerances) -> RatioLaw:
         start, end = float(self.x_from or 0.0), float(self.x_to or 0.0)
         shape, per_angle = compiled(self.y or "", "x"), (end - start) / span.period
-        ends = shape(Jet.variable(np.array([start, end]), 0)).derivatives()[0]
+        ends = values_of(shape)(np.array([start, end]))
         rise = float(ends[1] - ends[0])
         if not math.isfinite(rise) or rise == 0.0:
             raise InfeasibleError(

@@ -12,7 +12,7 @@ import numpy as np
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes, Span, Travel, demand_equal, open_travel
+from gearcam.laws.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.laws.transitions import ARCS, Arc
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
@@ -127,11 +127,11 @@ def one_lobe(
     """
     for repeats in (1, lobes.n1):
         count = (len(knots) - 1) // repeats
-        if abs(knots[-1] * lobes.n1 / repeats - 2.0 * math.pi) > 1e-12:
+        if abs(knots[-1] * lobes.n1 / repeats - 2.0 * math.pi) > SAME:
             continue
         tiled = (lobes.period * np.arange(repeats)[:, None] + knots[:count]).ravel()
         same = count * repeats == len(knots) - 1
-        if same and np.allclose(tiled, knots[:-1], rtol=0, atol=1e-12):
+        if same and np.allclose(tiled, knots[:-1], rtol=0, atol=SAME):
             lobe = list(ratios[: count + 1])
             if lobe[:-1] * repeats == list(ratios[:-1]) and lobe[0] == lobe[-1]:
                 return np.append(knots[:count], lobes.period), lobe
@@ -227,42 +227,34 @@ def _close(
                 f"less than {lobes.advance / (lobes.advance - rest):.6g}",
             )
     elif abs(rest) > tolerances.refusal:
+        nearest, ways = _closing_values(given, rest / weights, lobes.closed)
         raise InfeasibleError(
             "the phases do not close",
             where="law.ratios",
             value=math.degrees(lobes.advance - rest),
             limit=math.degrees(lobes.advance),
             unit="deg",
-            nearest=_closing_values(given, rest / weights, lobes.closed),
-            ways=_closing_ways(given, rest / weights, lobes.closed),
+            nearest=nearest,
+            ways=tuple(ways),
         )
     values = given.tolist()
     return [*values, values[0]] if lobes.closed else values, solved
 
 
-def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> str:
-    """Say which value each ratio must have for the law to close if only that one is changed."""
-    lines = ["closure asks for one of these"]
-    for index, (value, step) in enumerate(zip(given, change, strict=True)):
+def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[str, list[Way]]:
+    """Say which value each ratio must have for the law to close if only that one is changed.
+
+    With the words comes a way for each whose closing value is positive.
+    """
+    lines, ways = ["closure asks for one of these"], []
+    for index, (value, step) in enumerate(zip(given.tolist(), change.tolist(), strict=True)):
         closing = value + step
-        both = closed and index == 0
-        name = f"ratios[0] and ratios[{len(given)}]" if both else f"ratios[{index}]"
+        names = [f"ratios[{index}]", *([f"ratios[{len(given)}]"] if closed and not index else [])]
         state = f"{closing:.10g}" if closing > 0 else f"none ({closing:.6g} is not positive)"
-        lines.append(f"{name} = {state} instead of {value:.10g}")
-    return "; ".join(lines)
-
-
-def _closing_ways(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[Way, ...]:
-    """Return a span for each ratio whose closing value is positive."""
-    values = [float(value) for value in given + change]
-    places = [[index] for index in range(len(values))]
-    if closed:
-        places[0].append(len(values))
-    return tuple(
-        Way(near={f"law.ratios[{place}]": value for place in where})
-        for where, value in zip(places, values, strict=True)
-        if value > 0.0
-    )
+        lines.append(f"{' and '.join(names)} = {state} instead of {value:.10g}")
+        if closing > 0.0:
+            ways.append(Way(near={f"law.{name}": closing for name in names}))
+    return "; ".join(lines), ways
 
 
 def _solve_knot(
@@ -286,20 +278,15 @@ def _solve_knot(
     high = filled[index + 1] if index + 1 < len(filled) else 2.0 * math.pi
     if not low < place <= high or place == high < 2.0 * math.pi:
         ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
-        key = "law.driven_travel_deg"
+        key, nearest = "law.driven_travel_deg", ways[0 if math.degrees(travel) < ways[0] else 1]
         raise InfeasibleError(
             "no knot between its neighbours gives the driven wheel its travel",
             where=f"law.knots_deg[{index}]",
             value=math.degrees(travel),
-            limit=ways[0] if math.degrees(travel) < ways[0] else ways[1],
+            limit=nearest,
             unit="deg",
             nearest=f"the knots allow {ways[0]:.10g} to {ways[1]:.10g} deg, both excluded",
-            ways=(
-                Way(
-                    near={key: ways[0] if math.degrees(travel) < ways[0] else ways[1]},
-                    far={key: 0.5 * (ways[0] + ways[1])},
-                ),
-            ),
+            ways=(Way(near={key: nearest}, far={key: 0.5 * (ways[0] + ways[1])}),),
         )
     return filled, list(ratios), {f"knots_deg[{index}]": math.degrees(place)}
 

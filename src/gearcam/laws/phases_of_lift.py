@@ -26,6 +26,7 @@ from gearcam.quantities import (
     LENGTH,
     LENGTH_PER_RAD,
     LENGTH_PER_RAD2,
+    Quantity,
     param,
 )
 
@@ -74,9 +75,18 @@ class ReturnPhase(RisePhase):
     """The follower comes down by a law, to lift zero where no lift is given."""
 
 
+def _rate(quantity: Quantity, word: str, sign: str) -> Any:
+    doc = f"{sign} at its end; 0 if left out"
+    return param(quantity, default=None, word=f"end_{word}", doc=doc)
+
+
 @dataclass(frozen=True, kw_only=True)
 class SegmentPhase:
-    """The follower goes to a lift and has a velocity and an acceleration there."""
+    """The follower goes to a lift and has a velocity and an acceleration there.
+
+    These are `velocity_length` and `acceleration_length` of a translating follower,
+    `velocity_swing` and `acceleration_swing` of an oscillating one.
+    """
 
     angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")
     to_length: float | None = param(
@@ -85,24 +95,10 @@ class SegmentPhase:
     to_swing: float | None = param(
         ANGLE, default=None, gt=-180, lt=180, word="to", doc="lift at its end (oscillating)"
     )
-    velocity_length: float | None = param(
-        LENGTH_PER_RAD, default=None, word="end_velocity", doc="ds/dtheta at its end; 0 if left out"
-    )
-    velocity_swing: float | None = param(
-        ANGLE_PER_RAD, default=None, word="end_velocity", doc="ds/dtheta at its end; 0 if left out"
-    )
-    acceleration_length: float | None = param(
-        LENGTH_PER_RAD2,
-        default=None,
-        word="end_acceleration",
-        doc="d2s/dtheta2 at its end; 0 if left out",
-    )
-    acceleration_swing: float | None = param(
-        ANGLE_PER_RAD2,
-        default=None,
-        word="end_acceleration",
-        doc="d2s/dtheta2 at its end; 0 if left out",
-    )
+    velocity_length: float | None = _rate(LENGTH_PER_RAD, "velocity", "ds/dtheta")
+    velocity_swing: float | None = _rate(ANGLE_PER_RAD, "velocity", "ds/dtheta")
+    acceleration_length: float | None = _rate(LENGTH_PER_RAD2, "acceleration", "d2s/dtheta2")
+    acceleration_swing: float | None = _rate(ANGLE_PER_RAD2, "acceleration", "d2s/dtheta2")
 
     @property
     def end(self) -> tuple[float, float, float]:
@@ -178,12 +174,8 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
         for name in wrong:
             if getattr(phase, name, None) is not None:
                 clean = False
-                yield (
-                    number,
-                    name,
-                    f"is of the wrong kind for {kind} follower",
-                    f"the key in {unit}",
-                )
+                message = f"is of the wrong kind for {kind} follower"
+                yield number, name, message, f"the key in {unit}"
         asked = {SegmentPhase: right[1], RisePhase: right[0]}.get(type(phase))
         if asked and getattr(phase, asked) is None:
             clean = False
@@ -196,12 +188,9 @@ def _closure_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     total = sum(phase.angle for phase in phases)
     if abs(total - 2.0 * math.pi) > TURN_MISS:
         last = math.degrees(2.0 * math.pi - total + phases[-1].angle)
-        rule = (
-            f"360 deg in all; the last phase would take {last:.10g} deg"
-            if last > 0
-            else ("360 deg in all")
-        )
-        yield None, "", f"the phases take {math.degrees(total):.10g} deg", rule
+        hint = f"; the last phase would take {last:.10g} deg" if last > 0 else ""
+        message = f"the phases take {math.degrees(total):.10g} deg"
+        yield None, "", message, f"360 deg in all{hint}"
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
@@ -211,11 +200,8 @@ def _closure_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"
     elif abs(found[-1]) > _LIFT_MISS * largest:
-        angular = any(
-            getattr(phase, name, None) is not None
-            for phase in phases
-            for name in ("swing", "to_swing")
-        )
+        named = [getattr(phase, name, None) for phase in phases for name in ("swing", "to_swing")]
+        angular = any(value is not None for value in named)
         shown = f"{math.degrees(found[-1]):.10g} deg" if angular else f"{found[-1]:.10g} mm"
         rule = "the lift at the end of the turn is that at its beginning, 0"
         yield None, "", f"the program ends at a lift of {shown}", rule

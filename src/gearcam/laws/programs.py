@@ -13,7 +13,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.phases import arcs_law, one_lobe
-from gearcam.laws.span import Lobes, Travel, angle_text, demand_equal, open_travel
+from gearcam.laws.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.laws.transitions import ARCS, SMOOTH
 from gearcam.numeric.jets import Jet, cos, sin
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -107,7 +107,7 @@ class ThreePhasePolynomial:
         InfeasibleError
             If the knots do not span a lobe, or the lowest ratio is not below the mean.
         """
-        if abs(self.knots[3] - lobes.period) > 1e-12:
+        if abs(self.knots[3] - lobes.period) > SAME:
             raise InfeasibleError(
                 f"the knots must span {360 / lobes.n1:g} deg for these tooth counts",
                 where="law.knots_deg[3]",

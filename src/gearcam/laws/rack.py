@@ -11,10 +11,9 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import compiled, derivative, formula_problems
-from gearcam.laws.span import Lobes, RackTravel, angle_text, rough
+from gearcam.laws.formula import compiled, derivative, formula_problems, values_of
+from gearcam.laws.span import PLACES, Lobes, RackTravel, angle_text, rough
 from gearcam.numeric.chebyshev import NotSmoothError
-from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
@@ -54,9 +53,10 @@ class RackLaw:
             piece = Piece(derivative(travel), travel)
         else:
             piece = Piece(compiled(self.r1 or "1"))
-        values = piece.function(Jet.variable(np.linspace(0.0, turn, 2049), 0)).derivatives()[0]
+        places = np.linspace(0.0, turn, PLACES)
+        values = values_of(piece.function)(places)
         for bad in np.flatnonzero(~np.isfinite(values))[:1]:
-            raise InfeasibleError("r1 is not finite", where=angle_text(turn * bad / 2048))
+            raise InfeasibleError("r1 is not finite", where=angle_text(float(places[bad])))
         try:
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         except NotSmoothError as error:

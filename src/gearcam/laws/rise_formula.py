@@ -13,6 +13,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import compiled, formula_problems
 from gearcam.laws.rises import RISES, Rise
+from gearcam.laws.span import TYPED
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -20,9 +21,6 @@ from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
-
-_TYPED: Final = 1e-9
-"""Miss of S at either end that is taken out: typed digits."""
 
 _ODD_PLACE: Final = 0.3819660112501052
 """Where the search for corners is cut first: a corner at a round place then lies inside a part."""
@@ -54,7 +52,7 @@ class FormulaRise:
         cuts = _demand_smooth(shape, tolerances)
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
-            if not abs(value - place) <= _TYPED:
+            if not abs(value - place) <= TYPED:
                 raise InfeasibleError(
                     f"the formula must give {place:g} at x = {place:g}",
                     where=_WHERE,
@@ -68,7 +66,7 @@ class FormulaRise:
 
 
 def _from_corner_to_corner(formula: str, start: float, end: float) -> str:
-    if not abs(end - start) > _TYPED:
+    if not abs(end - start) > TYPED:
         return "it is the same at both ends"
     top = f"({formula})" if start == 0.0 else f"(({formula}) - ({start:.17g}))"
     return f"this one does: {top}/({end - start:.17g})"

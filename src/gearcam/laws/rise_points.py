@@ -21,6 +21,7 @@ from gearcam.laws.rises import (
     ClosedForm,
     Rise,
 )
+from gearcam.laws.span import TYPED
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
@@ -28,9 +29,6 @@ from gearcam.tolerances import Tolerances
 
 Array = NDArray[np.float64]
 Problem = tuple[str, int | None, str, str]
-
-_TYPED: Final = 1e-9
-"""Miss of a first or last point from the corners of the square that is overlooked: typed digits."""
 
 _FEWEST: Final = 3
 _MOST: Final = 2000
@@ -184,7 +182,7 @@ def _point_problems(points: Array) -> Iterator[Problem]:
     for column, name in enumerate("xy"):
         for row, place, corner in ((0, "first", 0.0), (len(points) - 1, "last", 1.0)):
             value = float(points[row, column])
-            if abs(value - corner) > _TYPED:
+            if abs(value - corner) > TYPED:
                 message = f"the {place} {name} is {value:.10g}, not {corner:g}"
                 yield name, row, message, "x and y from 0 to 1: parts of the angle and of the lift"
     for row in np.flatnonzero(np.diff(points[:, 0]) < NARROWEST)[:1]:

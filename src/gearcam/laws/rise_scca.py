@@ -14,17 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
 
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.rise_pieces import from_half, lag
 from gearcam.laws.rises import NARROWEST, RISES, ClosedForm
+from gearcam.laws.span import TYPED
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import NUMBER, param
-
-_TYPED: Final = 1e-9
-"""Miss of the widths' sum from 1 that is spread over them: typed digits."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +39,7 @@ class Scca(ClosedForm):
                 rule = f"0, or at least {NARROWEST:g}"
                 yield name, None, "this sector is too narrow", rule
         total = self.b + self.c + self.d
-        if abs(total - 1.0) > _TYPED:
+        if abs(total - 1.0) > TYPED:
             last = 1.0 - self.b - self.c
             hint = f"; with this b and c, d is {last:.10g}" if last >= 0.0 else ""
             yield "d", None, f"b + c + d is {total:.10g}", f"b + c + d = 1{hint}"

@@ -21,6 +21,15 @@ from gearcam.tolerances import Tolerances
 _BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
 """Cubic B-spline on a segment: powers of t (rows) of four control values (columns)."""
 
+_EDGE = 1e-6
+"""Part of a polygon's possible heights left out at the top, where its corner meets the shaft."""
+
+_ROUND = 1e-12
+"""Part of the corners' radius by which the lowest polygon is above a circle: it has sides."""
+
+_HEIGHT = 1e-16
+"""Accuracy of a polygon's height, in centre distances: the last digit."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class BSplineLaw:
@@ -150,9 +159,9 @@ class RoundedPolygon:
                 found.append(driven - 2.0 * math.pi / self.corners * lobes.n1 / lobes.n2)
             return np.array(found).reshape(np.shape(heights))
 
-        edge = 1e-6 * (highest - self.corner_radius)
-        low = np.array(self.corner_radius * (1.0 + 1e-12))
-        return float(bracketed_root(excess, low, np.array(highest - edge), 1e-16))
+        edge = _EDGE * (highest - self.corner_radius)
+        low = np.array(self.corner_radius * (1.0 + _ROUND))
+        return float(bracketed_root(excess, low, np.array(highest - edge), _HEIGHT))
 
 
 def _graded(knots: np.ndarray) -> np.ndarray:

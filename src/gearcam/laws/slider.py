@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.formula import derivative
-from gearcam.laws.span import angle_text
+from gearcam.laws.span import SAME, angle_text
 from gearcam.numeric.jets import Jet, asin, atan, polynomial, slope, sqrt
 from gearcam.numeric.piecewise import Piece, extremes
 
@@ -34,6 +34,16 @@ _ORDER = 30
 
 _TAIL = 6
 """Last terms of the series, by which its reach is judged."""
+
+_BELOW = 1e-17
+"""Last terms of the series, in its first: below rounding."""
+
+_BESIDE = 1e-6
+"""Part of a period beside its end at which the slide is asked whether it turns back there."""
+
+_STILL = 1e-6
+"""Least second Taylor coefficient of the slide at a dead centre, crank radii per rad^2: from there
+on the crank does not stand still."""
 
 _WIDEST = 0.3
 _NARROWEST = 0.02
@@ -120,7 +130,7 @@ def _dead_centres(
 ) -> list[tuple[float, float]]:
     """Inner extremes, and the lobe's end where the slope changes its sign there too."""
     found = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]
-    step = 1e-6 * period
+    step = _BESIDE * period
     before, after = function(np.array([period - step, step]))[1][0]
     at_end = [x for x, _ in found if not step < x < period - step]
     if before * after < 0.0 and not at_end:
@@ -166,7 +176,7 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
         (
             (max(low, 0.0), min(high, period), piece)
             for low, high, piece in stretches
-            if min(high, period) - max(low, 0.0) > 1e-12
+            if min(high, period) - max(low, 0.0) > SAME
         ),
         key=lambda stretch: stretch[0],
     )
@@ -199,12 +209,12 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
     """Return reach and coefficients of the series about a dead centre; sign -1 for the inner."""
     jet = slide.position(Jet.variable(np.array([place]), _ORDER))
     c = np.array([float(np.ravel(value)[0]) for value in jet.c]) * sign
-    if not c[2] > 1e-6:
+    if not c[2] > _STILL:
         raise InfeasibleError(
             "the slide rests at its dead centre, so that the crank would stand still there",
             where=f"law.slide, {angle_text(place)}",
             value=2.0 * float(c[2]),
-            limit=2e-6,
+            limit=2.0 * _STILL,
             nearest="this is the second derivative of the slide's position, in crank radii",
         )
     over, small = Jet(c[2:].tolist()), Jet([0.0, 0.0, *c[2:-2].tolist()])
@@ -215,7 +225,7 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
     rates = np.arange(1, len(powers)) * powers[1:]
     k, sizes = np.arange(len(rates))[-_TAIL:], np.abs(rates[-_TAIL:])
     with np.errstate(divide="ignore"):
-        reach = float(min(_WIDEST, ((1e-17 * rates[0] / sizes) ** (1.0 / k)).min()))
+        reach = float(min(_WIDEST, ((_BELOW * rates[0] / sizes) ** (1.0 / k)).min()))
     reach = min(reach, 0.2 * abs(((slide.inner - slide.outer) % slide.period) or math.inf))
     if reach < _NARROWEST:
         raise InfeasibleError(

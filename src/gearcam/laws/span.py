@@ -27,6 +27,15 @@ _FLAT = 1e-9
 _CLOSED_FORM = 1e-3
 """Growth from which the closed form of the spiral's driven angle is better than an expansion."""
 
+TYPED: Final = 1e-9
+"""Miss, in rad or in parts, that digits typed or printed may leave: it is taken out."""
+
+SAME: Final = 1e-12
+"""Distance of knots, rad, below which they are one: the rounding of a few sums."""
+
+PLACES: Final = 2049
+"""Places over a period, ends included, at which functions are first asked for values to refuse."""
+
 _ROOM = 0.9
 """Largest share of the room to either shaft that a continued centrode may use."""
 

@@ -16,7 +16,7 @@ from gearcam.laws.base import LAWS, RatioLaw, make_law
 from gearcam.laws.columns import ColumnsError, CsvRows, FromFile
 from gearcam.laws.driver import law_of_centrode
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
+from gearcam.laws.span import TYPED, Lobes, Span, Travel, angle_text, demand_equal, open_travel
 from gearcam.numeric.jets import polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
@@ -30,6 +30,7 @@ _VALUES: Final = ("ratio", "phi2_deg", "r1")
 _INLINE: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
 _FEWEST: Final = 6
 _MOST: Final = 20000
+"""Rows of a table: fewer make no curve of quintics, more are a file of something else."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,7 +186,7 @@ def _pieces(knots: Array, powers: Array) -> list[Piece]:
 
 
 def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
-    if abs(angles[0]) > 1e-9:
+    if abs(angles[0]) > TYPED:
         raise InfeasibleError(
             "the table does not begin at phi1 = 0",
             where="law.file",
@@ -196,7 +197,7 @@ def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
     if driven_travel is not None:
         demand_equal(lobes)
         return Travel(float(angles[-1]), driven_travel)
-    if abs(angles[-1] - lobes.period) > 1e-9:
+    if abs(angles[-1] - lobes.period) > TYPED:
         raise InfeasibleError(
             "the table must span one lobe of the tooth counts",
             where="law.file, last phi1_deg",
@@ -209,7 +210,7 @@ def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
 
 
 def _demand_repeat(values: Array, span: Span) -> None:
-    if span.closed and abs(values[-1] - values[0]) > 1e-9 * abs(values[0]):
+    if span.closed and abs(values[-1] - values[0]) > TYPED * abs(values[0]):
         raise InfeasibleError(
             "the last value of the table is not the first",
             where="law.file",

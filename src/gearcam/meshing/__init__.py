@@ -3,6 +3,6 @@
 `contact` says for any phase where flanks touch, how they slide and roll, and which pairs carry;
 `gap` turns the driven wheel until flanks touch, at the designed centre distance or off it: the
 transmission error and the backlash; both are exact and need numpy only. `overlap` turns the
-outlines of the pair step by step and intersects them, in `halves` of teeth and mostly as graphs
-(`staircase`). `study` puts the three side by side.
+outlines of the pair step by step and intersects them, in `halves` of teeth. `study` puts the three
+side by side.
 """

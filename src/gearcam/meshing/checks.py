@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from gearcam.findings import Finding, check
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing import drive_checks
-from gearcam.meshing.rows import on_side
 from gearcam.meshing.settings import KIND
 from gearcam.meshing.study import Meshing, trespasses
 from gearcam.quantities import NUMBER, Param
@@ -30,6 +29,9 @@ _CLEARANCE = (
 )
 _UNPREDICTED = 0.5
 """Share of the penetration from which an overlap that no flank predicts is worth a word."""
+
+_PASSED = 1e-9
+"""Share of the travel by which the angle of a tooth at its end may be off by rounding."""
 
 
 def spans(angles: Array, step: float) -> str:
@@ -48,12 +50,7 @@ def spans(angles: Array, step: float) -> str:
     """
     cuts = np.flatnonzero(np.diff(angles) > 1.5 * step)
     starts, ends = np.append(0, cuts + 1), np.append(cuts, len(angles) - 1)
-    shown = [
-        f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}"
-        for a, b in zip(np.degrees(angles[starts]), np.degrees(angles[ends]), strict=True)
-    ][:3]
-    more = f" and {len(starts) - 3} more" if len(starts) > 3 else ""
-    return f"phi1 = {', '.join(shown)} deg{more}"
+    return drive_checks.ranges_text(list(zip(angles[starts], angles[ends], strict=True)))
 
 
 def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
@@ -61,7 +58,7 @@ def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
     return spans(meshing.phi1[chosen], (end - start) / meshing.setup.spec.steps)
 
 
-@check("interference", kind=KIND, doc="overlap where none may be, or deeper than the advance")
+@check("interference", kind=KIND, doc="overlap where none may be, or deeper than the overclosure")
 def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
     """Report interference, as an error."""
     hit = meshing.every("interferes").astype(bool)
@@ -120,17 +117,12 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
 )
 def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
     """Warn of facing halves that overlap although their flanks cannot."""
-    side, driver = meshing.setup.side, meshing.setup.turning.driver
     least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
+    rows = meshing.columns
+    strange = meshing.on_side & np.ma.getmaskarray(rows["predicted_mm2"])
+    strange &= rows["depth_mm"].filled(0.0) > least
     off = np.zeros(len(meshing.phi1), dtype=bool)
-    for block in meshing.blocks:
-        found, lens = block.overlaps, block.lenses
-        halves = driver.index(2 * lens.pair - (side < 0)) + driver.first
-        known = set(zip(lens.step.tolist(), halves.tolist(), strict=True))
-        keys = zip(found.step.tolist(), found.half[0].tolist(), strict=True)
-        strange = np.array([key not in known for key in keys], dtype=bool)
-        strange &= on_side(found, side) & (found.depth > least)
-        off[block.first + found.step[strange]] = True
+    off[rows["step"].data[strange].astype(np.int64)] = True
     if off.any():
         yield Finding(
             code="fillet-interference",
@@ -187,7 +179,7 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
     ):
         places = toothing.tooth_places[toothing.whole]
         phi1 = turning.rolling.angle(places)
-        passed = phi1 <= pairs.travel * (1.0 + 1e-9)
+        passed = phi1 <= pairs.travel * (1.0 + _PASSED)
         phi1 = phi1[passed]
         turn, shift = turning.pose(phi1, 0.0)
         # the half of a tooth begins in the middle of its tip

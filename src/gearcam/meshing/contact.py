@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import normals, touch
-from gearcam.gears.track import WHEELS, Plane
+from gearcam.gears.track import WHEELS
+from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

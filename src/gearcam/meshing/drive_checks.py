@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from gearcam.meshing.idle import Idle
 
 _SHOWN = 3
-"""Stretches that a finding names."""
+"""Ranges of driver angles that a finding names."""
 
 
 class Sided(Protocol):
@@ -32,11 +32,17 @@ class Sided(Protocol):
         ...
 
 
-def arcs_text(found: list[Idle]) -> str:
-    """Return the stretches as angles in degrees, with the number of those left out."""
-    shown = [f"{math.degrees(a.start):.6g} to {math.degrees(a.end):.6g}" for a in found[:_SHOWN]]
-    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+def ranges_text(ranges: list[tuple[float, float]]) -> str:
+    """Return ranges of driver angles, rad, in degrees, with the number of those left out."""
+    degrees = [(math.degrees(a), math.degrees(b)) for a, b in ranges[:_SHOWN]]
+    shown = [f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}" for a, b in degrees]
+    more = f" and {len(ranges) - _SHOWN} more" if len(ranges) > _SHOWN else ""
     return f"phi1 = {', '.join(shown)} deg{more}"
+
+
+def arcs_text(found: list[Idle]) -> str:
+    """Return the stretches in words."""
+    return ranges_text([(each.start, each.end) for each in found])
 
 
 def side_name(pairs: FlankPairs) -> str:

@@ -9,7 +9,7 @@ between them is what it may turn until these points meet; of a rack, the way tha
 extreme over the common range of heights is the touch of the pair, where the flanks share a tangent
 or at the end of one of them (an edge). The driven wheel lies between the largest of these turns on
 the driving side and the smallest on the other: the first is its transmission error, the difference
-its play. Negative play means that the pair cannot be assembled.
+its backlash. Negative backlash means that the pair cannot be assembled.
 
 Flanks only: that an edge meets the mate's fillet is seen by the stepwise overlap.
 """
@@ -24,14 +24,22 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs, Ints
 from gearcam.gears.guide import Guide
-from gearcam.gears.track import Plane, Wheel
+from gearcam.gears.track import Wheel
 from gearcam.meshing.contact import Contacts
+from gearcam.numeric.arrays import Plane
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 Array = NDArray[np.float64]
 
 _SAMPLES = 13
 """Points of a flank between which the extreme is sought: on a smooth flank there is one."""
+
+_FOUND = 1e-14
+"""Driver angle, rad, to which a point of a given height is found: rounding, so that the turns of
+points compared differ by no more."""
+
+_EXTREME = 1e-10
+"""Driver angle, rad, to which an extreme is found: the turn there changes with its square."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -138,7 +146,7 @@ class Facing:
             return self.guide.height(point) - height, self.guide.rates(point, direction)[0]
 
         start = np.clip(start, np.minimum(low, high), np.maximum(low, high))
-        return newton_in_bracket(miss, low, high, start, 1e-14)
+        return newton_in_bracket(miss, low, high, start, _FOUND)
 
     def compare(self, angle: Array, root: Array, tip: Array) -> tuple[Array, Array]:
         """Compare flanks at points of the driver's.
@@ -266,7 +274,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
         lambda x: some.compare(x, root[inner], tip[inner])[1],
         angle[inner, left[inner]],
         angle[inner, right[inner]],
-        1e-10,
+        _EXTREME,
     )
     extreme[inner] = -pairs.side * some.compare(at[inner], root[inner], tip[inner])[0]
     edge = np.ones(len(low), dtype=bool)

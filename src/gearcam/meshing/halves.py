@@ -4,7 +4,6 @@ Each wheel is divided into *halves* of teeth, from the middle of a tip to the mi
 a little below; h counts them from tooth 1's +s half as 0, wheel 2 from the half that faces it.
 Half h of the driver faces half h of the driven wheel. Closed wheels count on over their turns; an
 open one has the halves -1 to 2z, from one end of its blank to the other, and a *body* below them.
-The edge of a half is the part of it that belongs to the outline; for a first look it is thinned.
 """
 
 from __future__ import annotations
@@ -22,9 +21,7 @@ from numpy.typing import NDArray
 from gearcam.gears.contact import Ints
 from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
-from gearcam.gears.track import Plane
-from gearcam.meshing.edges import Edge, covered, joined, rising, thinned
-from gearcam.meshing.staircase import Edges
+from gearcam.numeric.arrays import Plane
 
 Array = NDArray[np.float64]
 
@@ -46,12 +43,8 @@ class Halves:
         Where each half begins, and the end.
     chord_error : float, mm
         Largest distance of the curve from its chords.
-    edges : Edges
-        What the halves have of the outline.
     tips : (n,) complex array, mm
         Middle of the tip of each half's tooth.
-    width : (n,) array, mm
-        Largest distance of its corners from there.
     teeth : (n,) int array
         Number of each half's tooth.
     first : int
@@ -65,9 +58,7 @@ class Halves:
     points: Plane
     starts: Ints
     chord_error: float
-    edges: Edges
     tips: Plane
-    width: Array
     teeth: Ints
     first: int
     pitch: float
@@ -84,6 +75,10 @@ class Halves:
             return half % self.count
         index = half - self.first
         return np.where((index >= 0) & (index < self.count), index, -1)
+
+    def of_pair(self, pair: Ints, side: int) -> Ints:
+        """Return the halves h, within the first turns, of pairs j of a driver's `side`: `pair`."""
+        return self.index(2 * pair - (side < 0)) + self.first
 
     def tooth(self, half: Ints) -> Any:
         """Return the numbers of the teeth of halves h, masked where it is the body, (n,)."""
@@ -109,11 +104,6 @@ class Halves:
         return np.asarray(shapely.distance(union, shapely.points(points.real, points.imag)))
 
     @cached_property
-    def thinned(self) -> Edges:
-        """The edges with fewer vertices."""
-        return thinned(self.edges, self.chord_error)
-
-    @cached_property
     def circles(self) -> tuple[Plane, Array]:
         """Centres and radii of circles about the halves, (n,), mm."""
         begin, sizes = self.starts[: self.count], np.diff(self.starts)[: self.count]
@@ -122,12 +112,13 @@ class Halves:
         apart = np.abs(points - np.repeat(center, sizes))
         return center, np.asarray(np.maximum.reduceat(apart, begin))
 
-    def gather(self, halves: Ints) -> tuple[Ints, Ints]:
-        """Return the indices into `points` of some `halves`, and which of these each belongs to."""
+    def placed(self, halves: Ints, turn: Plane, shift: Plane) -> Any:
+        """Return `halves` as polygons, (n,), each by its own `turn` and `shift`, mm."""
         sizes = self.starts[halves + 1] - self.starts[halves]
         owner = np.repeat(np.arange(len(halves)), sizes)
         first = np.cumsum(sizes) - sizes
-        return np.arange(len(owner)) - first[owner] + self.starts[halves][owner], owner
+        index = np.arange(len(owner)) - first[owner] + self.starts[halves][owner]
+        return as_polygons(self.points[index] * turn[owner] + shift[owner], sizes)
 
 
 def halve(outline: Outline) -> Halves:
@@ -148,30 +139,20 @@ def halve(outline: Outline) -> Halves:
     points, lands = _lands(outline)
     inner = _inner(outline, len(lands))
     halves: list[Plane] = []
-    edges: list[Edge] = []
-    tips: list[tuple[complex, float]] = []
-    for k, pair in enumerate(pairwise(lands)):
-        # on from a tip or back from it
-        step = 1 if pair[0].tip else -1
-        tip, root = pair[::step]
-        chain = _chain(tip, root, step, len(outline.sampler.chords[1]))
-        own, (under, low) = points[chain[1]], inner[k : k + 2][::step]
-        halves.append(np.concatenate([own, [low, under]]))
-        edges.append(rising(toothing.wheel, [points[part] for part in chain], under, low))
-        tips.append((own[0], np.abs(points[chain[0]] - own[0]).max(initial=0.0)))
+    size = len(outline.sampler.chords[1])
+    for k, (first, second) in enumerate(pairwise(lands)):
+        between = np.arange(first.low + 1, second.high) % size
+        own = points[np.concatenate([[first.middle], between, [second.middle]])]
+        step = 1 if first.tip else -1
+        halves.append(np.concatenate([own[::step], inner[k : k + 2][::-step]]))
     if toothing.closed and toothing.wheel == 2:
-        halves, tips = halves[-1:] + halves[:-1], tips[-1:] + tips[:-1]
-        edges = edges[-1:] + edges[:-1]
-    if toothing.wheel == 2:
-        edges = [covered(k, edges, toothing.closed) for k in range(len(edges))]
+        halves = halves[-1:] + halves[:-1]
     bodies = [] if toothing.closed else [_body(outline, inner)]
     return Halves(
         points=np.concatenate(halves + bodies),
         starts=_starts(halves + bodies),
         chord_error=outline.sampler.chords[2],
-        edges=joined(edges),
-        tips=np.array([tip for tip, _ in tips]),
-        width=np.array([width for _, width in tips]),
+        tips=np.array([half[0] for half in halves]),
         teeth=_teeth(toothing),
         first=0 if toothing.closed else -1,
         pitch=toothing.pitch,
@@ -194,23 +175,12 @@ def _starts(parts: Sequence[Sized]) -> Ints:
 
 
 class _Land(NamedTuple):
-    """A land between the vertices `begin` and `end`, and the number of its middle.
-
-    The middle is a vertex itself, or it lies between `low` and `high` and has a number of its own.
-    """
+    """A land, and the number of its middle: a vertex itself, or one between `low` and `high`."""
 
     tip: bool
-    begin: int
-    end: int
+    low: int
+    high: int
     middle: int
-
-    @property
-    def low(self) -> int:
-        return (self.begin + self.end) // 2
-
-    @property
-    def high(self) -> int:
-        return (self.begin + self.end + 1) // 2
 
 
 def _lands(outline: Outline) -> tuple[Plane, list[_Land]]:
@@ -236,25 +206,10 @@ def _lands(outline: Outline) -> tuple[Plane, list[_Land]]:
     low, high = ends.sum(axis=1) // 2, (ends.sum(axis=1) + 1) // 2
     middles = 0.5 * (points[low % size] + points[high % size])
     lands = [
-        _Land((k % 2 == 0) == (first is tips), begin, end, size + k if a < b else a % size)
-        for k, (begin, end, a, b) in enumerate(
-            zip(*ends.T.tolist(), low.tolist(), high.tolist(), strict=True)
-        )
+        _Land((k % 2 == 0) == (first is tips), a, b, size + k if a < b else a % size)
+        for k, (a, b) in enumerate(zip(low.tolist(), high.tolist(), strict=True))
     ]
     return np.concatenate([points, middles]), lands
-
-
-def _chain(tip: _Land, root: _Land, step: int, size: int) -> tuple[Ints, Ints, Ints]:
-    """Vertices of a half from tip to root, `step` by step: its own, between those of the lands."""
-    if step > 0:
-        before = np.arange(tip.begin, tip.high)
-        own = np.arange(tip.low + 1, root.high)
-        after = np.arange(root.low + 1, root.end + 1)
-    else:
-        before = np.arange(tip.end, tip.low, -1)
-        own = np.arange(tip.high - 1, root.low, -1)
-        after = np.arange(root.high - 1, root.begin - 1, -1)
-    return before % size, np.concatenate([[tip.middle], own % size, [root.middle]]), after % size
 
 
 def _flanks(outline: Outline) -> Ints:

@@ -10,6 +10,9 @@ from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import touch
 from gearcam.meshing.gap import foremost, to_pitch_line, touches
 
+_ROUNDING = 1e-12
+"""Share of a lobe by which the driver angle of its end may be off by rounding."""
+
 _BETWEEN = np.linspace(0.02, 0.98, 9)
 """Shares of a stretch at which it is asked what drives."""
 
@@ -50,7 +53,7 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
     """
     start, end, carrying = pairs.stretches
     lobe = pairs.track.arc.period if pairs.closed and pairs.even else pairs.travel
-    at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - 1e-12)))
+    at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - _ROUNDING)))
     phi1 = (start[at, None] + (end - start)[at, None] * _BETWEEN).ravel()
     if not phi1.size:
         return ()

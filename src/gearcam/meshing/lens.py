@@ -18,7 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import Normals, Pose, normals
-from gearcam.gears.track import WHEELS, Plane, Wheel
+from gearcam.gears.track import WHEELS, Wheel
+from gearcam.numeric.arrays import Plane
+from gearcam.numeric.newton import damped_newton
 from gearcam.numeric.roots import newton_in_bracket
 
 Array = NDArray[np.float64]
@@ -26,9 +28,6 @@ Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
-
-_STEPS = 30
-"""Newton steps towards a common normal; as designed three serve."""
 
 _SMALL = 1e-9
 """Step, in pitches, at which they end."""
@@ -173,7 +172,7 @@ class Graphs:
         return self.at(1, one)[1] - self.at(2, two)[1], one, two
 
 
-def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike = 0.0) -> Lenses:
+def lenses(pairs: FlankPairs, phi1: ArrayLike, overclosure: float, lead: ArrayLike = 0.0) -> Lenses:
     """Predict the overlaps of a side.
 
     Parameters
@@ -182,7 +181,7 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike =
         The side.
     phi1 : (n,) array, rad
         Phases.
-    advance : float, rad
+    overclosure : float, rad
         How far the driver is ahead of them.
     lead : (n,) array or float, rad
         How far the driven wheel is ahead of its nominal place; of a rack mm.
@@ -195,7 +194,7 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike =
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     step, pair = pairs.beside(phi1)
     lead = np.broadcast_to(lead, phi1.shape)[step]
-    some, deep, bend, graphs = _overlapping(pairs, pair, phi1[step], advance, lead)
+    some, deep, bend, graphs = _overlapping(pairs, pair, phi1[step], overclosure, lead)
     ends = graphs.ends(1), graphs.ends(2)
     places = graphs.places(ends)
     # past a cusp the normal is not where the flanks are deepest: that is at an end then
@@ -233,13 +232,13 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, advance: float, lead: ArrayLike =
 
 
 def _overlapping(
-    pairs: FlankPairs, pair: Ints, phi1: Array, advance: float, lead: Array
+    pairs: FlankPairs, pair: Ints, phi1: Array, overclosure: float, lead: Array
 ) -> tuple[Ints, Array, Array, Graphs]:
     """Find the normals that pairs share, and the pairs that overlap along them.
 
     Returns their places, penetrations, mm, relative curvatures, 1/mm, and graphs.
     """
-    side, ahead = pairs.side, phi1 + advance
+    side, ahead = pairs.side, phi1 + overclosure
     lead = lead + pairs.guide.nominal(phi1) - pairs.guide.nominal(ahead)
     pose, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.separation(pair))
     deep = -side * at.equations[1]
@@ -266,20 +265,18 @@ def _overlapping(
 
 def _shared(pairs: FlankPairs, pose: Pose, play: Array) -> tuple[Pose, Normals]:
     """Find the rolls at which two flanks of a given pose have one normal, at any distance."""
-    at = normals(pairs, pose, play)
-    for _ in range(_STEPS):
-        (a, b), (c, d) = at.slopes[0, 1:3], at.slopes[2, 1:3]
-        turn, across = at.equations[0], at.equations[2]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            steps = np.stack([b * across - d * turn, c * turn - a * across]) / (a * d - b * c)
-            size = np.abs(steps).max(axis=0) * at.frames[0].speed
-            steps = steps * np.minimum(1.0, 0.5 * pairs.pitch / size)
-        steps = np.where(np.isfinite(steps), steps, 0.0)
-        pose = pose._replace(one=pose.one + steps[0], two=pose.two + steps[1])
-        at = normals(pairs, pose, play)
-        if not np.any(size > _SMALL * pairs.pitch):
-            break
-    return pose, at
+    # the third unknown is the distance along it
+    by_distance = np.stack([np.zeros_like(play), -np.ones_like(play), np.zeros_like(play)])
+
+    def evaluate(x: Array) -> tuple[Normals, Array, Array]:
+        at = normals(pairs, pose._replace(one=x[0], two=x[1]), play)
+        slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by_distance], axis=1)
+        return at, at.equations + x[2] * by_distance, slopes
+
+    scale = pairs.toothings[0].frames(pose.one, curved=False).speed / pairs.pitch
+    x = np.stack([pose.one, pose.two, np.zeros_like(play)])
+    x, at = damped_newton(evaluate, x, scale, _SMALL)
+    return pose._replace(one=x[0], two=x[1]), at
 
 
 def _end(

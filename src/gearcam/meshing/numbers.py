@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.meshing.rows import on_side, stepwise_pairs
-
-if TYPE_CHECKING:
-    from gearcam.meshing.study import Meshing
+from gearcam.meshing.study import Meshing
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 LEAST_STEPS = 8
 """Steps a tooth below which harmonics are not told."""
+
+WHOLE = 1e-9
+"""Part of a turn by which whole turns, written in degrees, may be off: rounding."""
 
 MOST_ORDERS = 3
 """Harmonics that are told, in harmonics of the mesh."""
@@ -42,7 +43,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
         "complete": meshing.complete,
         "steps": meshing.asked,
         "steps_done": len(meshing.phi1),
-        "advance_deg": float(np.degrees(setup.spec.advance)),
+        "overclosure_deg": float(np.degrees(setup.spec.overclosure)),
         "penetration_mm": setup.penetration,
         "chord_error_mm": max(turning.driver.chord_error, turning.driven.chord_error),
         "contact_ratio": extent(pairs.contact_ratios),
@@ -84,7 +85,7 @@ def motion(meshing: Meshing) -> dict[str, Any]:
     -------
     dict
         ``lag_mm``, by which the driven wheel is behind its nominal place, along the pitch curve,
-        when the play is taken up; ``transmission_error``: its deviation from that on the mean.
+        when the backlash is taken up; ``transmission_error``: its deviation from that on the mean.
     """
     lead, along = meshing.every("lead"), meshing.every("along")
     touching = np.isfinite(lead)
@@ -124,7 +125,7 @@ def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
     turns = (meshing.setup.stretch[1] - meshing.setup.stretch[0]) / (2.0 * np.pi)
     if not pairs.closed:
         return "the driver does not turn for ever"
-    if round(turns) < 1 or abs(turns - round(turns)) > 1e-9:
+    if round(turns) < 1 or abs(turns - round(turns)) > WHOLE:
         return "the study is not of whole turns of the driver"
     if spec.teeth is not None or not meshing.complete:
         return "not every phase was studied"
@@ -164,7 +165,7 @@ def harmonics(meshing: Meshing, lead: Array) -> list[dict[str, float]]:
     ]
 
 
-def extent(values: Array | NDArray[np.int64], kind: type = float) -> dict[str, Any]:
+def extent(values: Array | Ints, kind: type = float) -> dict[str, Any]:
     """Return the smallest and the largest of some values.
 
     Parameters
@@ -182,28 +183,14 @@ def extent(values: Array | NDArray[np.int64], kind: type = float) -> dict[str, A
     return {"min": kind(values.min()), "max": kind(values.max())}
 
 
-def pairs_in_contact(meshing: Meshing) -> NDArray[np.int64]:
-    """Return how many pairs overlap at each phase, as the outlines say.
-
-    Parameters
-    ----------
-    meshing : Meshing
-        A study.
-
-    Returns
-    -------
-    (n,) int array
-    """
-    setup = meshing.setup
-    return np.concatenate(
-        [
-            stepwise_pairs(block.overlaps, setup.side, len(block.phi1), setup.noise)
-            for block in meshing.blocks
-        ]
-    )
+def pairs_in_contact(meshing: Meshing) -> Ints:
+    """Return how many pairs overlap at each phase, as the outlines say, (n,)."""
+    rows = meshing.columns
+    good = meshing.on_side & (rows["depth_mm"].filled(0.0) > meshing.setup.noise)
+    return np.bincount(rows["step"].data[good].astype(np.int64), minlength=len(meshing.phi1))
 
 
-def agreement(meshing: Meshing, stepwise: NDArray[np.int64]) -> dict[str, Any]:
+def agreement(meshing: Meshing, stepwise: Ints) -> dict[str, Any]:
     """Compare the outlines' overlaps with those that the exact flanks predict.
 
     Parameters
@@ -218,35 +205,19 @@ def agreement(meshing: Meshing, stepwise: NDArray[np.int64]) -> dict[str, Any]:
     dict
         ``inside``: largest relative difference of the area from the closed form where that holds;
         ``clipped_mm2``: largest difference from the integrated gap elsewhere; ``steps_apart``:
-        phases at which outlines and exact flanks, both with the advance, count different pairs.
+        phases at which outlines and exact flanks, both with the overclosure, count different pairs.
     """
-    inside, clipped, predicted = [0.0], [0.0], []
-    for block in meshing.blocks:
-        area, lens, closed = (
-            dict(zip(keys, values.tolist(), strict=True)) for keys, values in _areas(meshing, block)
-        )
-        for key, value in lens.items():
-            found, plain = area.get(key, 0.0), closed[key]
-            if np.isfinite(plain):
-                inside.append(abs(found / plain - 1.0))
-            else:
-                clipped.append(abs(found - value))
-        deep = block.lenses.step[block.lenses.depth > meshing.setup.noise]
-        predicted.append(np.bincount(deep, minlength=len(block.phi1)))
-    apart = np.count_nonzero(stepwise != np.concatenate(predicted))
+    area, predicted, closed = (
+        meshing.columns[name] for name in ("area_mm2", "predicted_mm2", "closed_mm2")
+    )
+    noise = meshing.setup.noise
+    clipped = np.abs(area - predicted)[np.ma.getmaskarray(closed)]
+    found = [
+        np.bincount(block.lenses.step, block.lenses.depth > noise, minlength=len(block.phi1))
+        for block in meshing.blocks
+    ]
     return {
-        "inside": float(max(inside)),
-        "clipped_mm2": float(max(clipped)),
-        "steps_apart": int(apart),
+        "inside": float(np.abs(area / closed - 1.0).filled(0.0).max(initial=0.0)),
+        "clipped_mm2": float(clipped.filled(0.0).max(initial=0.0)),
+        "steps_apart": int(np.count_nonzero(stepwise != np.concatenate(found))),
     }
-
-
-def _areas(meshing: Meshing, block: Any) -> list[tuple[list[tuple[int, int]], Array]]:
-    """Areas of the facing pairs by (step, half): found, predicted, in closed form."""
-    side, driver = meshing.setup.side, meshing.setup.turning.driver
-    found, lens = block.overlaps, block.lenses
-    good = on_side(found, side)
-    halves = (driver.index(2 * lens.pair - (side < 0)) + driver.first).tolist()
-    keys = list(zip(lens.step.tolist(), halves, strict=True))
-    seen = list(zip(found.step[good].tolist(), found.half[0][good].tolist(), strict=True))
-    return [(seen, found.area[good]), (keys, lens.area), (keys, lens.closed)]

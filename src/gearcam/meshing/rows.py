@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.gears.contact import Ints
 from gearcam.meshing.contact import Contacts
 from gearcam.meshing.lens import Lenses
 from gearcam.meshing.overlap import Overlaps, Turning
@@ -27,28 +26,26 @@ class Block:
     phi1, phi2 : (n,) arrays, rad
         Driver and nominal driven angles.
     side : {-1, +1}
-        sigma of the driver's flanks that the advance presses together.
+        sigma of the driver's flanks that the overclosure presses together.
     lead : (n,) array, rad
         The driven wheel's turn from its nominal place at first touch on that side (of a rack its
         way, mm); not finite where nothing touches.
     along : (n,) array, mm/rad
         What such turns are along the pitch curve.
-    play : (n,) array, rad
-        What the driven wheel can turn between both touches.
     backlash : (n,) array, mm
-        The same along the pitch curve.
+        What the driven wheel can turn between both touches, along the pitch curve.
     edge : (n,) bool array
         Whether an edge decides the first touch.
     held_back : (n,) array, mm
-        Distance of the flanks when the driver is held back by the advance.
+        Distance of the flanks when the driver is held back by the overclosure.
     overlaps : Overlaps
         Of the outlines, with the driver ahead.
     contacts : Contacts
-        Exact ones, without advance.
+        Exact ones, without overclosure.
     lenses : Lenses
         Predicted overlaps.
     interferes : (n,) bool array
-        Whether flanks overlap that should not, or deeper than the advance explains.
+        Whether flanks overlap that should not, or deeper than the overclosure explains.
     """
 
     first: int
@@ -57,7 +54,6 @@ class Block:
     side: int
     lead: Array
     along: Array
-    play: Array
     backlash: Array
     edge: Mask
     held_back: Array
@@ -84,28 +80,6 @@ def on_side(found: Overlaps, side: int) -> NDArray[np.bool_]:
     return found.facing & (found.half[0] % 2 == (side < 0))
 
 
-def stepwise_pairs(found: Overlaps, side: int, count: int, noise: float) -> Ints:
-    """Return how many pairs of a side overlap at each phase.
-
-    Parameters
-    ----------
-    found : Overlaps
-        Pieces.
-    side : {-1, +1}
-        sigma of the driver's halves.
-    count : int
-        Number of phases.
-    noise : float, mm
-        Depth that the chords alone explain: no contact.
-
-    Returns
-    -------
-    (count,) int array
-    """
-    good = on_side(found, side) & (found.depth > noise)
-    return np.bincount(found.step[good], minlength=count)
-
-
 def columns_of(blocks: list[Block], turning: Turning) -> dict[str, Array]:
     """Return the rows of a study: one for each phase and pair that overlaps or is in contact.
 
@@ -129,10 +103,13 @@ def columns_of(blocks: list[Block], turning: Turning) -> dict[str, Array]:
 
 def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     found, exact, lens = block.overlaps, block.contacts, block.lenses
+    wheels = turning.driver, turning.driven
     keys = [
         (found.step, *found.half),
-        (exact.step, *_halves(exact.pair, block.side, turning)),
-        (lens.step, *_halves(lens.pair, block.side, turning)),
+        *(
+            (each.step, *(halves.of_pair(each.pair, block.side) for halves in wheels))
+            for each in (exact, lens)
+        ),
     ]
     every, where = np.unique(
         np.hstack([np.stack(key) for key in keys]), axis=1, return_inverse=True
@@ -178,10 +155,3 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back[step],
     }
-
-
-def _halves(pair: Ints, side: int, turning: Turning) -> tuple[Ints, Ints]:
-    """Return the halves of pairs j of a side, counted within the first turns."""
-    half = 2 * pair - (side < 0)
-    one, two = (halves.index(half) + halves.first for halves in (turning.driver, turning.driven))
-    return one, two

@@ -13,12 +13,12 @@ KIND = "meshing"
 
 @dataclass(frozen=True, kw_only=True)
 class MeshingSpec:
-    """Phases of the driver, its advance, and how the wheels are mounted.
+    """Phases of the driver, its overclosure, and how the wheels are mounted.
 
     The phases divide the stretch from `start` to `end` into `steps` equal parts, its end left out;
     open wheels and racks are studied at both of its ends. Without `end` it is a turn of the driver,
     or the travel of open wheels and racks to the stop.
-    The driver is turned ahead by `advance` at each (a negative one holds it back, so that the
+    The driver is turned ahead by `overclosure` at each (a negative one holds it back, so that the
     other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
     the pitch point are studied. Without `center_distance` the wheels stand as designed.
     """
@@ -35,7 +35,7 @@ class MeshingSpec:
         word="to",
         doc="driver angle at which the study ends; a turn, or the last stop, if left out",
     )
-    advance: float = param(
+    overclosure: float = param(
         ANGLE,
         default=math.radians(0.005),
         ge=-1,

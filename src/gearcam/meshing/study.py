@@ -1,16 +1,17 @@
 """The meshing study: exact contact, exact gap and stepwise overlap side by side, phase by phase.
 
 At every phase the driven wheel is first turned until it touches, as in a machine: this takes up the
-play. Then the driver is turned ahead by a small angle, and the outlines are intersected; the exact
-flanks say which pairs must overlap, how much, and how far the driven wheel could turn. The outlines
-are made anew, so fine that the chord errors of both together are at most a hundredth of the
-penetration. An interruption keeps the phases done.
+backlash. Then the driver is turned ahead by a small angle, and the outlines are intersected; the
+exact flanks say which pairs must overlap, how much, and how far the driven wheel could turn. The
+outlines are made anew, so fine that the chord errors of both together are at most a hundredth of
+the penetration. An interruption keeps the phases done.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,7 @@ BLOCK = 120
 """Phases that are studied at once: few enough for progress, many enough to be fast."""
 
 DEEPER = 1.25
-"""Depth of overlap, over what the advance explains, from which flanks count as interfering."""
+"""Depth of overlap, over what the overclosure explains, from which flanks count as interfering."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -54,7 +55,7 @@ class Setup:
     turning : Turning
         The outlines.
     penetration : float, mm
-        Smallest penetration of a full contact: advance times lever.
+        Smallest penetration of a full contact: overclosure times lever.
     lever : float, mm
         Largest lever of the driver.
     """
@@ -77,8 +78,8 @@ class Setup:
 
     @property
     def side(self) -> int:
-        """The side that the advance presses together."""
-        return DRIVE if self.spec.advance > 0.0 else COAST
+        """The side that the overclosure presses together."""
+        return DRIVE if self.spec.overclosure > 0.0 else COAST
 
     @property
     def noise(self) -> float:
@@ -117,17 +118,16 @@ class Meshing:
         """Whether every phase was studied."""
         return len(self.phi1) == self.asked
 
-    @property
-    def columns(self) -> dict[str, Array]:
+    @cached_property
+    def columns(self) -> dict[str, Any]:
         """The rows of ``meshing.csv``: one a phase and pair of halves that touch or should."""
         return columns_of(self.blocks, self.setup.turning)
 
     @property
-    def summary(self) -> dict[str, Any]:
-        """The numbers of the study, for JSON."""
-        from gearcam.meshing.numbers import numbers
-
-        return numbers(self)
+    def on_side(self) -> NDArray[np.bool_]:
+        """Which rows are of facing halves of the side that is pressed together."""
+        rows = self.columns
+        return (rows["facing"].data > 0.0) & (rows["side"].data == self.setup.side)
 
     def every(self, name: str) -> Array:
         """Return a field of all blocks, end to end, by its `name`."""
@@ -156,7 +156,7 @@ def study(gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None
     Raises
     ------
     InfeasibleError
-        If the wheels do not reach each other, or the advance is lost in rounding.
+        If the wheels do not reach each other, or the overclosure is lost in rounding.
     """
     return run(mount(gears, spec), progress)
 
@@ -178,7 +178,7 @@ def run(setup: Setup, progress: Progress | None = None) -> Meshing:
 
 
 def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
-    """Put a pair on its shafts, with outlines as fine as the advance asks for.
+    """Put a pair on its shafts, with outlines as fine as the overclosure asks for.
 
     Parameters
     ----------
@@ -194,24 +194,24 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
     Raises
     ------
     InfeasibleError
-        If the wheels do not reach each other, or the advance is lost in rounding.
+        If the wheels do not reach each other, or the overclosure is lost in rounding.
     """
     pair = gears[0].pair
     distance = _distance(pair, spec)
     pairs = {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
-    side = DRIVE if spec.advance > 0.0 else COAST
+    side = DRIVE if spec.overclosure > 0.0 else COAST
     grid = np.linspace(0.0, pairs[side].travel, 20 * len(pairs[side].numbers))
     levers = contacts(pairs[side], grid).lever[0]
     if not levers.size:
         levers = np.abs(pair.rolling.tracks[0].frames(np.zeros(1)).p.real)
-    penetration = abs(spec.advance) * float(levers.min())
+    penetration = abs(spec.overclosure) * float(levers.min())
     tolerance = min(_SHARE * penetration, pair.chord_tolerance(None))
     if tolerance < FINEST * pair.module:
-        least = spec.advance * FINEST * pair.module / tolerance
+        least = spec.overclosure * FINEST * pair.module / tolerance
         raise InfeasibleError(
-            "the advance is so small that the overlap would be lost in rounding",
-            where="meshing.advance_deg",
-            value=float(np.degrees(spec.advance)),
+            "the overclosure is so small that the overlap would be lost in rounding",
+            where="meshing.overclosure_deg",
+            value=float(np.degrees(spec.overclosure)),
             limit=float(np.degrees(least)),
             unit="deg",
             nearest=f"at least {np.degrees(abs(least)):.3g} deg",
@@ -278,12 +278,11 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
         if s == side:
             edge = by_edge
     lead = np.where(np.isfinite(extreme[side]), extreme[side], 0.0)
-    ahead = turning.overlaps(phi1, spec.advance, lead)
-    held = turning.gaps(side, phi1, -spec.advance, lead)
-    play = extreme[COAST] - extreme[DRIVE]
+    ahead = turning.overlaps(phi1, spec.overclosure, lead)
+    held = turning.gaps(side, phi1, -spec.overclosure, lead)
     along = to_pitch_line(setup.pairs[side], phi1)
-    backlash = play * along
-    # too little room for both sides is hidden from the outlines by the advance
+    backlash = (extreme[COAST] - extreme[DRIVE]) * along
+    # too little room for both sides is hidden from the outlines by the overclosure
     interferes = backlash < -setup.noise
     interferes[ahead.step[trespasses(setup, ahead)]] = True
     return Block(
@@ -294,18 +293,17 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
         lead=extreme[side],
         along=along,
         backlash=backlash,
-        play=play,
         edge=edge,
         held_back=held,
         overlaps=ahead,
         contacts=touching[side],
-        lenses=lenses(setup.pairs[side], phi1, spec.advance, lead),
+        lenses=lenses(setup.pairs[side], phi1, spec.overclosure, lead),
         interferes=interferes,
     )
 
 
 def trespasses(setup: Setup, found: Overlaps) -> NDArray[np.bool_]:
-    """Return which overlaps should not be, or are deeper than the advance explains.
+    """Return which overlaps should not be, or are deeper than the overclosure explains.
 
     Parameters
     ----------
@@ -319,5 +317,5 @@ def trespasses(setup: Setup, found: Overlaps) -> NDArray[np.bool_]:
     (n,) bool array
     """
     expected = on_side(found, setup.side)
-    limit = np.where(expected, DEEPER * abs(setup.spec.advance) * setup.lever, 0.0) + setup.noise
-    return found.depth > limit
+    deepest = DEEPER * abs(setup.spec.overclosure) * setup.lever
+    return found.depth > np.where(expected, deepest, 0.0) + setup.noise

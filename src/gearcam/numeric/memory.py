@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 _BLOCK = 31 << 20
 """Size of the block, bytes: just below 32 MiB, the largest that glibc learns from."""
 
 
-@cache
 def keep_freed_memory() -> None:
     """Make the allocator keep freed arrays for the next ones.
 

@@ -108,3 +108,27 @@ def bracketed_root(
         t = np.clip(np.where(fits & np.isfinite(quadratic), quadratic, 0.5), inset, 1.0 - inset)
         t = np.where(fa == 0.0, 0.0, t)
     return np.where(np.abs(fa) <= np.abs(fb), a, b)
+
+
+def largest_fitting(fits: Callable[[float], bool], high: float, halvings: int) -> float:
+    """Return the largest number below `high` that fits, to ``high/2**halvings``.
+
+    Parameters
+    ----------
+    fits : callable
+        Whether a number fits: those up to a limit do.
+    high : float
+        A number that does not.
+    halvings : int
+        Steps of the search.
+
+    Returns
+    -------
+    float
+        0 where none fits.
+    """
+    low = 0.0
+    for _ in range(halvings):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return low

@@ -36,6 +36,19 @@ def each(quantity: Quantity, **rest: Any) -> Any:
     return param(quantity, both=True, **rest)
 
 
+def _length(*, doc: str, le: float = 1e6) -> Any:
+    """Return lengths that are 0 where there is none of what they measure."""
+    return each(LENGTH, default=(0, 0), ge=0, le=le, doc=doc)
+
+
+def _angle(*, doc: str) -> Any:
+    return each(ANGLE, default=(0, 0), ge=-360, le=360, doc=f"{doc} in the wheel's frame")
+
+
+def _count(*, doc: str, le: int) -> Any:
+    return each(COUNT, default=(0, 0), ge=0, le=le, doc=doc)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Blank:
     """Bores, hubs, holes, marks and edges of both wheels, driver first; 0 means none."""
@@ -43,40 +56,20 @@ class Blank:
     bore_diameter: tuple[float, float] | None = each(
         LENGTH, default=None, ge=0, le=1e6, doc="bores; none if left out"
     )
-    keyway_width: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e6, doc="width of the keyway"
+    keyway_width: tuple[float, float] = _length(doc="width of the keyway")
+    keyway_depth: tuple[float, float] = _length(
+        doc="its depth from the bore's circle, at its middle"
     )
-    keyway_depth: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e6, doc="its depth from the bore's circle, at its middle"
-    )
-    keyway_angle: tuple[float, float] = each(
-        ANGLE, default=(0, 0), ge=-360, le=360, doc="its direction in the wheel's frame"
-    )
-    bore_flat: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e6, doc="D-bore: from the flat to the far side"
-    )
-    bolts: tuple[int, int] = each(COUNT, default=(0, 0), ge=0, le=100, doc="bolt holes")
-    bolt_circle: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e6, doc="diameter of their circle"
-    )
-    bolt_diameter: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e6, doc="diameter of each"
-    )
-    bolt_angle: tuple[float, float] = each(
-        ANGLE, default=(0, 0), ge=-360, le=360, doc="direction of the first in the wheel's frame"
-    )
-    hub_diameter: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e6, doc="diameter of the hub"
-    )
-    hub_front: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e5, doc="how far the hub stands out in front (+z)"
-    )
-    hub_back: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e5, doc="how far it stands out at the back"
-    )
-    lightening_holes: tuple[int, int] = each(
-        COUNT, default=(0, 0), ge=0, le=36, doc="round holes that take weight off"
-    )
+    keyway_angle: tuple[float, float] = _angle(doc="its direction")
+    bore_flat: tuple[float, float] = _length(doc="D-bore: from the flat to the far side")
+    bolts: tuple[int, int] = _count(doc="bolt holes", le=100)
+    bolt_circle: tuple[float, float] = _length(doc="diameter of their circle")
+    bolt_diameter: tuple[float, float] = _length(doc="diameter of each")
+    bolt_angle: tuple[float, float] = _angle(doc="direction of the first")
+    hub_diameter: tuple[float, float] = _length(doc="diameter of the hub")
+    hub_front: tuple[float, float] = _length(doc="how far the hub stands out in front (+z)", le=1e5)
+    hub_back: tuple[float, float] = _length(doc="how far it stands out at the back", le=1e5)
+    lightening_holes: tuple[int, int] = _count(doc="round holes that take weight off", le=36)
     rim: tuple[float, float] | None = each(
         LENGTH, default=None, gt=0, le=1e6,
         doc="rim that they keep below the roots; 2.7 modules if left out",
@@ -85,10 +78,9 @@ class Blank:
         LENGTH, default=None, gt=0, le=1e6,
         doc="what they keep to one another, to bore, hub and bolts; as the rim if left out",
     )  # fmt: skip
-    stop_pin: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=1e5,
-        doc="diameter of the stop pin in the slot of an open wheel",
-    )  # fmt: skip
+    stop_pin: tuple[float, float] = _length(
+        doc="diameter of the stop pin in the slot of an open wheel", le=1e5
+    )
     timing_marks: bool = param(TEXT, default=True, doc="dimples that face each other at phi1 = 0")
     mark_diameter: float | None = param(
         LENGTH, default=None, gt=0, le=1e5, doc="their diameter; 0.4 modules if left out"
@@ -96,16 +88,16 @@ class Blank:
     density: tuple[float, float] | None = each(
         DENSITY, default=None, gt=0, le=1e5, doc="for mass, centroid, unbalance and inertia"
     )
-    clearance: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=100, doc="taken off the toothed edge, along its normal"
+    clearance: tuple[float, float] = _length(
+        doc="taken off the toothed edge, along its normal", le=100
     )
     clearance_bores: bool = param(
         TEXT,
         default=False,
         doc="whether bores, bolt holes and stop slots are wider by it, all around",
     )
-    tip_rounding: tuple[float, float] = each(
-        LENGTH, default=(0, 0), ge=0, le=100, doc="radius of the teeth's rounded tip edges"
+    tip_rounding: tuple[float, float] = _length(
+        doc="radius of the teeth's rounded tip edges", le=100
     )
 
     def wheel(self, number: int) -> WheelBlank:

@@ -88,6 +88,11 @@ def volume_moments(body: Body) -> tuple[Moments, float]:
         Those of the plane regions times their heights: volume, first moments, polar moment.
     height : float, mm^4
         Integral of z.
+
+    Raises
+    ------
+    TypeError
+        If this kind of body is not registered.
     """
     raise TypeError(f"the mass of a {type(body).__name__} is not known")
 

@@ -40,6 +40,12 @@ _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
 
 
+_FINE: Final = 1e-4
+"""Sagitta of chords that stand for openings when it is asked what they meet, modules."""
+
+_RIMS: Final = 32
+"""Chords of a quarter of a circle around the outline's corners."""
+
 _RADII: Final = 128
 _RAYS: Final = 91
 """Radii and directions among which the roomiest place of a stop slot is sought."""
@@ -50,7 +56,7 @@ _QUARTER: Final = 64
 
 @dataclass(frozen=True, kw_only=True)
 class Workpiece:
-    """Where a blank is made.
+    """What a blank is made into: a wheel of a pair, or a cam.
 
     Parameters
     ----------
@@ -174,14 +180,15 @@ def _demand_apart(
     found: Sequence[Opening], blank: WheelBlank, solid: Polygon, work: Workpiece
 ) -> None:
     """Refuse openings that meet each other, the hub's edge or the outline."""
-    from shapely import Point, Polygon
+    from shapely import Polygon
 
-    regions = [Polygon(opening.shape.points(1e-4 * work.module)) for opening in found]
-    hub = Point(0.0, 0.0).buffer(0.5 * blank.hub_diameter, quad_segs=256).boundary
-    for number, (opening, region) in enumerate(zip(found, regions, strict=True)):
+    edges = [opening.shape.points(_FINE * work.module) for opening in found]
+    regions = [Polygon(edge) for edge in edges]
+    for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
         if not solid.contains(region):
             raise _no_room(opening, solid, "the outline", work, blank.widening)
-        if blank.hub_diameter and region.intersects(hub):
+        away = np.hypot(*edge.T)
+        if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
             raise _no_room(opening, solid, "the edge of the hub", work, blank.widening)
         for other, second in zip(found[:number], regions[:number], strict=True):
             if region.intersects(second):
@@ -320,7 +327,7 @@ def _lightening(
         for other in others
         if other.kind != "BORE"
     ]
-    free: Any = solid.buffer(-rim, quad_segs=32).difference(union_all(taken))
+    free: Any = solid.buffer(-rim, quad_segs=_RIMS).difference(union_all(taken))
     far = 2.0 * float(np.abs(solid.bounds).max())
     for number in range(count):
         middle = 2.0 * math.pi * (number + 0.5) / count

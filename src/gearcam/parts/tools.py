@@ -154,7 +154,7 @@ def _slot(contour: Contour) -> tuple[float, complex | None]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _ByLength:
-    """The runs of a contour one behind the other, with the `way` to each point, mm.
+    """The runs of a contour one behind the other by arc length: the `way` to each point, mm.
 
     `first` and `last` are the numbers of the runs' first and last points.
     """

@@ -103,12 +103,18 @@ class Board:
         Millimetres of paper over millimetres of the part.
     area : (2,) array, (2,) array, mm of the part
         Where texts of the views may stand.
+    paper : str
+        On which it will stand, such as ``A4``.
+    corner : (2,) array, mm of the part
+        Lower left corner of the paper.
     features, dimensions, texts, rows : list
         As of `Sheet`.
     """
 
     scale: float
     area: Box
+    paper: str = ""
+    corner: Array = field(default_factory=lambda: np.zeros(2))
     features: list[Feature] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     texts: list[Text] = field(default_factory=list)

@@ -15,10 +15,10 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import CENTER, CENTRODE, Circle, Contour, Cross, Drawing, Path
+from gearcam.drawings import CENTER, CENTRODE, Circle, Cross, Drawing, Path
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.extent import true_points
-from gearcam.sheets.paper import choose, finish, start
+from gearcam.sheets.paper import begin, finish
 from gearcam.sheets.sheet import CENTERLINE, Array, Sheet, fine
 
 LEFT: Final = 24.0
@@ -76,9 +76,8 @@ def pair_sheet(
     low, high = points.min(axis=0), points.max(axis=0)
     size = float(high[0] - low[0]), float(high[1] - low[1])
     below = FIRST_LEVEL + LEVEL * LEVELS
-    form = choose(size, (LEFT + RIGHT, below + ABOVE), len(facts) + 2)
     room = np.array([LEFT, below]), np.array([RIGHT, ABOVE])
-    board, corner = start(form, size, room, low)
+    board = begin(size, room, low, len(facts) + 2)
     _views(board, drawing, (0.0, center_distance) if center_distance else (0.0,))
     _sizes(board, points, center_distance, pitch_radius)
     place = _pitch_point(drawing) if pitch_radius is None else np.array([pitch_radius, 0.0])
@@ -94,24 +93,19 @@ def pair_sheet(
         "Dashed: centrodes; they touch at the pitch point.",
         "Each wheel is made to its own sheet and file.",
     ]
-    return finish(board, form, corner, name=drawing.name, title=title, facts=facts, notes=notes)
+    return finish(board, name=drawing.name, title=title, facts=facts, notes=notes)
 
 
 def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
     for feature in drawing.features:
         if feature.kind != CENTER and not isinstance(feature.shape, Cross):
             board.draw(feature.layer, feature.shape)
-    over, contours = OVERHANG * board.unit, drawing.contours
-    for shaft, contour in zip(shafts, contours, strict=False):
-        (_, low), (_, high) = _corners(contour)
+    over, outlines = OVERHANG * board.unit, [one.vertices for one in drawing.contours]
+    for shaft, outline in zip(shafts, outlines, strict=False):
+        low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
         board.line(CENTERLINE, (shaft, low - over), (shaft, high + over))
-    ends = [_corners(contour)[:, 0] for contour in contours]
-    left, right = float(np.min(ends)), float(np.max(ends))
-    board.line(CENTERLINE, (left - over, 0.0), (right + over, 0.0))
-
-
-def _corners(contour: Contour) -> Array:
-    return np.array([contour.vertices.min(axis=0), contour.vertices.max(axis=0)])
+    xs = np.concatenate(outlines)[:, 0]
+    board.line(CENTERLINE, (float(xs.min()) - over, 0.0), (float(xs.max()) + over, 0.0))
 
 
 def _sizes(board: Board, points: Array, center_distance: float, pitch_radius: float | None) -> None:

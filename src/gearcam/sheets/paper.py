@@ -111,43 +111,41 @@ def choose(size: tuple[float, float], room: tuple[float, float], rows: int) -> F
     return true[0] if true else max(found, key=lambda one: one.scale)
 
 
-def start(form: Format, size: tuple[float, float], room: Box, low: Array) -> tuple[Board, Array]:
+def begin(size: tuple[float, float], room: Box, low: Array, rows: int) -> Board:
     """Begin a sheet: the views in the middle of their area.
 
     Parameters
     ----------
-    form : Format
-        Paper and scale.
     size : (float, float), mm
         Width and height of all views together.
     room : (2,) array, (2,) array, mm of paper
         What dimensions take to the left and below, and to the right and above.
     low : (2,) array, mm
         Lower left corner of the views.
+    rows : int
+        Of the table.
 
     Returns
     -------
-    board : Board
-        Empty.
-    corner : (2,) array, mm of the part
-        Lower left corner of the paper.
+    Board
+        Empty, on the paper that is chosen.
+
+    Raises
+    ------
+    ValueError
+        If the views are too large for the smallest scale.
     """
+    wide, tall = (room[0] + room[1]).tolist()
+    form = choose(size, (wide, tall), rows)
     first, last = area_of(form.paper)
     idle = last - first - room[0] - room[1] - form.scale * np.array(size)
     corner = low - (first + room[0] + 0.5 * idle) / form.scale
     area = corner + first / form.scale, corner + last / form.scale
-    return Board(scale=form.scale, area=area), corner
+    return Board(scale=form.scale, area=area, paper=form.paper, corner=corner)
 
 
 def finish(
-    board: Board,
-    form: Format,
-    corner: Array,
-    *,
-    name: str,
-    title: str,
-    facts: Mapping[str, str],
-    notes: Sequence[str],
+    board: Board, *, name: str, title: str, facts: Mapping[str, str], notes: Sequence[str]
 ) -> Sheet:
     """Draw frame, table, title block and notes around the views.
 
@@ -155,10 +153,6 @@ def finish(
     ----------
     board : Board
         With its views.
-    form : Format
-        Paper and scale.
-    corner : (2,) array, mm of the part
-        Lower left corner of the paper.
     name, title : str
         Of the sheet.
     facts : mapping of str to str
@@ -170,7 +164,8 @@ def finish(
     -------
     Sheet
     """
-    size = PAPERS[form.paper]
+    size, corner = PAPERS[board.paper], board.corner
+    form = Format(paper=board.paper, scale=board.scale)
     rows = (*facts.items(), *board.rows)
     pen = _Pen(corner=corner, unit=board.unit, lines=[], texts=[])
     left, right, top = BINDING, size[0] - MARGIN, size[1] - MARGIN

@@ -26,7 +26,7 @@ from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
 from gearcam.sheets.extent import true_points
-from gearcam.sheets.paper import choose, finish, start
+from gearcam.sheets.paper import begin, finish
 from gearcam.sheets.sheet import (
     CENTERLINE,
     EDGE,
@@ -154,9 +154,8 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     below = FIRST_LEVEL + LEVEL * wheel.levels
     across = BETWEEN + RIGHT + (BORE_ROOM if shown else 0.0)
     rows = len(facts) + len(part.openings) + 2
-    form = choose(size, (LEFT + across, below + ABOVE), rows)
     room = np.array([LEFT, below]), np.array([across, ABOVE])
-    board, corner = start(form, size, room, wheel.low)
+    board = begin(size, room, wheel.low, rows)
     _front_view(board, wheel)
     side = float(wheel.high[0]) + BETWEEN * board.unit
     _side_view(board, wheel, side)
@@ -170,7 +169,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
         "Outline: the DXF file of this part.",
         f"Sizes as made.{about}",
     ]
-    return finish(board, form, corner, name=part.name, title=title, facts=facts, notes=notes)
+    return finish(board, name=part.name, title=title, facts=facts, notes=notes)
 
 
 def _front_view(board: Board, wheel: _Wheel) -> None:
@@ -238,8 +237,8 @@ def _span(edge: Edge) -> tuple[float, float]:
 
 def _rectangle(board: Board, low: tuple[float, float], high: tuple[float, float]) -> None:
     corners = [low, (high[0], low[1]), high, (low[0], high[1])]
-    for start_, end in zip(corners, corners[1:] + corners[:1], strict=True):
-        board.line(EDGE, start_, end)
+    for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
+        board.line(EDGE, start, end)
 
 
 def _bore_view(board: Board, bore: _Bore, place: Array) -> None:

@@ -96,7 +96,7 @@ def followed(
     points = flatten_bulges(vertices, bulges, _SAGITTA * result.cam.tolerance)
     side = np.array([-1.0 if design.cam.clockwise else 1.0, 1.0])
     theta = cam_angles(result)
-    found = follow(points * side, result.mechanism, theta, smooth=False)
+    found = follow(points * side, result.mechanism, theta)
     swings = design.follower.oscillating
     scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
     asked = result.program.derivatives(theta, 0)[0]

@@ -243,6 +243,7 @@ class GearPairResult(Result):
         """
         from gearcam.export.table import table_bytes
         from gearcam.meshing.checks import KIND as MESHING_KIND
+        from gearcam.meshing.numbers import numbers
         from gearcam.meshing.study import study
 
         gears = self.steps[self.design.meshing.step - 1]
@@ -255,7 +256,7 @@ class GearPairResult(Result):
         # of what drives the study knows, as mounted
         told = [finding for finding in self.findings if finding.code not in _AS_MOUNTED]
         contents = {MESHING: table_bytes(meshing.columns)}
-        measured = {"meshing": meshing.summary}
+        measured = {"meshing": numbers(meshing)}
         written = self.keep(contents, directory, measured, in_order((*told, *extra)))
         return replace(written, complete=meshing.complete)
 

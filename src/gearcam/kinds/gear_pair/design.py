@@ -172,9 +172,10 @@ def _meshing_faults(raw: Any, pair: Any) -> Iterator[Fault]:
     if _is_number(start) and _is_number(end) and not end > start:
         message = f"{show(end)}: the study ends at {show(end)} deg before it begins"
         yield Fault(("meshing", "to_deg"), message, end, "to_deg above from_deg")
-    if raw.get("advance_deg") == 0:
-        message = "0: without an advance no flanks overlap, and nothing can be seen"
-        yield Fault(("meshing", "advance_deg"), message, 0, "-1 to 1, but not 0; 0.005 is usual")
+    if raw.get("overclosure_deg") == 0:
+        message = "0: without an overclosure no flanks overlap, and nothing can be seen"
+        allowed = "-1 to 1, but not 0; 0.005 is usual"
+        yield Fault(("meshing", "overclosure_deg"), message, 0, allowed)
     given = raw.get("teeth")
     teeth = given if isinstance(given, list) else []
     counts = pair.get("teeth") if isinstance(pair, Mapping) else None

@@ -182,7 +182,7 @@ def _rim(result: GearPairResult, limit: float) -> Fact | None:
 
 _STUDIED: Mapping[str, str] = {
     "center_distance_mm": "centre distance as mounted",
-    "advance_deg": "driver turned ahead by",
+    "overclosure_deg": "overclosure of the driver",
     "contact_ratio": "contact ratio",
     "pairs_in_contact": "pairs in contact",
     "interference_steps": "phases with interference",

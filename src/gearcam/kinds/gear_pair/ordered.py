@@ -99,7 +99,7 @@ def _uncut(result: GearPairResult, number: int, kerf: float) -> bool:
 
     gear = result.gears[number - 1]
     low, high = gear.profile.flanks.lowest, gear.profile.flanks.highest
-    kept = gear.profile.whole_flanks & (high > low)
+    kept = gear.toothing.whole_flanks & (high > low)
     reach = low + np.linspace(0.0, 1.0, _PLACES)[:, None] * (high - low)
     points, normals = gear.profile.flank_places(np.where(kept, reach, 0.0))
     contour = result.parts[number - 1].contour
@@ -127,7 +127,7 @@ def inspection_rows(result: GearPairResult) -> dict[str, Array]:
             flanks = gear.profile.flanks
             low, high = flanks.lowest, flanks.highest
             reach = low + share * (high - low)
-            kept = gear.profile.whole_flanks & (high > low)
+            kept = gear.toothing.whole_flanks & (high > low)
             reach = np.where(kept, reach, 0.0)
             points, normals = gear.profile.flank_places(reach)
             points = points[:, kept].T.ravel()

@@ -1,0 +1,12 @@
+"""Names of the kinds of arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+Plane = NDArray[np.complex128]
+"""Points or directions in the plane, ``x + 1j*y``."""

@@ -1,0 +1,85 @@
+"""Damped Newton steps for many systems of three equations at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+State = TypeVar("State")
+
+_STEPS = 40
+"""Newton steps at most: where a root exists five serve."""
+
+_LONGEST = 0.5
+"""Longest step, in units of the scale: half of what lies between neighbouring roots."""
+
+
+def damped_newton(
+    evaluate: Callable[[Array], tuple[State, Array, Array]], x: Array, scale: Array, small: float
+) -> tuple[Array, State]:
+    """Solve n systems of three equations by steps that are limited in two of the unknowns.
+
+    Parameters
+    ----------
+    evaluate : callable
+        ``evaluate(x)`` returns any state, the equations (3, n) and their slopes (3, 3, n): by
+        equation and unknown.
+    x : (3, n) array
+        First guess.
+    scale : (n,) array
+        What makes steps of the first two unknowns comparable: half a unit is the longest step.
+    small : float
+        Step, in these units, at which all end.
+
+    Returns
+    -------
+    x : (3, n) array
+        Not a root where there is none near: the caller looks at what the equations miss.
+    state : State
+        What `evaluate` says of it.
+    """
+    state, equations, slopes = evaluate(x)
+    for _ in range(_STEPS):
+        step = -solve(slopes, equations)
+        size = np.abs(step[:2]).max(axis=0) * scale
+        with np.errstate(invalid="ignore", divide="ignore"):
+            step = step * np.minimum(1.0, _LONGEST / size)
+        x = x + np.where(np.isfinite(step), step, 0.0)
+        state, equations, slopes = evaluate(x)
+        if not np.any(size > small):
+            break
+    return x, state
+
+
+def solve(matrix: Array, right: Array) -> Array:
+    """Solve linear systems by determinants.
+
+    Parameters
+    ----------
+    matrix : (3, 3, n) array
+        By row and column.
+    right : (3, n) array
+        Right sides.
+
+    Returns
+    -------
+    (3, n) array
+        Not finite where a matrix is singular.
+    """
+    a, b, c = matrix[:, 0], matrix[:, 1], matrix[:, 2]
+
+    def triple(p: Array, q: Array, r: Array) -> Array:
+        return (
+            p[0] * (q[1] * r[2] - q[2] * r[1])
+            + p[1] * (q[2] * r[0] - q[0] * r[2])
+            + p[2] * (q[0] * r[1] - q[1] * r[0])
+        )
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.stack([triple(right, b, c), triple(a, right, c), triple(a, b, right)]) / triple(
+            a, b, c
+        )

@@ -1,0 +1,308 @@
+"""The tools that draw random designs and compare what two trees make of them."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+
+import compare
+from compare_files import files, folders, summaries, told
+from compare_sides import Side
+from random_designs import KINDS, design
+from random_draw import known_keys, schema
+
+DRAWN = 400
+"""Designs of each kind within which everything is drawn."""
+
+
+@cache
+def documents(kind: str) -> list[dict[str, Any]]:
+    texts = (next(iter(design(kind, 1, index).values())) for index in range(DRAWN))
+    return [tomllib.loads(text) for text in texts]
+
+
+def choices(kind: str, title: str, key: str) -> set[str]:
+    """What the schema lets a key be."""
+    node = known_keys(schema(), {"kind": kind})[title]
+    table = known_keys(node.get("items", node), {"type": "rise"})
+    return set(table[key].get("enum") or table[key]["items"]["enum"])
+
+
+# --- the generator ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_design_is_told_by_its_seed_and_number(kind: str) -> None:
+    first = [design(kind, 7, index) for index in range(20)]
+    assert [design(kind, 7, index) for index in (19, 3)] == [first[19], first[3]]
+    assert design(kind, 8, 3) != design(kind, 7, 3)
+
+
+def test_every_kind_of_the_program_is_drawn() -> None:
+    assert set(KINDS) == set(schema()["properties"]["kind"]["enum"])
+
+
+def test_every_law_and_rise_and_follower_is_drawn() -> None:
+    pairs, cams = documents("gear-pair"), documents("cam")
+    laws = [one["law"] for one in pairs]
+    assert {law["type"] for law in laws} == choices("gear-pair", "law", "type")
+    opened = {law["type"] for law in laws if "driven_travel_deg" in law}
+    assert opened >= {"phases", "multispeed", "log-spiral", "formula", "table", "motion"}
+    moves = [phase for one in cams for phase in one["motion"]]
+    assert {phase["type"] for phase in moves} == choices("cam", "motion", "type")
+    for kind in ("rise", "return"):
+        drawn = {phase["law"] for phase in moves if phase["type"] == kind}
+        assert drawn == choices("cam", "motion", "law")
+    guided = {(one["follower"]["type"], one["follower"].get("motion")) for one in cams}
+    kinds = choices("cam", "follower", "type")
+    assert guided >= {(kind, motion) for kind in kinds for motion in (None, "oscillating")}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_key_and_file_that_the_program_documents_is_drawn(kind: str) -> None:
+    drawn: dict[str, set[str]] = {}
+    made = documents(kind)
+    for document in made:
+        for title, table in document.items():
+            for row in table if isinstance(table, list) else [table]:
+                drawn.setdefault(title, set()).update(row if isinstance(row, dict) else ())
+    for title, node in known_keys(schema(), {"kind": kind}).items():
+        if title not in ("kind", "name", "law", "motion", "limits"):
+            assert set(known_keys(node, {})) <= drawn[title]
+    assert len(drawn["limits"]) > 0.8 * len(known_keys(known_keys(schema(), made[0])["limits"], {}))
+    asked = {file for one in made for file in one["output"]["files"]}
+    assert asked == choices(kind, "output", "files")
+
+
+# --- files --------------------------------------------------------------------------------------
+
+
+def outline(moved: float = 0.0) -> bytes:
+    points = 100.0 * np.stack([np.cos(np.arange(50)), np.sin(np.arange(50))], axis=1)
+    points[7, 0] += moved
+    return "\n".join(["x_mm,y_mm", *(f"{x!r},{y!r}" for x, y in points.tolist())]).encode()
+
+
+def places(name: str, before: bytes, after: bytes, tolerance: float = 1e-3) -> list[str]:
+    return [one.place for one in files(name, before, after, tolerance)]
+
+
+def test_a_moved_vertex_is_seen_and_rounding_is_not() -> None:
+    assert places("a.csv", outline(), outline(1e-9)) == ["a.csv:x_mm"]
+    assert places("a.csv", outline(), outline(2e-10)) == ["a.csv:x_mm"]
+    assert places("a.csv", outline(), outline(5e-11)) == []
+    assert places("a.csv", outline(), outline() + b"\n1,2") == ["a.csv"]
+    assert places("a.csv", outline(), outline().replace(b"y_mm", b"z_mm")) == ["a.csv"]
+    word = b"tooth,x_mm\nleft,1.0\n"
+    assert places("a.csv", word, word.replace(b"left", b"right")) == ["a.csv:tooth"]
+
+
+def test_round_numbers_may_differ_in_their_last_place() -> None:
+    drawn = b'<path d="M0.5 -34.9964L12 3.25">'
+    assert places("a.svg", drawn, drawn.replace(b"34.9964", b"34.9965")) == []
+    assert places("a.svg", drawn, drawn.replace(b"34.9964", b"34.9967")) == ["a.svg"]
+    assert places("a.svg", drawn, drawn.replace(b"0.5", b"0.6")) == ["a.svg"]
+    assert places("a.svg", drawn, drawn.replace(b"12", b"13")) == ["a.svg"]
+    assert places("a.svg", drawn, drawn.replace(b"path", b"part")) == ["a.svg"]
+
+
+def circle_dxf(cuts: list[float], radius: float = 20.0) -> bytes:
+    """A circle of arcs that meet at these angles."""
+    drawing = ezdxf.new()  # pyright: ignore[reportPrivateImportUsage]
+    steps = np.diff([*cuts, cuts[0] + 2 * math.pi])
+    points = [
+        (radius * math.cos(a), radius * math.sin(a), math.tan(step / 4))
+        for a, step in zip(cuts, steps, strict=True)
+    ]
+    drawing.modelspace().add_lwpolyline(points, format="xyb", close=True)
+    text = io.StringIO()
+    drawing.write(text)
+    return text.getvalue().encode()
+
+
+def test_arcs_may_lie_elsewhere_within_their_tolerance() -> None:
+    arcs = circle_dxf([0.0, 2.0, 4.0])
+    assert places("a.dxf", arcs, circle_dxf([0.0, 1.0, 3.0, 5.0])) == []
+    assert places("a.dxf", arcs, circle_dxf([0.0, 1.0, 4.0], 20.0019)) == []
+    assert places("a.dxf", arcs, circle_dxf([0.0, 1.0, 4.0], 20.0021)) == ["a.dxf"]
+    path = b'<path class="profile" d="M20 0A20 20 0 %d 1 %s %sA20 20 0 %d 1 20 0Z"/>'
+    half = path % (0, b"-20", b"0", 0)
+    quarter = path % (0, b"0", b"20", 1)
+    assert places("cut.svg", half, quarter) == []
+    assert places("cut.svg", half, quarter.replace(b"20 0Z", b"20.01 0Z")) == ["cut.svg"]
+
+
+def test_solids_are_compared_in_single_precision() -> None:
+    corners = np.arange(24, dtype="<f4").reshape(2, 12) + 1
+    facets = np.zeros(2, dtype=[("corners", "<f4", 12), ("end", "<u2")])
+    facets["corners"] = corners
+    solid = bytes(84) + facets.tobytes()
+    facets["corners"][1, 5] *= 1 + 1e-7
+    assert places("a.stl", solid, bytes(84) + facets.tobytes()) == []
+    facets["corners"][1, 5] += 1e-3
+    assert places("a.stl", solid, bytes(84) + facets.tobytes()) == ["a.stl"]
+    head = b"glTF" + bytes(8) + (4).to_bytes(4, "little") + b"JSON{}  " + bytes(8)
+    indices = np.array([0, 1, 2, 1], dtype="<u4")
+    mesh = [head + corners.tobytes() + order.tobytes() for order in (indices, indices[::-1])]
+    assert places("a.glb", mesh[0], mesh[1]) == ["a.glb"]
+
+
+def test_folders_are_compared_file_by_file(tmp_path: Path) -> None:
+    for name in "ab":
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "gear1.csv").write_bytes(outline())
+    assert [*folders(tmp_path / "a", tmp_path / "b", 1e-3)] == []
+    (tmp_path / "a" / "gear2.csv").write_bytes(outline())
+    assert [one.words for one in folders(tmp_path / "a", tmp_path / "b", 1e-3)] == ["only in base"]
+
+
+# --- what is told -------------------------------------------------------------------------------
+
+
+def test_summaries_are_compared_key_by_key() -> None:
+    one: dict[str, Any] = {
+        "timings_s": {"law": 0.1},
+        "pair": {"module_mm": 2.0, "teeth": [24, 24], "ratio": {"min": 2e-24, "max": 8.0}},
+        "mass": {"unbalance_g_mm": 1e-12, "unbalance_direction_deg": 90.0, "volume_mm3": 9e4},
+    }
+    two = json.loads(json.dumps(one))
+    two["timings_s"]["law"] = 0.2
+    two["pair"]["ratio"]["min"] = -3e-24
+    two["mass"]["unbalance_direction_deg"] = -20.0
+    assert [*summaries("s", one, two)] == []
+    two["pair"] |= {"module_mm": 2.0 + 1e-9, "teeth": [24, 25], "added": "x"}
+    found = {one.place for one in summaries("s", one, two)}
+    assert found == {"s:pair.module_mm", "s:pair.teeth[1]", "s:pair.added"}
+
+
+def test_findings_are_compared_by_code_value_and_place() -> None:
+    tip = {"code": "thin-tip", "severity": "warning", "value": 0.1, "limit": 0.2, "unit": "mm"}
+    one = [{**tip, "where": f"wheel {k}, phi1 = 160.5 deg", "message": "thin"} for k in (1, 2)]
+
+    def apart(changed: dict[str, Any], *, messages: bool = False) -> list[str]:
+        two = [{**one[1]}, {**one[0], **changed}]
+        return [one.place for one in told("finding", one, two, messages=messages)]
+
+    assert apart({}) == []
+    assert apart({"value": 0.1 + 1e-9}) == ["finding:thin-tip.value"]
+    assert apart({"value": 0.1 + 1e-14, "where": "wheel 1, phi1 = 160.501 deg"}) == []
+    assert apart({"where": "wheel 1, phi1 = 161 deg"}) == ["finding:thin-tip.where"]
+    assert apart({"severity": "error"}) == ["finding:thin-tip.severity"]
+    assert apart({"message": "too thin"}) == []
+    assert apart({"message": "too thin"}, messages=True) == ["finding:thin-tip.message"]
+    assert [one.place for one in told("finding", one, one[:1], messages=False)] == [
+        "finding:thin-tip"
+    ]
+
+
+# --- both sides at work -------------------------------------------------------------------------
+
+PROGRAM = """
+import os
+from pathlib import Path
+
+
+class Found:
+    code, severity, value, where, message = "thin-tip", "warning", VALUE, "wheel 1", "thin"
+
+
+class Result:
+    def __init__(self, path):
+        self.path = path
+
+    def write(self, out):
+        Path(out).mkdir()
+        (Path(out) / "outline.csv").write_text(Path(self.path).read_text())
+        self.findings = [Found()]
+        ENDS
+        return self
+
+
+load = str
+build = Result
+"""
+
+
+def a_tree(folder: Path, value: str = "1.5", ends: str = "") -> Path:
+    """A program of a few lines with the public interface of gearcam."""
+    (folder / "src" / "gearcam").mkdir(parents=True)
+    text = PROGRAM.replace("VALUE", value).replace("ENDS", ends or "pass")
+    (folder / "src" / "gearcam" / "__init__.py").write_text(text)
+    (folder / "profiles").mkdir()
+    (folder / "profiles" / "one.toml").write_text("x = 1\n")
+    (folder / "profiles" / "two.toml").write_text("x = 2\n")
+    return folder
+
+
+def run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *words: str | Path
+) -> tuple[int, str]:
+    monkeypatch.setattr("sys.argv", ["compare.py", *map(str, words), "--count", "0"])
+    code = compare.main()
+    return code, capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("value", "ends", "words"),
+    [
+        ("1.5", "", ""),
+        ("1.5 + 1e-9", "", "finding:thin-tip.value: 2 designs"),
+        ("1.5", "self.findings = []", "finding:thin-tip: 2 designs"),
+        ("1.5", "(Path(out) / 'outline.csv').unlink()", "only in base"),
+        ("1.5", "raise ValueError('no way')", "built | ValueError no way"),
+        ("1.5", "if 'one' in out: os._exit(3)", "end:built | crash #: 1 design\n"),
+        ("1.5", "while 'two' in out: pass", "end:built | out of time: 1 design\n"),
+    ],
+)
+def test_a_planted_difference_is_told(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    value: str,
+    ends: str,
+    words: str,
+) -> None:
+    base = a_tree(tmp_path / "base")
+    tree = a_tree(tmp_path / "tree", value, ends)
+    code, text = run(monkeypatch, capsys, base, "--tree", tree, "--limit", "0.2")
+    assert code == bool(words)
+    assert words in text
+    if words:
+        return
+    assert "gallery                   2              2              0" in text
+
+
+def test_what_is_allowed_is_no_difference(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    base, tree = a_tree(tmp_path / "base"), a_tree(tmp_path / "tree", "1.6")
+    words = (base, "--tree", tree, "--allow")
+    assert run(monkeypatch, capsys, *words, "finding:thin-*")[0] == 0
+    assert run(monkeypatch, capsys, *words, "finding:thick-*")[0] == 1
+
+
+def test_another_program_than_the_tree_s_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "src").mkdir()
+    with pytest.raises(SystemExit):
+        Side(tmp_path, tmp_path / "work", 1.0)
+
+
+def test_the_base_has_its_own_keys() -> None:
+    text = 'kind = "gear-pair"\n\n[steps]\ncount = 3\noffset_mm = 1.5\n\n[pair]\nteeth = [3, 4]\n'
+    renames = {"steps.count": "helix.steps", "steps.offset_mm": "helix.offset_mm"}
+    made = tomllib.loads(compare.renamed(text, renames))
+    assert made == {
+        "kind": "gear-pair",
+        "helix": {"steps": 3, "offset_mm": 1.5},
+        "pair": {"teeth": [3, 4]},
+    }
+    assert compare.renamed(compare.renamed(text, {}), {}) == compare.renamed(text, {})

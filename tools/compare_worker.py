@@ -1,0 +1,100 @@
+"""Builds designs with the gearcam that Python finds, by its public interface only.
+
+Reads lines of JSON from stdin, ``{"file": ..., "out": ...}``, and answers each with one line: how
+it ended, its findings, the CPU seconds it took. Run by ``compare.py``, once for each side.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import json
+import resource
+import signal
+import sys
+import time
+from pathlib import Path
+from types import FrameType
+from typing import Any, Final
+
+import gearcam
+
+MEMORY: Final = 6 << 30
+"""Bytes that a design may take: one that would take all must not end the others' programs."""
+
+STUCK: Final = 15.0
+"""Time by the clock, over the CPU time of a design, after which a library is stuck: the process
+ends, since no signal reaches Python there."""
+
+_FINDING: Final = ("code", "severity", "value", "limit", "unit", "message")
+_REFUSAL: Final = ("what", "value", "limit", "unit", "nearest")
+_PROBLEM: Final = ("message", "allowed", "hint")
+
+
+class OutOfTimeError(BaseException):
+    """A design has had its time; no ``except Exception`` may keep this."""
+
+
+def _stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
+    raise OutOfTimeError
+
+
+def build(file: str, out: str) -> dict[str, Any]:
+    """Load, build and write a design, with its study if it asks for one; tell how it ended."""
+    told: dict[str, Any] = {"end": "built"}
+    try:
+        result: Any = gearcam.build(gearcam.load(file))
+        told["findings"] = [_finding(one) for one in result.write(out).findings]
+        if "\n[meshing]\n" in Path(file).read_text(encoding="utf-8"):
+            told["findings"] = [_finding(one) for one in result.mesh(out).findings]
+    except OutOfTimeError:
+        told["end"] = "out of time"
+    except Exception as error:
+        told |= {"end": type(error).__name__, "text": str(error), "refusal": _refusal(error)}
+    return told
+
+
+def _finding(found: Any) -> dict[str, Any]:
+    return {**_taken(found, _FINDING), "where": _where(found)}
+
+
+def _where(found: Any) -> str:
+    return getattr(found, "where", None) or getattr(found, "place", None) or ""
+
+
+def _refusal(error: Exception) -> list[dict[str, Any]]:
+    """Return what an error tells: one entry, or one for each problem of a design file."""
+    problems = getattr(error, "problems", None)
+    if problems is None:
+        return [{**_taken(error, _REFUSAL), "where": _where(error)}]
+    return [{**_taken(one, _PROBLEM), "where": one.key, "line": one.line} for one in problems]
+
+
+def _taken(owner: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    found = {name: getattr(owner, name, None) for name in names}
+    return {name: value for name, value in found.items() if value not in (None, "")}
+
+
+def main() -> None:
+    """Answer the designs of stdin, each within the CPU seconds that the command line gives."""
+    limit = float(sys.argv[1])
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    signal.signal(signal.SIGPROF, _stop)
+    print(json.dumps({"end": "ready", "gearcam": str(gearcam.__file__)}), flush=True)
+    for line in sys.stdin:
+        start = time.process_time()
+        try:
+            # again after a second: the first may come where Python drops what is raised
+            signal.setitimer(signal.ITIMER_PROF, limit, 1.0)
+            faulthandler.dump_traceback_later(STUCK * limit, exit=True)
+            told: dict[str, Any] = build(**json.loads(line))
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+        except OutOfTimeError:
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+            told = {"end": "out of time"}
+        faulthandler.cancel_dump_traceback_later()
+        told["seconds"] = time.process_time() - start
+        print(json.dumps(told, default=float), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,186 @@
+"""Random cams: every rise, every follower, segments, both directions of turning, blanks.
+
+Lifts and sizes are drawn in radii of the cam, so that the radius may be anything.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Final
+
+from random_draw import Draw, short
+
+Rise = dict[str, Any]
+
+FOLLOWERS: Final = ("point", "roller", "flat", "domed")
+
+
+def _derivatives(d: Draw) -> Rise:
+    ends = [[0.0] * d.whole(1, 4), [0.0] * d.whole(1, 4)]
+    if d.chance(0.3):
+        ends[d.pick([0, 1])][0] = d.even(0, 2)
+    return {"start": ends[0], "end": ends[1]}
+
+
+def _sectors(d: Draw) -> Rise:
+    b, c, _ = d.shares(3, 0.05)
+    b, c = short(b), short(c)
+    return {"b": b, "c": c, "d": 1.0 - b - c}
+
+
+def _control(d: Draw) -> Rise:
+    degree, flat = d.whole(3, 5), d.whole(1, 3)
+    inner = sorted(d.even(0, 1) for _ in range(d.whole(2, 6)))
+    control = [0.0] * flat + inner + [1.0] * flat
+    return {"degree": min(degree, len(control) - 1), "control": control}
+
+
+def _points(d: Draw) -> Rise:
+    grid = [0.0]
+    for share in d.shares(d.whole(4, 16), 0.5):
+        grid.append(short(grid[-1] + share))
+    grid[-1] = 1.0
+    values = [short(x - math.sin(2 * math.pi * x) / (2 * math.pi)) for x in grid]
+    rise: Rise = {"x": grid, "y": [*values[:-1], 1.0]}
+    if d.chance(0.3):
+        rise["start"] = [d.even(0, 0.5), d.even(-1, 1)]
+    return rise
+
+
+def _formula(d: Draw) -> Rise:
+    a = d.log(1e-3, 0.15)
+    wave = f"x - {a}*sin(2*pi*x)"
+    return {"formula": d.pick([wave, "x**3*(10 - 15*x + 6*x**2)", "sin(pi*x/2)**2"])}
+
+
+def _nothing(d: Draw) -> Rise:  # noqa: ARG001
+    return {}
+
+
+def _share(most: float) -> Callable[[Draw], Rise]:
+    return lambda d: {"q": d.log(0.02, most)} if d.chance(0.7) else {}
+
+
+RISES: Final[dict[str, Callable[[Draw], Rise]]] = {
+    "constant-velocity": _nothing,
+    "constant-acceleration": _share(0.9),
+    "harmonic": _nothing,
+    "cycloidal": _nothing,
+    "2-3": _nothing,
+    "3-4-5": _nothing,
+    "4-5-6-7": _nothing,
+    "5-6-7-8-9": _nothing,
+    "3-4-5-6": _nothing,
+    "polynomial": _derivatives,
+    "trapezoidal-velocity": _share(0.5),
+    "sine-trapezoidal-velocity": _share(0.5),
+    "trapezoidal-acceleration": _share(0.25),
+    "modified-trapezoid": _nothing,
+    "modified-sine": _nothing,
+    "scca": _sectors,
+    "b-spline": _control,
+    "table": _points,
+    "formula": _formula,
+}
+
+
+def _moved(d: Draw, kind: str, law: str) -> dict[str, Any]:
+    return {"type": kind, "law": law, **RISES[law](d)}
+
+
+def _program(d: Draw, law: str, lift: float, unit: str) -> list[dict[str, Any]]:
+    """Return phases over a turn; `lift` in `unit`, which is mm or deg."""
+    back = law if law == "3-4-5-6" or d.chance(0.3) else d.pick([*RISES])
+    back = law if back == "3-4-5-6" else back
+    up = {**_moved(d, "rise", law), f"lift_{unit}": lift}
+    if law != "3-4-5-6" and d.chance(0.2):
+        first = short(lift * d.even(0.3, 0.7))
+        second = {**_moved(d, "rise", d.pick(["cycloidal", "3-4-5"])), f"lift_{unit}": lift}
+        second[f"lift_{unit}"] = short(lift - first)
+        phases = [{**up, f"lift_{unit}": first}, {"type": "dwell"}, second]
+    elif d.chance(0.2):
+        phases = [_segment(d, lift, unit), _segment(d, short(lift * d.even(0.6, 0.9)), unit)]
+    else:
+        phases = [up]
+    if law != "3-4-5-6" and d.chance(0.6):
+        phases.append({"type": "dwell"})
+    down = {"type": "segment", f"to_{unit}": 0} if d.chance(0.15) else _moved(d, "return", back)
+    phases.append(down)
+    if d.chance(0.7):
+        phases.append({"type": "dwell"})
+    shares = d.shares(len(phases))
+    angles = [short(360 * share) for share in shares[:-1]]
+    for phase, angle in zip(phases, [*angles, 360 - sum(angles)], strict=True):
+        phase["angle_deg"] = angle
+    return phases
+
+
+def _segment(d: Draw, to: float, unit: str) -> dict[str, Any]:
+    segment = {"type": "segment", f"to_{unit}": to}
+    if d.chance(0.5):
+        segment[f"end_velocity_{unit}_per_rad"] = short(to * d.even(-0.3, 0.3))
+    if d.chance(0.2):
+        segment[f"end_acceleration_{unit}_per_rad2"] = short(to * d.even(-0.5, 0.5))
+    return segment
+
+
+def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str, Any], ...]:
+    """Return follower and cam about a base circle of `size`, mm."""
+    follower: dict[str, Any] = {"type": kind}
+    radius = 0.0
+    if kind == "roller":
+        radius = follower["roller_radius_mm"] = short(size * d.log(0.05, 0.4))
+    elif kind == "domed":
+        radius = follower["dome_radius_mm"] = short(size * d.log(0.2, 3))
+    prime = short(size + radius)
+    if swings:
+        pivot = follower["pivot_distance_mm"] = short(prime * d.even(1.4, 3))
+        follower["motion"] = "oscillating"
+        if kind == "flat":
+            follower["face_offset_mm"] = short(size * d.even(-0.3, 0.3))
+        else:
+            follower["arm_mm"] = short(pivot + prime * d.even(-0.5, 0.3))
+    elif kind != "flat" and d.chance(0.5):
+        follower["offset_mm"] = short(size * d.even(-0.4, 0.4))
+    based = kind == "flat" or d.chance(0.4)
+    cam = {"base_radius_mm": short(size)} if based else {"prime_radius_mm": prime}
+    cam["thickness_mm"] = short(size * d.log(0.05, 1))
+    return follower, cam
+
+
+def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
+    """Return a cam; rises and followers take turns.
+
+    Parameters
+    ----------
+    d : Draw
+        Draws of this design.
+    index : int
+        Its number.
+    blank : callable
+        ``blank(d, radius, unit, both)``: a blank for a least radius and the unit of edges, mm.
+    """
+    law = [*RISES][index % len(RISES)]
+    kind = FOLLOWERS[index % len(FOLLOWERS)]
+    swings = d.chance(0.4)
+    size = d.pick([d.log(0.1, 1e5), d.log(10, 100)])
+    follower, wheel = _mechanism(d, kind, swings, size)
+    share = d.log(0.005, 0.15 if kind == "flat" else 0.4)
+    lift = short(share * 40) if swings else short(share * size)
+    if d.chance(0.5):
+        wheel["rotation"] = d.pick(["ccw", "cw"])
+    phases = _program(d, law, lift, "deg" if swings else "mm")
+    design: dict[str, Any] = {"motion": phases, "follower": follower, "cam": wheel}
+    if d.chance(0.5):
+        design["blank"] = blank(d, 0.8 * size, 0.05 * size, both=False)
+    output: dict[str, Any] = {"chord_tolerance_mm": min(1.0, short(size * d.log(1e-5, 1e-3)))}
+    if 10 < size < 100 and d.chance(0.3):
+        del output["chord_tolerance_mm"]
+    if d.chance(0.3):
+        output["motion_step_deg"] = d.log(0.2, 20)
+    if d.chance(0.2):
+        output["theta_deg"] = d.even(-400, 400)
+    if kind in ("flat", "point") or d.chance(0.3):
+        output["tool_radius_mm"] = short(size * d.log(0.02, 0.3))
+    return design | {"output": output}
