@@ -26,7 +26,11 @@ SMALL = 1e-4
 well in polygons."""
 
 _GAUSS = 24
+"""Gauss points on each segment of a way: rounding, since loops are short."""
+
 _STEPS = 30
+"""Newton steps in which a loop closes, or does not at all."""
+
 _NOTHING = 1e-11
 """Length of the way back, in sizes of the cam, that is cut out where rounding hides how it closes.
 """

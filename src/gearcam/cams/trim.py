@@ -24,6 +24,9 @@ from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_betwe
 _PROBES = 33
 """Places on each segment at which its chords are counted."""
 
+_EFFORT = 1e-6
+"""Chords that a straight piece between probes is given, so that the count rises everywhere."""
+
 _AROUND = 97
 """Places in and beside every undercut stretch: its loop is seen at its own size."""
 
@@ -140,7 +143,7 @@ def _chain(
         points, tangents = segments.at(np.full(len(probes), k), probes)
         turning = np.abs(np.angle(tangents[1:] * np.conj(tangents[:-1])))
         # the square root of a chord's error adds up along the curve
-        effort = np.sqrt(turning * np.abs(np.diff(points)) / (8.0 * tolerance)) + 1e-6
+        effort = np.sqrt(turning * np.abs(np.diff(points)) / (8.0 * tolerance)) + _EFFORT
         total = np.concatenate([[0.0], np.cumsum(effort)])
         count = max(8, math.ceil(float(total[-1])))
         places = np.interp(np.linspace(0.0, float(total[-1]), count + 1), total, probes)

@@ -25,6 +25,9 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 ROWS_PER_TOOTH = 6
+_SHARP = 0.9
+"""Curvature of a root, in dedenda, from which on it is looked at: at 1 the land has a cusp."""
+
 _SAMPLES = 49
 """Places on each curve between which its chords are drawn."""
 
@@ -114,10 +117,10 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
     loops = undercut[:z] | np.roll(undercut[z:], -1)
     loops = loops if toothing.closed else loops[:-1]
     kappa = toothing.track.curvature_extremes[1]
-    if kappa.max() * toothing.cutter.dedendum >= 0.9:
+    if kappa.max() * toothing.cutter.dedendum >= _SHARP:
         start, end = rows.start[1::ROWS_PER_TOOTH], rows.end[3::ROWS_PER_TOOTH]
         steps = start + (end - start) * np.linspace(0.0, 1.0, 65)[:, None]
-        sharp = toothing.frames(steps).kappa * toothing.cutter.dedendum >= 0.9
+        sharp = toothing.frames(steps).kappa * toothing.cutter.dedendum >= _SHARP
         loops = loops | sharp.any(axis=0)
     return np.flatnonzero(loops)
 

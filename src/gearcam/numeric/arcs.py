@@ -41,6 +41,9 @@ SAME_ARC = 1e-6
 AIM = 0.97
 """Part of the predicted length that the search tries: a little short, so that most succeed."""
 
+LEAST_ERROR = 1e-3
+"""Error in tolerances below which a length says nothing: the search grows tenfold at most."""
+
 NEAR = 0.02
 """The search stops where the longest fitting piece is known to this part of its length."""
 
@@ -197,7 +200,7 @@ def _longest(curve: _Curve, start: int, guess: int, tolerance: float) -> tuple[i
             low, best = trial, piece
         else:
             high = trial - 1
-        growth = AIM * (tolerance / max(error, 1e-3 * tolerance)) ** (1 / 3)
+        growth = AIM * (tolerance / max(error, LEAST_ERROR * tolerance)) ** (1 / 3)
         trial = start + round(growth * (trial - start)) if rounds % 3 else (low + high + 1) // 2
     return low, best
 

@@ -23,6 +23,15 @@ from gearcam.numeric.roots import bracketed_root
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+_SAME = 1e-9
+"""Difference of derivatives on both sides of a knot, in the largest of them or 1, that is none."""
+
+_INSET = 1e-12
+"""Share of an interval that its outermost places keep from the knots: still of its own piece."""
+
+_FLAT = 1e-8
+"""Share of an interval to which extremes are placed: there a value is flat, good to rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Piece:
@@ -179,7 +188,7 @@ class Piecewise(Pieces):
         before = self.on_pieces(numbers, self.knots[1:], 3)
         after = np.roll(self.on_pieces(numbers, self.knots[:-1], 3), -1, axis=1)
         scale = np.fmax(1.0, np.fmax.reduce(np.abs([*before, *after])))
-        equal = np.abs(before - after) <= 1e-9 * scale
+        equal = np.abs(before - after) <= _SAME * scale
         return tuple((np.logical_and.accumulate(equal).sum(axis=0) - 1).tolist())
 
 
@@ -269,7 +278,7 @@ def places_between(knots: ArrayLike, samples: int = 192) -> Array:
     """
     grid = np.asarray(knots, dtype=float)
     width = np.diff(grid)
-    steps = np.linspace(1e-12, 1.0 - 1e-12, max(samples // len(width), samples // 4))
+    steps = np.linspace(_INSET, 1.0 - _INSET, max(samples // len(width), samples // 4))
     x = grid[:-1, None] + width[:, None] * steps
     # of a narrow interval so small a share may round to the knot, which is another piece's
     x[:, 0] = np.maximum(x[:, 0], np.nextafter(grid[:-1], np.inf))
@@ -321,12 +330,11 @@ def extremes_among(
     """
     owner, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
     numbers = np.arange(len(owner))
-    # An extreme is flat: a place good to 1e-8 of an interval gives its value to rounding.
     roots = bracketed_root(
         lambda t: function(t)[1][owner, numbers],
         x[piece, cell],
         x[piece, cell + 1],
-        1e-8 * float((x[:, -1] - x[:, 0]).min()),
+        _FLAT * float((x[:, -1] - x[:, 0]).min()),
     )
     tops = function(roots)[0][owner, numbers] if roots.size else roots
     found = []

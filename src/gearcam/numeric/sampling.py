@@ -46,6 +46,9 @@ _FEW = 0.08
 _GRAIN = 1e-3
 """Distance in tolerances below which two points of a dense run are one."""
 
+_RISING = 1e-9
+"""Chords that a straight piece is given, so that their count rises everywhere."""
+
 _ROUNDS = 12
 """Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
 
@@ -115,7 +118,7 @@ class Sampler:
         turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
         chords = np.abs(np.diff(points, axis=1))
         steps = np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
-        steps += 1e-9 * max(1.0, float(steps.max()))
+        steps += _RISING * max(1.0, float(steps.max()))
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
@@ -156,7 +159,7 @@ class Sampler:
             if np.mean(errors > _MARGIN * self.tolerance) <= _FEW:
                 break
             # The error that a chord has, not the one that its J promised, says how long it may be.
-            effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + 1e-9)])
+            effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + _RISING)])
             at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
             vertices = self._spread(at_corners, effort, vertices)
             ends = self._ends(vertices)

@@ -27,6 +27,9 @@ DEGREE: Final = 3
 _AIM: Final = 0.97
 """Part of the predicted length that the search tries: a little short, so that most succeed."""
 
+_LEAST_ERROR: Final = 1e-4
+"""Error in tolerances below which a length says nothing: the search grows tenfold at most."""
+
 _NEAR: Final = 0.05
 """The search stops where the longest fitting piece is known to this part of its length."""
 
@@ -118,7 +121,7 @@ def _longest(p: Complex, t: Complex, way: Array, start: int, guess: int, toleran
             low = trial
         else:
             high = trial - 1
-        growth = _AIM * (tolerance / max(error, 1e-4 * tolerance)) ** 0.25
+        growth = _AIM * (tolerance / max(error, _LEAST_ERROR * tolerance)) ** 0.25
         trial = start + round(growth * (trial - start)) if rounds % 3 else (low + high + 1) // 2
     return low
 

@@ -31,6 +31,9 @@ Mask = NDArray[np.bool_]
 _DEPTH: Final = 2.0
 """A place is lost where the outline comes nearer than the distance by this many chord errors."""
 
+_GRAZE: Final = 1e-9
+"""The same in radii of the disc, for outlines without chord error: rounding."""
+
 _VERTICES: Final = 0.95
 """Part of the tolerance that the polygon's chords may take; the rest covers the dense points."""
 
@@ -229,7 +232,7 @@ def touches(contour: Contour, points: Complex, normals: Complex, by: float) -> M
     from shapely import STRtree, linestrings
     from shapely import points as made_points
 
-    room = abs(by) - _DEPTH * max(contour.chord_error, 1e-9 * abs(by))
+    room = abs(by) - _DEPTH * max(contour.chord_error, _GRAZE * abs(by))
     free = np.ones(len(points), dtype=bool)
     if room <= 0.0:
         return free
