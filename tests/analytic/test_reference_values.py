@@ -116,7 +116,9 @@ def test_curvature_at_every_place_is_that_of_the_oracle(phases: int, wheel: Any)
     exact = oracle.Pair({2: laws.NAIL_TWO, 3: laws.NAIL_THREE}[phases], oracle.mp.mpf(180))
     phi = 0.05 + 2 * math.pi * np.arange(24) / 24
     expected = [float(exact.curvature(wheel, oracle.mp.mpf(float(x)))) for x in phi]
-    assert nail(phases).frames(wheel, phi).kappa == pytest.approx(expected, rel=1e-11, abs=1e-15)
+    assert nail(phases).tracks[wheel - 1].frames(phi).kappa == pytest.approx(
+        expected, rel=1e-11, abs=1e-15
+    )
 
 
 def test_printed_counts_the_digits() -> None:
