@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from gearcam.cams.checks import KIND
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.mechanism import Mechanism, make_mechanism
 from gearcam.findings import Finding, in_order, run_checks
-from gearcam.kinds.cam.design import CamDesign
+from gearcam.kinds.cam.design import STEM, CamDesign
 from gearcam.laws.program import Program, make_program
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank
@@ -23,11 +27,11 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
 
-CAM: Final = "cam"
-"""Stem of the cam's files."""
-
 FOLLOWED: Final = "followed.csv"
 """The motion that a given profile makes."""
+
+_WHOLE: Final = 1e-9
+"""Part of a step by which a turn may fall short of a whole number of them: rounding."""
 
 _RIM_PART = 2.0 / 3.0
 """Rim that lightening holes keep where the design gives none, in thicknesses."""
@@ -86,6 +90,12 @@ class CamResult(Result):
             return cam.contour
 
     @property
+    def angles(self) -> Array:
+        """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
+        step = self.design.output.motion_step
+        return np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1) * step
+
+    @property
     def ordered(self) -> bool:
         """Whether the design orders a part: a blank, or files that are made from parts."""
         plain = {"csv", "curvature"}
@@ -102,7 +112,7 @@ class CamResult(Result):
         with self.stage("part"):
             place = Workpiece(wheel=None, module=_RIM_PART * thickness / RIM)
             blank = self.design.blank
-            return make_part(CAM, [finished(profile, blank, place)], thickness, blank, place)
+            return make_part(STEM, [finished(profile, blank, place)], thickness, blank, place)
 
     @property
     def contour(self) -> Contour:
@@ -115,7 +125,7 @@ class CamResult(Result):
         from gearcam.parts.checks import PartsSubject
 
         kerf = self.design.output.kerf
-        return PartsSubject(parts=(self.part,), names=(CAM,), kerf=kerf, uncut=(False,))
+        return PartsSubject(parts=(self.part,), names=(STEM,), kerf=kerf, uncut=(False,))
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -165,7 +175,7 @@ class CamResult(Result):
             progress("profile", 0, 2)
         vertices, bulges = read_profile(profile)
         with self.stage("follow"):
-            columns, facts = followed(self, vertices, bulges)
+            columns, facts = followed(self.cam, vertices, bulges, self.angles)
         if progress is not None:
             progress("writing", 1, 2)
         return self.keep({FOLLOWED: table_bytes(columns)}, directory, {"followed": facts})

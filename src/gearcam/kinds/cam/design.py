@@ -28,6 +28,9 @@ from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 NAME: Final = "cam"
 """As in a file."""
 
+STEM: Final = "cam"
+"""Stem of its files."""
+
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 

@@ -21,7 +21,7 @@ from gearcam.export.shared import (
     sheet_bytes,
     sheet_rows,
 )
-from gearcam.kinds.cam.build import CAM
+from gearcam.kinds.cam.design import STEM
 
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing, Shape
@@ -54,20 +54,13 @@ def _cut_svg(result: CamResult, _: Measured) -> Files:
 
 
 def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
-    return {f"{CAM}.{kind}": mesh_bytes(meshes([result.part], measured), kind, CAM)}
-
-
-def cam_angles(result: CamResult) -> Any:
-    """Return the cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
-    step = result.design.output.motion_step
-    count = math.floor(2.0 * math.pi / step + 1e-9)
-    return np.arange(count + 1) * step
+    return {f"{STEM}.{kind}": mesh_bytes(meshes([result.part], measured), kind, STEM)}
 
 
 def _tables(result: CamResult, _: Measured) -> Files:
     from gearcam.export.table import outline_bytes, table_bytes
 
-    theta = cam_angles(result)
+    theta = result.angles
     found = result.cam.motion(theta)
     scale = math.degrees(1.0) if result.design.follower.oscillating else 1.0
     columns = {"theta_deg": np.degrees(theta)}
@@ -145,14 +138,16 @@ def _picture(result: CamResult, _: Measured) -> Files:
     from gearcam.export.svg import svg_bytes
 
     drawing = _drawing(result, assembled=True)
-    return {f"{CAM}.svg": svg_bytes(drawing, title=result.design.name, notes=result.facts.headline)}
+    return {
+        f"{STEM}.svg": svg_bytes(drawing, title=result.design.name, notes=result.facts.headline)
+    }
 
 
 def _step(result: CamResult, _: Measured) -> Files:
     from gearcam.export.step import Placed, step_bytes
 
     tolerance = STEP_PART * result.profile.tolerance
-    return {f"{CAM}.step": step_bytes([Placed(part=result.part)], CAM, tolerance)}
+    return {f"{STEM}.step": step_bytes([Placed(part=result.part)], STEM, tolerance)}
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:

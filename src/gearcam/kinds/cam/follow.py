@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearcam.cams.disc import DiscCam
+from gearcam.cams.follow import follow
 from gearcam.errors import DesignError, Problem
-
-if TYPE_CHECKING:
-    from gearcam.kinds.cam.build import CamResult
-
-Array = NDArray[np.float64]
+from gearcam.facts import Fact
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.bulges import flatten_bulges
 
 _SAGITTA = 0.01
 """Chord error of arcs that are flattened, in the design's chord tolerances."""
@@ -63,43 +63,38 @@ def read_profile(file: str | Path) -> tuple[Array, Array]:
 
 
 def followed(
-    result: CamResult, vertices: Array, bulges: Array
+    cam: DiscCam, vertices: Array, bulges: Array, theta: Array
 ) -> tuple[dict[str, Array], dict[str, Any]]:
-    """Run a design's follower on a profile.
+    """Run a cam's follower on a profile.
 
     Parameters
     ----------
-    result : CamResult
+    cam : DiscCam
         Follower, size of the cam, and the program to compare with.
     vertices : (n, 2) array, mm
         The profile in the cam's frame, as the design would draw it.
     bulges : (n,) array
         Of its pieces.
+    theta : (m,) array, rad
+        Cam angles.
 
     Returns
     -------
     columns : dict of str to (m,) array
         For ``followed.csv``: the lift found, the lift asked for, their difference.
     facts : dict
-        For the summary.
+        What was found.
 
     Raises
     ------
     InfeasibleError
         If the follower cannot rest on the profile.
     """
-    from gearcam.cams.follow import follow
-    from gearcam.kinds.cam.files import cam_angles
-    from gearcam.numeric.bulges import flatten_bulges
-
-    design = result.design
-    points = flatten_bulges(vertices, bulges, _SAGITTA * result.cam.tolerance)
-    side = np.array([-1.0 if design.cam.clockwise else 1.0, 1.0])
-    theta = cam_angles(result)
-    found = follow(points * side, result.mechanism, theta)
-    swings = design.follower.oscillating
-    scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
-    asked = result.program.derivatives(theta, 0)[0]
+    points = flatten_bulges(vertices, bulges, _SAGITTA * cam.tolerance)
+    side = np.array([-1.0 if cam.clockwise else 1.0, 1.0])
+    found = follow(points * side, cam.mechanism, theta)
+    scale, unit = (math.degrees(1.0), "deg") if cam.mechanism.oscillating else (1.0, "mm")
+    asked = cam.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
     columns = {
         "theta_deg": np.degrees(theta),
@@ -114,9 +109,17 @@ def followed(
     facts = {
         "points": len(points),
         "unit": unit,
-        "largest_difference": float(difference[worst]),
+        "largest_difference": Fact(
+            float(difference[worst]),
+            "largest difference from the program",
+            place=f"at {shown(math.degrees(theta[worst]), scale=360.0)} deg",
+            unit=unit,
+            shown=True,
+        ),
         "at_deg": math.degrees(theta[worst]),
         "rms_difference": float(np.sqrt(np.mean(difference**2))),
-        "error": float(scale * found.error.max()),
+        "error": Fact(
+            float(scale * found.error.max()), "error of the profile's chords", unit=unit, shown=True
+        ),
     }
     return columns, facts

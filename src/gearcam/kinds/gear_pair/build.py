@@ -180,7 +180,7 @@ class GearPairResult(Result):
         """What the checks of parts look at."""
         from gearcam.kinds.gear_pair.ordered import parts_subject
 
-        return parts_subject(self)
+        return parts_subject(self.parts, self.gears, self.design.output.kerf)
 
     @property
     def ordered(self) -> bool:
@@ -194,7 +194,7 @@ class GearPairResult(Result):
 
         _ = self.steps  # timed for themselves
         with self.stage("parts"):
-            return make_parts(self)
+            return make_parts(self.steps, self.design)
 
     @cached_property
     def to_cut(self) -> tuple[Drawing, ...]:

@@ -118,7 +118,8 @@ def _inspection(result: GearPairResult, _: Measured) -> Files:
     from gearcam.export.table import table_bytes
     from gearcam.kinds.gear_pair.ordered import inspection_rows
 
-    return {"inspection.csv": table_bytes(inspection_rows(result))}
+    rows = inspection_rows(result.steps, result.design.output.inspection_points)
+    return {"inspection.csv": table_bytes(rows)}
 
 
 def _steps(result: GearPairResult, _: Measured) -> Files:

@@ -4,34 +4,33 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.pair import Gear
+from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Workpiece
 
-if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.build import GearPairResult
-
-Array = NDArray[np.float64]
+Steps = tuple[tuple[Gear, Gear], ...]
 
 _PLACES = 65
 """Places on each flank at which it is asked whether a cutter gets there."""
 
 
-def make_parts(result: GearPairResult) -> tuple[Part, Part]:
+def make_parts(steps: Steps, design: GearPairDesign) -> tuple[Part, Part]:
     """Return both wheels as parts.
 
     Parameters
     ----------
-    result : GearPairResult
-        With its wheels, and with the steps of stepped ones.
+    steps : tuple of (Gear, Gear)
+        Both wheels of each step, from below.
+    design : GearPairDesign
+        What is ordered.
 
     Returns
     -------
@@ -43,76 +42,82 @@ def make_parts(result: GearPairResult) -> tuple[Part, Part]:
     InfeasibleError
         If what the design orders has no room.
     """
-    first, second = (_part(result, number) for number in (1, 2))
+    first, second = (_part([pair[k] for pair in steps], design) for k in (0, 1))
     return first, second
 
 
-def _part(result: GearPairResult, number: int) -> Part:
-    gear = result.gears[number - 1]
-    contours = [gears[number - 1].profile.contour for gears in result.steps]
-    rack = gear.toothing.track.slides
+def _part(gears: list[Gear], design: GearPairDesign) -> Part:
+    gear = gears[0]
+    lobes, rack = gear.pair.law.lobes, gear.toothing.track.slides
     travel = None
-    if not result.law.lobes.closed and not rack:
-        travel = result.law.lobes.period if number == 1 else result.law.lobes.advance
-    blank = result.design.blank.wheel(number)
+    if not lobes.closed and not rack:
+        travel = lobes.period if gear.wheel == 1 else lobes.advance
+    blank = design.blank.wheel(gear.wheel)
     if rack:
         blank = replace(
             blank, bore_diameter=0.0, bolts=0, hub_diameter=0.0, lightening_holes=0, stop_pin=0.0
         )
     return make_part(
         gear.name,
-        contours,
-        result.design.pair.face_width,
+        [one.profile.contour for one in gears],
+        design.pair.face_width,
         blank,
-        Workpiece(wheel=number, module=result.pair.module, travel=travel),
-        None if rack else lambda: _mark(result, gear),
+        Workpiece(wheel=gear.wheel, module=gear.pair.module, travel=travel),
+        None if rack else lambda: _mark(gear, design),
     )
 
 
-def _mark(result: GearPairResult, gear: Gear) -> Mark:
+def _mark(gear: Gear, design: GearPairDesign) -> Mark:
     frames = gear.toothing.frames(np.zeros(1))
     radius = complex(frames.p[0])
     normal = complex(frames.t[0]) * gear.toothing.turn
-    blank = result.design.blank.wheel(gear.wheel).widened
+    blank = design.blank.wheel(gear.wheel).widened
     return timing_mark(
         abs(radius),
         0.0 if gear.wheel == 1 else math.pi,
-        result.pair.module,
+        gear.pair.module,
         gear.toothing.cutter.dedendum,
-        result.design.pair.face_width,
+        design.pair.face_width,
         bore_reach=max(blank.bore_reach, 0.5 * blank.hub_diameter),
         tilt=abs(float(np.angle(normal / radius))),
         diameter=blank.mark_diameter,
     )
 
 
-def parts_subject(result: GearPairResult) -> PartsSubject:
-    """Return what the checks of parts look at: the `result`'s parts, and where a cutter gets to."""
-    kerf = result.design.output.kerf
-    uncut = tuple(bool(kerf) and _uncut(result, number, kerf) for number in (1, 2))
-    return PartsSubject(parts=result.parts, kerf=kerf, uncut=uncut)
+def parts_subject(parts: tuple[Part, Part], gears: tuple[Gear, Gear], kerf: float) -> PartsSubject:
+    """Return what checks of `parts` look at: where a cutter with a `kerf`, mm, gets on `gears`."""
+    pairs = zip(parts, gears, strict=True)
+    uncut = tuple(bool(kerf) and _uncut(part, gear, kerf) for part, gear in pairs)
+    return PartsSubject(parts=parts, kerf=kerf, uncut=uncut)
 
 
-def _uncut(result: GearPairResult, number: int, kerf: float) -> bool:
+def _uncut(part: Part, gear: Gear, kerf: float) -> bool:
     """Return whether a cutter does not get to some place of a wheel's flanks as made."""
     from gearcam.parts.parallel import touches
 
-    gear = result.gears[number - 1]
-    low, high = gear.profile.flanks.lowest, gear.profile.flanks.highest
-    kept = gear.toothing.whole_flanks & (high > low)
-    reach = low + np.linspace(0.0, 1.0, _PLACES)[:, None] * (high - low)
-    points, normals = gear.profile.flank_places(np.where(kept, reach, 0.0))
-    contour = result.parts[number - 1].contour
-    return not touches(contour, points[:, kept].ravel(), normals[:, kept].ravel(), 0.5 * kerf).all()
+    kept, points, normals = _places(gear, _PLACES)
+    found = touches(part.contour, points[:, kept].ravel(), normals[:, kept].ravel(), 0.5 * kerf)
+    return not found.all()
 
 
-def inspection_rows(result: GearPairResult) -> dict[str, Array]:
+def _places(gear: Gear, count: int) -> tuple[Mask, Plane, Plane]:
+    """Return which flanks of whole teeth there are, and places on all, root to tip, normals."""
+    flanks = gear.profile.flanks
+    kept = gear.toothing.whole_flanks & (flanks.highest > flanks.lowest)
+    share = np.linspace(0.0, 1.0, count)[:, None]
+    reach = flanks.lowest + share * (flanks.highest - flanks.lowest)
+    return kept, *gear.profile.flank_places(np.where(kept, reach, 0.0))
+
+
+def inspection_rows(steps: Steps, count: int) -> dict[str, Array]:
     """Return the points of an inspection, by column.
 
     Parameters
     ----------
-    result : GearPairResult
-        With its wheels and steps.
+    steps : tuple of (Gear, Gear)
+        Both wheels of each step, from below.
+    count : int
+        Points on each flank.
 
     Returns
     -------
@@ -120,26 +125,20 @@ def inspection_rows(result: GearPairResult) -> dict[str, Array]:
         Both wheels, every step, every whole tooth, both sides, from root to tip: points of the
         flanks as made and the outward normals of the metal, in the wheel's frame.
     """
-    share = np.linspace(0.0, 1.0, result.design.output.inspection_points)[:, None]
     blocks: list[list[Array]] = []
-    for step, gears in enumerate(result.steps, start=1):
+    for step, gears in enumerate(steps, start=1):
         for gear in gears:
-            flanks = gear.profile.flanks
-            low, high = flanks.lowest, flanks.highest
-            reach = low + share * (high - low)
-            kept = gear.toothing.whole_flanks & (high > low)
-            reach = np.where(kept, reach, 0.0)
-            points, normals = gear.profile.flank_places(reach)
-            points = points[:, kept].T.ravel()
-            normals, count = normals[:, kept].T.ravel(), len(share)
+            kept, points, normals = _places(gear, count)
+            points, normals = points[:, kept].T.ravel(), normals[:, kept].T.ravel()
             tooth = np.tile(np.array(gear.toothing.numbers), 2)[kept]
-            order = np.lexsort((-flanks.sigma[kept], tooth))
+            side = gear.profile.flanks.sigma[kept]
+            order = np.lexsort((-side, tooth))
             rows = (order[:, None] * count + np.arange(count)).ravel()
             columns = [
                 np.full(points.size, gear.wheel),
                 np.full(points.size, step),
                 np.repeat(tooth, count),
-                np.repeat(flanks.sigma[kept], count),
+                np.repeat(side, count),
                 np.tile(np.arange(1, count + 1), int(kept.sum())),
                 points.real,
                 points.imag,
