@@ -93,7 +93,7 @@ class CamResult(Result):
     def angles(self) -> Array:
         """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
         step = self.design.output.motion_step
-        return np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1) * step
+        return step * np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1.0)
 
     @property
     def ordered(self) -> bool:

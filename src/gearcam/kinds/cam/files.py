@@ -138,9 +138,8 @@ def _picture(result: CamResult, _: Measured) -> Files:
     from gearcam.export.svg import svg_bytes
 
     drawing = _drawing(result, assembled=True)
-    return {
-        f"{STEM}.svg": svg_bytes(drawing, title=result.design.name, notes=result.facts.headline)
-    }
+    notes = result.facts.headline
+    return {f"{STEM}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
 
 
 def _step(result: CamResult, _: Measured) -> Files:
