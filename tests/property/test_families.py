@@ -204,7 +204,7 @@ def whole_overlap(made: GearPairResult, phi: float) -> float:
     driven = float(made.law.phi2(phi))
     one = made.gear1.outline @ [1, 1j] * np.exp(-1j * phi)
     two = made.gear2.outline @ [1, 1j]
-    if made.law.feeds:
+    if made.law.of_rack:
         two = two - 1j * driven * made.pair.center_distance
     else:
         two = two * np.exp(1j * driven) + made.pair.center_distance
@@ -213,7 +213,7 @@ def whole_overlap(made: GearPairResult, phi: float) -> float:
 
 def demand_free(made: GearPairResult) -> None:
     """No collision: every phase by the stepwise overlap, a few by whole outlines."""
-    end = float(made.centrode_angles()[-1]) if made.law.feeds else made.law.lobes.period
+    end = float(made.centrode_angles()[-1]) if made.law.of_rack else made.law.lobes.period
     phases = end * (np.arange(12) + 0.37) / 12
     assert max(whole_overlap(made, phi) for phi in phases) <= explained(made)
     first, second = (halve(gear.profile) for gear in made.gears)

@@ -246,7 +246,7 @@ def roll(
     ValueError
         If not exactly one of the two sizes is given.
     """
-    mate = RACK if law.feeds else WHEEL
+    mate = RACK if law.of_rack else WHEEL
 
     def unit_speed(phi: Array) -> Array:
         _, r, dr = _radii(law, mate, phi, 1)

@@ -61,7 +61,7 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         following, wrap, around, count = following[:-1], wrap[:-1], around[:-1], z - 1
     plus = places[:count] + half
     minus = places[following] + around - half
-    joints = toothing.track.angle(
+    forms = toothing.track.angle(
         np.stack(
             [
                 plus + cutter.reach,
@@ -81,8 +81,15 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         "kind": [Curve.FLANK, Curve.FILLET, Curve.LAND, Curve.FILLET, Curve.FLANK, Curve.TIP],
         "sf": [plus, plus, zero, minus, minus, zero],
         "sigma": [one, one, zero, -one, -one, zero],
-        "start": [top_plus, joints[0], joints[1], joints[2], joints[3], tip_start],
-        "end": [joints[0], joints[1], joints[2], joints[3], top_minus, tip_end],
+        "start": [
+            top_plus,
+            forms[0],
+            forms[1],
+            forms[2],
+            forms[3],
+            tip_start,
+        ],
+        "end": [forms[0], forms[1], forms[2], forms[3], top_minus, tip_end],
         "low": [zero, zero, land, zero, zero, tips.height[z + following]],
         "high": [zero, zero, land, zero, zero, tips.height[following]],
         "corner": [True, False, False, False, False, True],
@@ -172,7 +179,7 @@ def join(parts: list[Rows]) -> Rows:
 
 
 def _chains(curves: WheelCurves, spaces: Index) -> list[Chain]:
-    """Draw the five curves of spaces, ever denser towards the joints, where loops can be tiny."""
+    """Draw the five curves of spaces, ever denser to the form points, where loops can be tiny."""
     t = np.linspace(0.0, 1.0, _SAMPLES)
     towards_start, towards_end = t**3, 1.0 - (1.0 - t) ** 3
     grading = [towards_end, towards_start, t, towards_end, towards_start]

@@ -263,18 +263,20 @@ def _overlapping(
     return some, deep[some], bend[some], graphs.select(some)
 
 
-def _shared(pairs: FlankPairs, pose: Pose, play: Array) -> tuple[Pose, Normals]:
+def _shared(pairs: FlankPairs, pose: Pose, separation: Array) -> tuple[Pose, Normals]:
     """Find the rolls at which two flanks of a given pose have one normal, at any distance."""
     # the third unknown is the distance along it
-    by_distance = np.stack([np.zeros_like(play), -np.ones_like(play), np.zeros_like(play)])
+    by_distance = np.stack(
+        [np.zeros_like(separation), -np.ones_like(separation), np.zeros_like(separation)]
+    )
 
     def evaluate(x: Array) -> tuple[Normals, Array, Array]:
-        at = normals(pairs, pose._replace(one=x[0], two=x[1]), play)
+        at = normals(pairs, pose._replace(one=x[0], two=x[1]), separation)
         slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by_distance], axis=1)
         return at, at.equations + x[2] * by_distance, slopes
 
     scale = pairs.toothings[0].frames(pose.one, curved=False).speed / pairs.pitch
-    x = np.stack([pose.one, pose.two, np.zeros_like(play)])
+    x = np.stack([pose.one, pose.two, np.zeros_like(separation)])
     x, at = damped_newton(evaluate, x, scale, _SMALL)
     return pose._replace(one=x[0], two=x[1]), at
 

@@ -51,7 +51,7 @@ class RatioLaw(Displacement):
     solved: Mapping[str, float] = field(default_factory=dict)
 
     @property
-    def feeds(self) -> bool:
+    def of_rack(self) -> bool:
         """Whether the driven element is a rack: the ratio is then r1, phi2 its travel."""
         return isinstance(self.lobes, RackTravel)
 

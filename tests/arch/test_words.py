@@ -1,0 +1,73 @@
+"""One meaning for a word: class names, banned words, the glossary."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import Counter
+
+import pytest
+
+from arch import rules
+
+BANNED = {
+    "play": "backlash",
+    "hang|hangs|hung": "register",
+    "job|jobs": "result",
+    "feeds?": "rack travel",
+    "strokes?": "profile segment",
+    "tip curve": "addendum curve",
+    "contact-off-flank": "fillet interference",
+}
+"""Words that have gone, and what is said instead."""
+
+ELSEWHERE = {
+    "strokes?": ("lettering.py", "nest.py", "svg.py", "cut_svg.py", "sheet_svg.py", "slider.py"),
+    "feeds?": ("simple.py", "trapezoids.py"),
+}
+"""Files in which a word is the field's own: strokes of a pen, the stroke of a slide, machine feeds."""
+
+TERMS = (
+    "centrode", "addendum curve", "form point", "fillet interference", "backlash", "contact ratio",
+    "overclosure", "rack travel", "stepped gear", "knife-edge follower", "profile segment",
+    "pitch curve", "prime circle", "base circle", "cam profile", "pressure angle", "undercut",
+    "transmission error", "track", "wall", "body", "lift", "profile shift",
+)  # fmt: skip
+GLOSSARY = (rules.ROOT / "docs" / "conventions.md").read_text("utf-8")
+GLOSSARY = GLOSSARY.partition("\n## Glossary\n")[2].partition("\n## ")[0]
+
+
+def test_class_names_have_one_meaning() -> None:
+    names = Counter(
+        node.name
+        for path in rules.python_files(rules.SOURCE)
+        for node in rules.parse(path).body
+        if isinstance(node, ast.ClassDef)
+    )
+    assert [name for name, count in names.items() if count > 1] == []
+    assert len(names) > 100
+
+
+@pytest.mark.parametrize("word", BANNED)
+def test_a_banned_word_is_not_said(word: str) -> None:
+    allowed = ELSEWHERE.get(word, ())
+    said = [
+        f"{path.name}:{number}: {line.strip()}"
+        for path in rules.python_files(rules.SOURCE)
+        if path.name not in allowed
+        for number, line in enumerate(path.read_text("utf-8").splitlines(), start=1)
+        if re.search(rf"(?<![\w.-]|_)(?:{word})(?![\w])", line, re.IGNORECASE)
+    ]
+    assert said == [], f"say {BANNED[word]}"
+
+
+def test_a_banned_word_would_be_seen() -> None:
+    assert re.search(r"(?<![\w.-]|_)(?:play)(?![\w])", "def take(play: float)", re.IGNORECASE)
+
+
+def test_the_glossary_is_complete_and_names_its_sources() -> None:
+    rows = [line.strip("|").split("|") for line in GLOSSARY.splitlines() if line.startswith("| ")]
+    told = {cells[0].strip(): cells[1].strip() for cells in rows[1:]}
+    assert [term for term in TERMS if term not in told] == []
+    for term, source in told.items():
+        assert re.search(r"\b(?:Litvin|ISO|Norton)\b|^ours$", source), term
