@@ -25,7 +25,7 @@ ELSEWHERE = {
     "strokes?": ("lettering.py", "nest.py", "svg.py", "cut_svg.py", "sheet_svg.py", "slider.py"),
     "feeds?": ("simple.py", "trapezoids.py"),
 }
-"""Files in which a word is the field's own: strokes of a pen, the stroke of a slide, machine feeds."""
+"""Files in which a word is the field's own: strokes of a pen or a slide, machine feeds."""
 
 TERMS = (
     "centrode", "addendum curve", "form point", "fillet interference", "backlash", "contact ratio",

@@ -266,9 +266,8 @@ def _overlapping(
 def _shared(pairs: FlankPairs, pose: Pose, separation: Array) -> tuple[Pose, Normals]:
     """Find the rolls at which two flanks of a given pose have one normal, at any distance."""
     # the third unknown is the distance along it
-    by_distance = np.stack(
-        [np.zeros_like(separation), -np.ones_like(separation), np.zeros_like(separation)]
-    )
+    none = np.zeros_like(separation)
+    by_distance = np.stack([none, none - 1.0, none])
 
     def evaluate(x: Array) -> tuple[Normals, Array, Array]:
         at = normals(pairs, pose._replace(one=x[0], two=x[1]), separation)
