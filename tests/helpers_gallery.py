@@ -247,7 +247,7 @@ NUMBERS: dict[str, dict[str, Number]] = {
         ),
     },
     "feeder": {
-        "pair.way_per_turn_mm": (2 * math.pi * feeder_scale(), 1e-9),
+        "pair.travel_per_turn_mm": (2 * math.pi * feeder_scale(), 1e-9),
         "pair.radius_mm.max": (1.2 * feeder_scale(), 1e-10),
     },
     "shop_order": {

@@ -222,7 +222,7 @@ def test_the_pair_s_own_check_names_the_sides_alike() -> None:
     limits = {"contact_ratio": 1.4}
     found = [f for f in made.findings if f.code == "contact-ratio"]
     assert found == []
-    strict = run_checks("gear-pair", subject_of(made), limits)
+    strict = run_checks("teeth", subject_of(made), limits)
     worse = [f for f in strict if f.code == "contact-ratio"]
     assert [f.where.partition(",")[0] for f in worse] == ["driving forward"]
     ratios = {side: flank_pairs(made.gears, side).contact_ratios.min() for side in (DRIVE, COAST)}

@@ -24,20 +24,9 @@ from gearcam.numeric.contour import polygon_area
 from helpers_pairs import job, profile
 
 TOP = [
-    "format",
-    "name",
-    "kind",
-    "pair",
-    "mesh",
-    "gears",
-    "accuracy",
-    "hash",
-    "files",
-    "findings",
-    "timings_s",
-    "versions",
-    "design",
-]
+    "format", "name", "kind", "pair", "mesh", "gears", "accuracy", "hash", "files", "findings",
+    "timings_s", "versions", "design",
+]  # fmt: skip
 """Keys of every summary; ``solids`` comes with meshes, ``stale`` with old files."""
 
 PAIR = {"center_distance_mm", "module_mm", "teeth", "face_width_mm", "ratio", "solved"}

@@ -178,7 +178,7 @@ def _renamed(title: str, key: str, new: str, table: str = "") -> Retired:
     def turn(value: Any) -> Instead:
         return Instead(there={(table, new): value}) if table else Instead(here={new: value})
 
-    return Retired(title=title, key=key, doc=f"{table or title}.{new}", turn=turn)
+    return Retired(title=title, key=key, doc=f"{table}.{new}" if table else new, turn=turn)
 
 
 RETIRED: Final = (

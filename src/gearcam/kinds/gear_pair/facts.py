@@ -95,7 +95,7 @@ def _rack(result: GearPairResult) -> Tree:
 
     def height(name: str) -> Fact:
         gave = name in yielded
-        place = f"the default {yielded[name]:.6g} gave way to given values" if gave else ""
+        place = f"for the default {yielded[name]:.6g}, which gave way" if gave else ""
         return Fact(getattr(rack, name), place=place, unit="modules", shown=gave)
 
     return {
@@ -110,7 +110,7 @@ def _mesh(result: GearPairResult) -> Tree:
     subject, limits, module = result.subject, result.design.limits, result.pair.module
     least = limit_of(KIND, "contact-ratio", limits)
     thin = limit_of(KIND, "thin-tip", limits) * module
-    tip, gear = min((gear.profile.tip_thickness.min(), gear) for gear in result.gears)
+    gear = min(result.gears, key=lambda gear: gear.profile.tip_thickness.min())
     tooth = int(gear.profile.tip_thickness.argmin()) + 1
     way, (phi1, angle) = max(subject.pressure_angles.items(), key=lambda item: item[1][1])
     places, values = subject.accelerations
@@ -125,7 +125,7 @@ def _mesh(result: GearPairResult) -> Tree:
             shown=True,
         ),
         "tip_thickness_min_mm": Fact(
-            float(tip),
+            float(gear.profile.tip_thickness.min()),
             "thinnest tip",
             at_least=thin,
             place=f"wheel {gear.wheel}, tooth {tooth}",
