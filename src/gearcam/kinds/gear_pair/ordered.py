@@ -59,14 +59,9 @@ def _part(result: GearPairResult, number: int) -> Part:
         blank = replace(
             blank, bore_diameter=0.0, bolts=0, hub_diameter=0.0, lightening_holes=0, stop_pin=0.0
         )
-    return make_part(
-        gear.name,
-        contours,
-        result.design.pair.face_width,
-        blank,
-        Workpiece(wheel=number, module=result.pair.module, travel=travel),
-        None if rack else lambda: _mark(result, gear),
-    )
+    work = Workpiece(name=f"wheel {number}", module=result.pair.module, travel=travel, wheel=number)
+    marker = None if rack else lambda: _mark(result, gear)
+    return make_part(gear.name, contours, result.design.pair.face_width, blank, work, marker)
 
 
 def _mark(result: GearPairResult, gear: Gear) -> Mark:
