@@ -101,7 +101,7 @@ def test_a_keyway_is_off_the_axis(angle: float) -> None:
         bore_diameter=20.0, keyway_width=6.0, keyway_depth=2.8, keyway_angle=angle,
         timing_marks=False,
     )  # fmt: skip
-    place = Workpiece(wheel=1, module=2.0)
+    place = Workpiece(name="wheel 1", wheel=1, module=2.0)
     part = make_part("p", [disc_contour(50.0)], 8.0, blank, place)
     r, h, floor = 10.0, 3.0, 12.8
     # beyond the bore's circle: integral of x over the strip abs(y) < h from the circle to the floor
@@ -184,7 +184,12 @@ def wheel() -> Part:
     )  # fmt: skip
     mark = Mark(center=np.array([0.0, -18.0]), diameter=1.5, depth=0.6)
     return make_part(
-        "g", [made.gear1.profile.contour], 9.0, blank, Workpiece(wheel=1, module=2.0), lambda: mark
+        "g",
+        [made.gear1.profile.contour],
+        9.0,
+        blank,
+        Workpiece(name="wheel 1", wheel=1, module=2.0),
+        lambda: mark,
     )
 
 

@@ -49,7 +49,12 @@ def keyed(bore: float = 40.0) -> Part:
     )  # fmt: skip
     mark = Mark(center=np.array([70.0, 12.0]), diameter=2.0, depth=0.5)
     made = make_part(
-        "gear1", [gear_contour()], 50.0, blank, Workpiece(wheel=1, module=5.0), lambda: mark
+        "gear1",
+        [gear_contour()],
+        50.0,
+        blank,
+        Workpiece(name="wheel 1", wheel=1, module=5.0),
+        lambda: mark,
     )
     holes = [((10.0, 50.0), 20.0), ((-60.0, 3.0), 9.0)]
     more = [
@@ -63,12 +68,16 @@ def keyed(bore: float = 40.0) -> Part:
 def plain() -> Part:
     blank = WheelBlank(bore_diameter=20.0, timing_marks=False)
     contour = gear_contour(24, 2.0, squash=(1.0, 1.0))
-    return make_part("gear2", [contour], 12.0, blank, Workpiece(wheel=2, module=2.0))
+    return make_part(
+        "gear2", [contour], 12.0, blank, Workpiece(name="wheel 2", wheel=2, module=2.0)
+    )
 
 
 def d_bore() -> Part:
     blank = WheelBlank(bore_diameter=12.0, bore_flat=10.5, keyway_angle=-2.0)
-    return make_part("gear1", [disc_contour(30.0)], 8.0, blank, Workpiece(wheel=1, module=2.0))
+    return make_part(
+        "gear1", [disc_contour(30.0)], 8.0, blank, Workpiece(name="wheel 1", wheel=1, module=2.0)
+    )
 
 
 def fine_points(part: Part) -> np.ndarray:

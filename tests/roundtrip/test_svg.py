@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gearcam.drawings import Drawing, pair_drawing
-from gearcam.export.svg import pair_notes, svg_bytes
+from gearcam.export.svg import svg_bytes
 from gearcam.numeric.bulges import distances
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
@@ -38,7 +38,7 @@ def drawing() -> Drawing:
 
 @pytest.fixture(scope="module")
 def root(drawing: Drawing) -> Any:
-    notes = pair_notes(190.0, 4.9229880875, (36, 36))
+    notes = ("centre distance 190 mm", "module 4.92299 mm", "teeth 36 : 36")
     return etree.fromstring(svg_bytes(drawing, title='Nails & "wire" <fast>', notes=notes))
 
 

@@ -15,28 +15,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from typing import Final
-from xml.sax.saxutils import escape, quoteattr
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import (
-    LABEL,
-    MARK,
-    OUTER,
-    THROUGH,
-    Circle,
-    Drawing,
-    Feature,
-    Loop,
-    Path,
-    reach,
-)
+from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, reach
 from gearcam.export.dxf import CURVE_PART
-from gearcam.export.svg import arc_data
+from gearcam.export.svg import arc_data, svg_document
 from gearcam.numerals import decimal, shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
+from gearcam.parts.shapes import Circle, Loop
 
 Array = NDArray[np.float64]
 
@@ -95,15 +85,8 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
     told = f"; the paths are moved by half a kerf of {shown(kerf)} mm" if kerf else ""
     # of the paths y = 0 is the sheet's upper edge
     shift = complex(-float(low[0]), -float(high[1]))
-    lines = [
-        '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
-        f"<title>{escape(title)}</title>",
-        f"<desc>1:1 in mm: engrave what is blue, then cut what is red{told}</desc>",
-        *_groups(kept, shift, decimals),
-        "</svg>",
-    ]
-    return ("\n".join(lines) + "\n").encode()
+    words = f"<desc>1:1 in mm: engrave what is blue, then cut what is red{told}</desc>"
+    return svg_document(size, title, [words, *_groups(kept, shift, decimals)])
 
 
 def _groups(kept: Sequence[Feature], shift: complex, decimals: int) -> Iterator[str]:

@@ -9,7 +9,7 @@ Depends on drawings and numeric; ezdxf only inside the functions.
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -64,71 +64,51 @@ def measure_dxf(data: bytes, contours: Sequence[Contour]) -> float:
     document = read_dxf(data)
     if document.dxfversion != _R12 and document.header.get("$INSUNITS") != MILLIMETRES:
         raise DxfError("the DXF file is not in millimetres")
-    outlines = _outlines(document, contours)
+    outlines = list(_outlines(document, lambda layer: layer.endswith(CLOSED)))
     if len(outlines) != len(contours) or not all(closed for _, _, closed in outlines):
         raise DxfError(
             f"the DXF file should hold {len(contours)} closed outlines, it holds {len(outlines)}"
         )
     return max(
-        deviation(vertices, bulges, dense_points(contour))
+        # the first point of each run is the last of the one before
+        deviation(vertices, bulges, np.vstack([run.points[:-1] for run in contour.runs]))
         for (vertices, bulges, _), contour in zip(outlines, contours, strict=True)
     )
 
 
-def _outlines(document: Document, contours: Sequence[Contour]) -> list[_Outline]:
-    """Return the outlines of a drawing; its splines are chained as its contours have runs."""
-    found, splines = _curves(document, lambda layer: layer.endswith(CLOSED))
-    start = 0
-    for contour in contours if splines else ():
-        chain = splines[start : start + len(contour.runs)]
-        start += len(contour.runs)
-        found += [_chain(chain)] if chain else []
-    if start < len(splines):
-        points, bulges = splines[-1]
-        found.append((points[:-1], bulges, False))
-    return found
-
-
-def _chains(document: Document, layer: str) -> list[_Outline]:
-    """Return the outlines on a layer; its splines are one chain."""
-    found, splines = _curves(document, lambda name: name == layer)
-    return [*found, _chain(splines)] if splines else found
-
-
-def _curves(
-    document: Document, wanted: Callable[[str], bool]
-) -> tuple[list[_Outline], list[tuple[Array, Array]]]:
-    """Return polylines, and splines as vertices and bulges, on the layers that are wanted."""
+def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Outline]:
+    """Yield polylines, and splines chained until one ends where the first begins."""
     from ezdxf.entities.lwpolyline import LWPolyline
     from ezdxf.entities.polyline import Polyline
     from ezdxf.entities.spline import Spline
 
-    found: list[_Outline] = []
-    splines: list[tuple[Array, Array]] = []
+    chain: list[tuple[Array, Array]] = []
     for entity in document.modelspace():
         if not wanted(entity.dxf.layer):
             continue
         if isinstance(entity, LWPolyline):
             rows = np.array(entity.get_points(format="xyb"), dtype=np.float64)
-            found.append((rows[:, :2], rows[:, 2], bool(entity.closed)))
+            yield rows[:, :2], rows[:, 2], bool(entity.closed)
         elif isinstance(entity, Polyline):
             rows = np.array(
                 [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
             )
-            found.append((rows[:, :2], rows[:, 2], bool(entity.is_closed)))
+            yield rows[:, :2], rows[:, 2], bool(entity.is_closed)
         elif isinstance(entity, Spline):
-            splines.append(_arcs(entity))
-    return found, splines
+            chain.append(_arcs(entity))
+            if (chain[-1][0][-1] == chain[0][0][0]).all():
+                yield _joined(chain)
+                chain = []
+    if chain:
+        yield _joined(chain)
 
 
-def _chain(splines: Sequence[tuple[Array, Array]]) -> _Outline:
+def _joined(chain: Sequence[tuple[Array, Array]]) -> _Outline:
     """Join splines, each of which begins where the one before ends if they are closed."""
-    joined = all(
-        bool((a[-1] == b[0]).all())
-        for (a, _), (b, _) in zip(splines, [*splines[1:], splines[0]], strict=True)
-    )
-    vertices = np.vstack([points[:-1] for points, _ in splines])
-    return vertices, np.concatenate([bulges for _, bulges in splines]), joined
+    following = [*chain[1:], chain[0]]
+    closed = all((a[-1] == b[0]).all() for (a, _), (b, _) in zip(chain, following, strict=True))
+    vertices = np.vstack([points[:-1] for points, _ in chain])
+    return vertices, np.concatenate([bulges for _, bulges in chain]), closed
 
 
 def read_outline(data: bytes) -> tuple[Array, Array]:
@@ -164,7 +144,7 @@ def read_outline(data: bytes) -> tuple[Array, Array]:
             (vertices, bulges)
             for layer in layers
             if layer.upper().endswith(wanted)
-            for vertices, bulges, closed in _chains(document, layer)
+            for vertices, bulges, closed in _outlines(document, layer.__eq__)
             if closed
         ]
         if len(found) == 1:
@@ -206,8 +186,3 @@ def read_dxf(data: bytes) -> Document:
     if faults:
         raise DxfError(f"the DXF file has faults ({len(faults)}), the first: {faults[0].message}")
     return document
-
-
-def dense_points(contour: Contour) -> Array:
-    """Return the dense points of a contour's runs, in order, (n, 2), mm, first not repeated."""
-    return np.vstack([run.points[:-1] for run in contour.runs])

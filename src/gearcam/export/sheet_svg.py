@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.drawings import CENTRODE, OUTLINE, THROUGH, Circle, Feature, chains
+from gearcam.export.svg import svg_document
 from gearcam.numerals import decimal
 from gearcam.sheets.sheet import CENTERLINE, EDGE, HIDDEN, DrawnDimension, Sheet, Text
 
@@ -44,18 +45,13 @@ def sheet_svg(sheet: Sheet) -> bytes:
     """Write a `sheet` as SVG, UTF-8; the same sheet gives the same bytes."""
     wide, tall = (decimal(value) for value in sheet.size)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
+    drawn = sheet.drawn
     font = f'font-family="sans-serif" fill="{INK}"'
     lines = [
-        '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
-        f"<title>{escape(sheet.title)}</title>",
         f'<rect width="{wide}" height="{tall}" fill="#ffffff"/>',
         f'<g fill="none" stroke="{INK}" stroke-linejoin="round">',
         *(_feature(sheet, feature) for feature in sheet.features),
         "</g>",
-    ]
-    drawn = sheet.drawn
-    lines += [
         f'<g fill="none" stroke="{INK}" stroke-width="{THIN}">',
         *(_dimension(sheet, one) for one in drawn),
         "</g>",
@@ -66,9 +62,8 @@ def sheet_svg(sheet: Sheet) -> bytes:
         *(_text(sheet, one.text, "dimension") for one in drawn),
         *(_text(sheet, text, "text") for text in sheet.texts),
         "</g>",
-        "</svg>",
     ]
-    return ("\n".join(lines) + "\n").encode()
+    return svg_document(size, sheet.title, lines)
 
 
 def _on_page(sheet: Sheet, points: Array) -> Array:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import Final
 from xml.sax.saxutils import escape, quoteattr
@@ -19,22 +19,9 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.drawings import (
-    DASHED,
-    FOLLOWER,
-    MARK,
-    OUTLINE,
-    PROFILE,
-    Circle,
-    Cross,
-    Drawing,
-    Feature,
-    Loop,
-    Path,
-    chains,
-    reach,
-)
-from gearcam.numerals import decimal, shown
+from gearcam import drawings
+from gearcam.drawings import Circle, Cross, Drawing, Feature, Loop, Path, chains, reach
+from gearcam.numerals import decimal
 from gearcam.numeric.bulges import as_complex
 
 Array = NDArray[np.float64]
@@ -78,7 +65,7 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     title : str
         First line of the caption.
     notes : sequence of str
-        Second line of the caption, joined by commas (see `pair_notes`).
+        Second line of the caption, joined by commas.
 
     Returns
     -------
@@ -108,26 +95,25 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="{GROUND}"'
     sheet = f'viewBox="{box}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
     elements = [
-        '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<svg xmlns="http://www.w3.org/2000/svg" {sheet} role="img">',
-        f"<title>{escape(title)}</title>",
         f"<rect {ground}/>",
         f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
         *(_element(feature, pixel) for feature in drawing.features),
         "</g>",
         *_caption(lines, float(low[0]), base, size),
+    ]
+    return svg_document(f'{sheet} role="img"', title, elements)
+
+
+def svg_document(attributes: str, title: str, elements: Iterable[str]) -> bytes:
+    """Return an SVG file, UTF-8: `attributes` of its root, a `title`, and `elements` as lines."""
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>',
+        f"<title>{escape(title)}</title>",
+        *elements,
         "</svg>",
     ]
-    return ("\n".join(elements) + "\n").encode()
-
-
-def pair_notes(center_distance: float, module: float, teeth: tuple[int, int]) -> tuple[str, ...]:
-    """Return the caption's facts: `center_distance` (0 on a rack) and `module` in mm, `teeth`."""
-    return (
-        f"centre distance {shown(center_distance)} mm" if center_distance else "wheel and rack",
-        f"module {shown(module)} mm",
-        f"teeth {teeth[0]} : {teeth[1]}",
-    )
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
@@ -143,16 +129,21 @@ def _caption(lines: Sequence[str], left: float, base: float, size: float) -> lis
 def _element(feature: Feature, pixel: float) -> str:
     """Return the SVG element of one feature; the class is its layer."""
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
-    wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == FOLLOWER else 0
+    wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == drawings.FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
-    inside = {MARK: ink, FOLLOWER: fill, OUTLINE: fill, PROFILE: fill}.get(feature.kind, GROUND)
+    inside = {
+        drawings.MARK: ink,
+        drawings.FOLLOWER: fill,
+        drawings.OUTLINE: fill,
+        drawings.PROFILE: fill,
+    }.get(feature.kind, GROUND)
     line = f'stroke="{ink}"'
-    if feature.kind in DASHED:
+    if feature.kind in drawings.DASHED:
         dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
         line = f'stroke="{CENTRODE_INK}" stroke-dasharray="{dash}"'
     elif isinstance(shape, Cross):
         line = f'stroke="{TEXT_INK}"'
-    if feature.kind in DASHED or isinstance(shape, Path | Cross):
+    if feature.kind in drawings.DASHED or isinstance(shape, Path | Cross):
         inside = "none"
     style = f'class={name} fill="{inside}" {line}'
     match shape:

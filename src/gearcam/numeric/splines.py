@@ -57,16 +57,6 @@ class Spline:
             [np.repeat(self.breaks[:1], 4), inner, np.repeat(self.breaks[-1:], 4)]
         )
 
-    @property
-    def cubics(self) -> Array:
-        """Bezier points of its cubics, (k, 4, 2), mm."""
-        steps = np.diff(self.breaks)[:, None]
-        first, second = self.poles[1:-1:2], self.poles[2::2]
-        share = steps[:-1] / (steps[:-1] + steps[1:])
-        joints = second[:-1] + share * (first[1:] - second[:-1])
-        ends = np.vstack([self.poles[:1], joints, self.poles[-1:]])
-        return np.stack([ends[:-1], first, second, ends[1:]], axis=1)
-
 
 def fit_spline(run: Run, tolerance: float) -> Spline:
     """Fit a cubic B-spline to a smooth piece of curve.

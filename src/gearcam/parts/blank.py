@@ -15,11 +15,11 @@ Depends on quantities only.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
-from typing import Any, Final
+from dataclasses import dataclass, field, fields, make_dataclass, replace
+from typing import Any, Final, get_type_hints
 
 from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, Quantity, param
+from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, param, params_of
 
 KIND: Final = "parts"
 """The checks of parts."""
@@ -27,138 +27,68 @@ KIND: Final = "parts"
 _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
 """Sizes of what a shaft, a bolt or a pin goes through."""
 
+_COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores")
+"""Given once for both wheels."""
+
 Problem = tuple[str, int | None, str, str]
 """Field, number of the wheel's value, what is wrong, what is allowed."""
 
 
-def each(quantity: Quantity, **rest: Any) -> Any:
-    """Return a parameter with a value for each wheel (see `param`); `rest` goes to it."""
-    return param(quantity, both=True, **rest)
-
-
 def _length(*, doc: str, le: float = 1e6) -> Any:
-    """Return lengths that are 0 where there is none of what they measure."""
-    return each(LENGTH, default=(0, 0), ge=0, le=le, doc=doc)
+    """Return a length that is 0 where there is none of what it measures."""
+    return param(LENGTH, default=0.0, ge=0, le=le, doc=doc)
 
 
 def _angle(*, doc: str) -> Any:
-    return each(ANGLE, default=(0, 0), ge=-360, le=360, doc=f"{doc} in the wheel's frame")
+    return param(ANGLE, default=0.0, ge=-360, le=360, doc=f"{doc} in the wheel's frame")
 
 
 def _count(*, doc: str, le: int) -> Any:
-    return each(COUNT, default=(0, 0), ge=0, le=le, doc=doc)
+    return param(COUNT, default=0, ge=0, le=le, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Blank:
-    """Bores, hubs, holes, marks and edges of both wheels, driver first; 0 means none."""
+class WheelBlank:
+    """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none."""
 
-    bore_diameter: tuple[float, float] | None = each(
+    bore_diameter: float | None = param(
         LENGTH, default=None, ge=0, le=1e6, doc="bores; none if left out"
     )
-    keyway_width: tuple[float, float] = _length(doc="width of the keyway")
-    keyway_depth: tuple[float, float] = _length(
-        doc="its depth from the bore's circle, at its middle"
-    )
-    keyway_angle: tuple[float, float] = _angle(doc="its direction")
-    bore_flat: tuple[float, float] = _length(doc="D-bore: from the flat to the far side")
-    bolts: tuple[int, int] = _count(doc="bolt holes", le=100)
-    bolt_circle: tuple[float, float] = _length(doc="diameter of their circle")
-    bolt_diameter: tuple[float, float] = _length(doc="diameter of each")
-    bolt_angle: tuple[float, float] = _angle(doc="direction of the first")
-    hub_diameter: tuple[float, float] = _length(doc="diameter of the hub")
-    hub_front: tuple[float, float] = _length(doc="how far the hub stands out in front (+z)", le=1e5)
-    hub_back: tuple[float, float] = _length(doc="how far it stands out at the back", le=1e5)
-    lightening_holes: tuple[int, int] = _count(doc="round holes that take weight off", le=36)
-    rim: tuple[float, float] | None = each(
+    keyway_width: float = _length(doc="width of the keyway")
+    keyway_depth: float = _length(doc="its depth from the bore's circle, at its middle")
+    keyway_angle: float = _angle(doc="its direction")
+    bore_flat: float = _length(doc="D-bore: from the flat to the far side")
+    bolts: int = _count(doc="bolt holes", le=100)
+    bolt_circle: float = _length(doc="diameter of their circle")
+    bolt_diameter: float = _length(doc="diameter of each")
+    bolt_angle: float = _angle(doc="direction of the first")
+    hub_diameter: float = _length(doc="diameter of the hub")
+    hub_front: float = _length(doc="how far the hub stands out in front (+z)", le=1e5)
+    hub_back: float = _length(doc="how far it stands out at the back", le=1e5)
+    lightening_holes: int = _count(doc="round holes that take weight off", le=36)
+    rim: float | None = param(
         LENGTH, default=None, gt=0, le=1e6,
         doc="rim that they keep below the roots; 2.7 modules if left out",
     )  # fmt: skip
-    web: tuple[float, float] | None = each(
+    web: float | None = param(
         LENGTH, default=None, gt=0, le=1e6,
         doc="what they keep to one another, to bore, hub and bolts; as the rim if left out",
     )  # fmt: skip
-    stop_pin: tuple[float, float] = _length(
-        doc="diameter of the stop pin in the slot of an open wheel", le=1e5
-    )
+    stop_pin: float = _length(doc="diameter of the stop pin in the slot of an open wheel", le=1e5)
     timing_marks: bool = param(TEXT, default=True, doc="dimples that face each other at phi1 = 0")
     mark_diameter: float | None = param(
         LENGTH, default=None, gt=0, le=1e5, doc="their diameter; 0.4 modules if left out"
     )
-    density: tuple[float, float] | None = each(
+    density: float | None = param(
         DENSITY, default=None, gt=0, le=1e5, doc="for mass, centroid, unbalance and inertia"
     )
-    clearance: tuple[float, float] = _length(
-        doc="taken off the toothed edge, along its normal", le=100
-    )
+    clearance: float = _length(doc="taken off the toothed edge, along its normal", le=100)
     clearance_bores: bool = param(
         TEXT,
         default=False,
         doc="whether bores, bolt holes and stop slots are wider by it, all around",
     )
-    tip_rounding: tuple[float, float] = _length(
-        doc="radius of the teeth's rounded tip edges", le=100
-    )
-
-    def wheel(self, number: int) -> WheelBlank:
-        """Return what is wanted of one wheel: `number` 1 is the driver."""
-        values = {}
-        for field in fields(WheelBlank):
-            value = getattr(self, field.name)
-            values[field.name] = value[number - 1] if isinstance(value, tuple) else value
-        return WheelBlank(**values)
-
-    def problems(self) -> Iterator[Problem]:
-        """Yield what is wrong by reading: field, wheel, message, allowed."""
-        for number in (1, 2):
-            for name, _, message, rule in self.wheel(number).problems():
-                yield name, number - 1, message, rule
-
-
-@dataclass(frozen=True, kw_only=True)
-class WheelBlank:
-    """The blank of one wheel; 0 or None means none.
-
-    Parameters
-    ----------
-    bore_diameter, keyway_width, keyway_depth, bore_flat, bolt_circle, bolt_diameter : float, mm
-        As of `Blank`.
-    hub_diameter, hub_front, hub_back, rim, web, stop_pin, mark_diameter : float, mm
-        As of `Blank`.
-    clearance, tip_rounding : float, mm
-        As of `Blank`.
-    keyway_angle, bolt_angle : float, rad
-        As of `Blank`.
-    bolts, lightening_holes : int
-        As of `Blank`.
-    timing_marks, clearance_bores : bool
-        As of `Blank`.
-    density : float or None, kg/m^3
-        As of `Blank`.
-    """
-
-    bore_diameter: float | None = None
-    keyway_width: float = 0.0
-    keyway_depth: float = 0.0
-    keyway_angle: float = 0.0
-    bore_flat: float = 0.0
-    bolts: int = 0
-    bolt_circle: float = 0.0
-    bolt_diameter: float = 0.0
-    bolt_angle: float = 0.0
-    hub_diameter: float = 0.0
-    hub_front: float = 0.0
-    hub_back: float = 0.0
-    lightening_holes: int = 0
-    rim: float | None = None
-    web: float | None = None
-    stop_pin: float = 0.0
-    timing_marks: bool = True
-    mark_diameter: float | None = None
-    density: float | None = None
-    clearance: float = 0.0
-    clearance_bores: bool = False
-    tip_rounding: float = 0.0
+    tip_rounding: float = _length(doc="radius of the teeth's rounded tip edges", le=100)
 
     @property
     def bore(self) -> float:
@@ -226,3 +156,39 @@ def _other_problems(one: WheelBlank) -> Iterator[_Told]:
     if one.hub_diameter and one.hub_diameter <= 2.0 * one.bore_reach:
         rule = f"above {shown(2.0 * one.bore_reach)} mm, what the bore takes"
         yield "hub_diameter", "the bore leaves no hub", rule
+
+
+def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:
+    """Return a field of `WheelBlank` as `make_dataclass` takes it, with a value for each wheel."""
+    made = params_of(WheelBlank)[name]
+    if name not in _COMMON:
+        made, hint = replace(made, both=True), tuple[hint, hint]
+        default = None if default is None else (0, 0)
+    return name, hint, field(default=default, metadata={"param": made})
+
+
+_BothWheels: Any = make_dataclass(
+    "_BothWheels",
+    [
+        _both(one.name, get_type_hints(WheelBlank)[one.name], one.default)
+        for one in fields(WheelBlank)
+    ],
+    frozen=True,
+    kw_only=True,
+)
+
+
+class Blank(_BothWheels):
+    """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first."""
+
+    def wheel(self, number: int) -> WheelBlank:
+        """Return what is wanted of one wheel: `number` 1 is the driver."""
+        values = {one.name: getattr(self, one.name) for one in fields(self)}
+        own = {name: v[number - 1] if isinstance(v, tuple) else v for name, v in values.items()}
+        return WheelBlank(**own)
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, wheel, message, allowed."""
+        for number in (1, 2):
+            for name, _, message, rule in self.wheel(number).problems():
+                yield name, number - 1, message, rule

@@ -60,22 +60,20 @@ class Workpiece:
 
     Parameters
     ----------
-    wheel : int or None
-        1 or 2, for messages; None of a cam.
+    name : str
+        What a person calls it.
     module : float, mm
         Sizes that the design leaves open follow it.
     travel : float or None, rad
         How far an open wheel turns; None for a closed one.
+    wheel : int or None
+        1 or 2; None of what stands alone.
     """
 
-    wheel: int | None
+    name: str
     module: float
     travel: float | None = None
-
-    @property
-    def name(self) -> str:
-        """What a person calls it."""
-        return "cam" if self.wheel is None else f"wheel {self.wheel}"
+    wheel: int | None = None
 
     def key(self, name: str) -> str:
         """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""

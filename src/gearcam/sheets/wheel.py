@@ -119,11 +119,6 @@ class _Wheel:
         return 1 + (self.hub.front > 0.0) + (self.hub.back > 0.0) + (self.part.hub is not None)
 
 
-def _sized(part: Part) -> _Wheel:
-    points = true_points(part.contours[-1:])
-    return _Wheel(part=part, points=points, bore=_bore(part))
-
-
 def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     """Draw the sheet of a wheel.
 
@@ -146,7 +141,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     ValueError
         If the part is too large for the smallest scale.
     """
-    wheel = _sized(part)
+    wheel = _Wheel(part=part, points=true_points(part.contours[-1:]), bore=_bore(part))
     bore = wheel.bore
     shown = 2.0 * bore.radius if bore is not None and bore.shape is not None else 0.0
     wide, tall = (wheel.high - wheel.low).tolist()

@@ -22,7 +22,7 @@ from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.parts.blank import Blank, WheelBlank
+from gearcam.parts.blank import WheelBlank
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 
 NAME: Final = "cam"
@@ -140,17 +140,14 @@ def _unmarked(blank: WheelBlank, source: str) -> WheelBlank:
 
 @lru_cache(maxsize=1)
 def _blank_table() -> Table:
-    """Return the table of a cam's blank: the keys of a pair's, with one value each."""
+    """Return the table of a cam's blank: the keys of a wheel's but for those of teeth."""
     entries = {}
-    for key, entry in table_of("blank", Blank).entries.items():
+    for key, entry in table_of("blank", WheelBlank).entries.items():
         if entry.name not in _OF_WHEELS:
-            words = _BLANK_WORDS.get(entry.name, entry.param.doc)
-            entries[key] = dataclasses.replace(
-                entry,
-                param=dataclasses.replace(entry.param, both=False, doc=words),
-                length=None,
-                default=entry.default and entry.default[0],
+            told = dataclasses.replace(
+                entry.param, doc=_BLANK_WORDS.get(entry.name, entry.param.doc)
             )
+            entries[key] = dataclasses.replace(entry, param=told)
     return Table("blank", WheelBlank, entries)
 
 

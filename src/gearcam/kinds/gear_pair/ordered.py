@@ -57,14 +57,11 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
         blank = replace(
             blank, bore_diameter=0.0, bolts=0, hub_diameter=0.0, lightening_holes=0, stop_pin=0.0
         )
-    return make_part(
-        gear.name,
-        [one.profile.contour for one in gears],
-        design.pair.face_width,
-        blank,
-        Workpiece(wheel=gear.wheel, module=gear.pair.module, travel=travel),
-        None if rack else lambda: _mark(gear, design),
-    )
+    wheel = gear.wheel
+    work = Workpiece(name=f"wheel {wheel}", module=gear.pair.module, travel=travel, wheel=wheel)
+    contours = [one.profile.contour for one in gears]
+    marker = None if rack else lambda: _mark(gear, design)
+    return make_part(gear.name, contours, design.pair.face_width, blank, work, marker)
 
 
 def _mark(gear: Gear, design: GearPairDesign) -> Mark:
