@@ -18,7 +18,6 @@ from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import (
     LABEL,
@@ -37,8 +36,6 @@ from gearcam.export.svg import arc_data
 from gearcam.numerals import decimal, shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
-
-Array = NDArray[np.float64]
 
 CUT: Final = "#ff0000"
 ENGRAVED: Final = "#0000ff"

@@ -17,7 +17,6 @@ from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import (
     DASHED,
@@ -35,9 +34,8 @@ from gearcam.drawings import (
     reach,
 )
 from gearcam.numerals import decimal, shown
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
-
-Array = NDArray[np.float64]
 
 THINNING: Final = 0.005
 """Largest distance, mm, by which thinning may move a line of the picture."""

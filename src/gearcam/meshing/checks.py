@@ -9,18 +9,17 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.findings import Finding, check
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing import drive_checks
 from gearcam.meshing.settings import KIND
 from gearcam.meshing.study import Meshing, trespasses
+from gearcam.numeric.arrays import Array, Mask
 from gearcam.quantities import NUMBER, Param
 
 __all__ = ["KIND", "clearances", "drive_checks", "spans"]
 
-Array = NDArray[np.float64]
 
 _CLEARANCE = (
     "tip_clearance",
@@ -53,7 +52,7 @@ def spans(angles: Array, step: float) -> str:
     return drive_checks.ranges_text(list(zip(angles[starts], angles[ends], strict=True)))
 
 
-def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
+def _at(meshing: Meshing, chosen: Mask) -> str:
     start, end = meshing.setup.stretch
     return spans(meshing.phi1[chosen], (end - start) / meshing.setup.spec.steps)
 

@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.meshing.study import Meshing
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from gearcam.numeric.arrays import Array, Ints, Mask
 
 LEAST_STEPS = 8
 """Steps a tooth below which harmonics are not told."""
@@ -105,7 +102,7 @@ def motion(meshing: Meshing) -> dict[str, Any]:
     return {"lag_mm": extent((-lead * along)[touching]), "transmission_error": error}
 
 
-def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
+def without_harmonics(meshing: Meshing, touching: Mask) -> str:
     """Return why a study has no harmonics, or nothing.
 
     Parameters

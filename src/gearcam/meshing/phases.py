@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import FlankPairs
 from gearcam.meshing.settings import MeshingSpec
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 _BESIDE = 0.15
 """Phases studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""

@@ -15,7 +15,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
@@ -28,8 +27,8 @@ from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.phases import phases, stretch
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
+from gearcam.numeric.arrays import Array, Mask
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
 
 _SHARE = 1.0 / 200.0
@@ -124,7 +123,7 @@ class Meshing:
         return columns_of(self.blocks, self.setup.turning)
 
     @property
-    def on_side(self) -> NDArray[np.bool_]:
+    def on_side(self) -> Mask:
         """Which rows are of facing halves of the side that is pressed together."""
         rows = self.columns
         return (rows["facing"].data > 0.0) & (rows["side"].data == self.setup.side)
@@ -302,7 +301,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     )
 
 
-def trespasses(setup: Setup, found: Overlaps) -> NDArray[np.bool_]:
+def trespasses(setup: Setup, found: Overlaps) -> Mask:
     """Return which overlaps should not be, or are deeper than the overclosure explains.
 
     Parameters

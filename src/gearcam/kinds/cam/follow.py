@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import DesignError, Problem
+from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
 
-Array = NDArray[np.float64]
 
 _SAGITTA = 0.01
 """Chord error of arcs that are flattened, in the design's chord tolerances."""

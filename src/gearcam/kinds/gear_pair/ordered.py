@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.pair import Gear
+from gearcam.numeric.arrays import Array
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
@@ -19,7 +19,6 @@ from gearcam.parts.openings import Workpiece
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
 
-Array = NDArray[np.float64]
 
 _PLACES = 65
 """Places on each flank at which it is asked whether a cutter gets there."""

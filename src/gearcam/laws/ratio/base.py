@@ -15,18 +15,17 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.span import RackTravel, Span, angle_text, continued, rough
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

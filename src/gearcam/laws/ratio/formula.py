@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
@@ -29,8 +28,6 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 _NAMES = ("phi2", "ratio", "r1")
 

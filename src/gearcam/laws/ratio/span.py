@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece, Piecewise
@@ -204,7 +204,7 @@ def angle_text(angle: float) -> str:
     return f"phi1 = {round(math.degrees(angle), 6) + 0.0:.6g} deg"
 
 
-def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[NDArray[np.float64], list[Piece]]:
+def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[Array, list[Piece]]:
     """Continue an open ratio beyond both ends.
 
     Parameters

@@ -7,19 +7,17 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import compiled, formula_problems
 from gearcam.laws.rises.base import RISES, Rise
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 _ODD_PLACE: Final = 0.3819660112501052
 """Where the search for corners is cut first: a corner at a round place then lies inside a part."""

@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, FromFile
@@ -21,12 +20,12 @@ from gearcam.laws.rises.base import (
     Rise,
 )
 from gearcam.laws.rises.pieces import about, product, spline, total
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
-Array = NDArray[np.float64]
 Problem = tuple[str, int | None, str, str]
 
 _FEWEST: Final = 3
