@@ -12,6 +12,7 @@ from typing import Final
 from gearcam.cams.disc import DiscCam
 from gearcam.cams.spec import KIND
 from gearcam.findings import Finding, check
+from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH, Param
 
 PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
@@ -22,7 +23,7 @@ _TURN: Final = 2.0 * math.pi
 
 
 def _deg(theta: float) -> str:
-    return f"{math.degrees(theta):.6g} deg"
+    return f"{shown(math.degrees(theta))} deg"
 
 
 @check(
@@ -70,12 +71,12 @@ def undercut(cam: DiscCam, limit: float) -> Iterator[Finding]:
         inside = [pair for pair in left if _within(pair, low, high)]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * lever
-        angle = f" ({math.degrees(loss.value):.4g} deg)" if cam.mechanism.oscillating else ""
+        angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if cam.mechanism.oscillating else ""
         yield Finding(
             code="undercut",
             severity="error" if lost > limit else "warning",
             message=f"The profile is {_stretches(inside)}. Trimmed, it has a corner on which the "
-            f"follower rests from {_deg(low)} to {_deg(high)}: it loses up to {lost:.4g} mm"
+            f"follower rests from {_deg(low)} to {_deg(high)}: it loses up to {shown(lost, 4)} mm"
             f"{angle} of lift.",
             value=lost,
             limit=limit,
@@ -123,7 +124,7 @@ def hard_shock(cam: DiscCam, limit: float) -> Iterator[Finding]:  # noqa: ARG001
         yield Finding(
             code="hard-shock",
             severity="warning",
-            message=f"The velocity jumps by {by:.6g} {unit}: the follower strikes or leaves the "
+            message=f"The velocity jumps by {shown(by)} {unit}: the follower strikes or leaves the "
             "cam, but at crawling speed.",
             value=by,
             unit=unit,
@@ -138,7 +139,7 @@ def soft_shock(cam: DiscCam, limit: float) -> Iterator[Finding]:  # noqa: ARG001
         yield Finding(
             code="soft-shock",
             severity="note",
-            message=f"The acceleration jumps by {by:.6g} {unit}: vibration at high speed.",
+            message=f"The acceleration jumps by {shown(by)} {unit}: vibration at high speed.",
             value=by,
             unit=unit,
             where=where,
@@ -158,7 +159,7 @@ def sharp_profile(cam: DiscCam, limit: float) -> Iterator[Finding]:
         yield Finding(
             code="sharp-profile",
             severity="warning",
-            message=f"The smallest convex radius of the profile is {convex:.4g} mm.",
+            message=f"The smallest convex radius of the profile is {shown(convex, 4)} mm.",
             value=convex,
             limit=limit,
             unit="mm",

@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from gearcam.numerals import shown
 from gearcam.quantities import LENGTH, TEXT, param
 
 KIND: Final = "cams"
@@ -171,5 +172,5 @@ def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
         rule = "one of prime_radius_mm and base_radius_mm"
         yield "base_radius", None, "prime_radius_mm is given too", rule
     elif prime is not None and prime <= follower.radius:
-        rule = f"above the follower's radius of {follower.radius:.6g} mm"
+        rule = f"above the follower's radius of {shown(follower.radius)} mm"
         yield "prime_radius", None, "leaves no cam below the follower", rule

@@ -10,6 +10,7 @@ import numpy as np
 from gearcam.findings import Finding, check
 from gearcam.gears.subject import KIND, ROUNDING, Subject
 from gearcam.laws.ratio.span import angle_text
+from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
 CLOSURE = math.radians(1e-7)
@@ -57,8 +58,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="ratio-positive",
                 severity="warning",
-                message=f"The ratio is {value:.6g} here: one wheel hardly moves, and its centrode "
-                "comes close to the other's shaft.",
+                message=f"The ratio is {shown(value)} here: one wheel hardly moves, and its "
+                "centrode comes close to the other's shaft.",
                 value=swing,
                 limit=limit,
                 where=angle_text(place),
@@ -108,7 +109,7 @@ def concave(subject: Subject, limit: float) -> Iterator[Finding]:
                 code="concave",
                 severity="note",
                 message="The centrode is concave here: no rack or hob can cut this wheel; its "
-                f"fillets are those of a pinion cutter with up to {count:.3g} teeth.",
+                f"fillets are those of a pinion cutter with up to {shown(count, 3)} teeth.",
                 value=radius,
                 limit=limit if limit < _ANY_RADIUS else None,
                 unit="mm",
@@ -131,7 +132,7 @@ def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="sharp",
                 severity="warning",
-                message=f"The centrode bends with a radius of {gear.convex_radius:.6g} mm here. "
+                message=f"The centrode bends with a radius of {shown(gear.convex_radius)} mm here. "
                 f"{subject.with_teeth(limit / radius)} the limit is kept.",
                 value=radius,
                 limit=limit,
@@ -159,8 +160,8 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
                 code="concave-teeth",
                 severity="warning",
                 message="The teeth are wide for this concave part, whose radius is "
-                f"{gear.concave_radius:.6g} mm. {subject.with_teeth(limit / count)} the limit is "
-                "kept.",
+                f"{shown(gear.concave_radius)} mm. {subject.with_teeth(limit / count)} the "
+                "limit is kept.",
                 value=count,
                 limit=limit,
                 unit="teeth",
@@ -187,7 +188,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
             code="pressure-angle",
             severity="warning",
             message="The tooth force stands so steep that it mostly loads the bearings: the "
-            f"rack's {math.degrees(subject.pair.rack.pressure_angle):.6g} deg and the slope of "
+            f"rack's {shown(math.degrees(subject.pair.rack.pressure_angle))} deg and the slope of "
             "the centrode add up.",
             value=math.degrees(max(angle for _, angle in found.values())),
             limit=math.degrees(limit),

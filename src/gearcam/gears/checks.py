@@ -16,7 +16,7 @@ from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject
-from gearcam.numerals import rounded_down
+from gearcam.numerals import rounded_down, shown
 from gearcam.quantities import LENGTH, NUMBER, Param
 
 __all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
@@ -79,11 +79,11 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
     ratio = subject.contact_ratio
     driven = subject.driven
     severity: Severity = "warning" if driven and ratio >= limit else "error"
-    left = f"the least contact ratio that is left is {ratio:.4g}"
+    left = f"the least contact ratio that is left is {shown(ratio, 4)}"
     if not driven:
         left += ", and in some phases no flanks touch"
     elif ratio < limit:
-        left += f", below the limit {limit:.4g}"
+        left += f", below the limit {shown(limit, 4)}"
     for gear in subject.gears:
         teeth = gear.profile.undercut_teeth
         if not teeth:
@@ -96,9 +96,8 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
-            message = (
-                f"Undercut takes up to {lost:.4g} mm from the root end of these flanks; {left}."
-            )
+            message = f"Undercut takes up to {shown(lost, 4)} mm from the root end of these "
+            message += f"flanks; {left}."
         yield Finding(
             code="undercut",
             severity=severity,
@@ -180,7 +179,7 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
             yield Finding(
                 code="thin-rim",
                 severity="warning",
-                message=f"The rim between bore and root is {rim:.6g} mm thick; {hint}.",
+                message=f"The rim between bore and root is {shown(rim)} mm thick; {hint}.",
                 value=rim / subject.pair.module,
                 limit=limit,
                 unit="modules",

@@ -15,6 +15,7 @@ from gearcam.gears.contact import DRIVE
 from gearcam.meshing import drive_checks
 from gearcam.meshing.settings import KIND
 from gearcam.meshing.study import Meshing, trespasses
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.quantities import NUMBER, Param
 
@@ -66,7 +67,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
     backlash = meshing.every("backlash")
     worst = int(np.where(np.isfinite(backlash), backlash, np.inf).argmin())
     deepest = -float(backlash[worst])
-    where = f"no room between both sides, phi1 = {math.degrees(meshing.phi1[worst]):.6g} deg"
+    where = f"no room between both sides, phi1 = {shown(math.degrees(meshing.phi1[worst]))} deg"
     for block in meshing.blocks:
         found, turning = block.overlaps, meshing.setup.turning
         bad = np.where(trespasses(meshing.setup, found), found.depth, 0.0)
@@ -81,7 +82,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
                 )
             )
             angle = math.degrees(block.phi1[found.step[k]])
-            where = f"deepest at phi1 = {angle:.6g} deg, {one} in {two}"
+            where = f"deepest at phi1 = {shown(angle)} deg, {one} in {two}"
     yield Finding(
         code="interference",
         severity="error",

@@ -15,6 +15,7 @@ from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
 from gearcam.meshing.settings import KIND
+from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.meshing.idle import Idle
@@ -35,9 +36,9 @@ class Sided(Protocol):
 def ranges_text(ranges: list[tuple[float, float]]) -> str:
     """Return ranges of driver angles, rad, in degrees, with the number of those left out."""
     degrees = [(math.degrees(a), math.degrees(b)) for a, b in ranges[:_SHOWN]]
-    shown = [f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}" for a, b in degrees]
+    named = [f"{shown(a)}" if a == b else f"{shown(a)} to {shown(b)}" for a, b in degrees]
     more = f" and {len(ranges) - _SHOWN} more" if len(ranges) > _SHOWN else ""
-    return f"phi1 = {', '.join(shown)} deg{more}"
+    return f"phi1 = {', '.join(named)} deg{more}"
 
 
 def arcs_text(found: list[Idle]) -> str:
@@ -81,8 +82,8 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
             apart = max(stretch.apart for stretch in found)
             message = (
                 f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}. Meanwhile ends of flanks "
-                f"drive: they scratch, and the driven wheel is up to {apart:.3g} mm off its place "
-                "along the pitch curve."
+                f"drive: they scratch, and the driven wheel is up to {shown(apart, 3)} mm off its "
+                "place along the pitch curve."
             )
         elif found:
             message = (

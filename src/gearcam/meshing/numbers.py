@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from gearcam.meshing.study import Meshing
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask
 
 LEAST_STEPS = 8
@@ -130,7 +131,7 @@ def without_harmonics(meshing: Meshing, touching: Mask) -> str:
         return "in some phases nothing touches"
     if meshing.asked < LEAST_STEPS * teeth * round(turns):
         return (
-            f"{meshing.asked / (teeth * turns):.3g} steps a tooth, {LEAST_STEPS} are needed: "
+            f"{shown(meshing.asked / (teeth * turns), 3)} steps a tooth, {LEAST_STEPS} are needed: "
             f"steps = {LEAST_STEPS * teeth * round(turns)}"
         )
     return ""

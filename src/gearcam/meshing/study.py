@@ -27,6 +27,7 @@ from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.phases import phases, stretch
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Mask
 
 Progress = Callable[[str, int, int], None]
@@ -213,7 +214,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
             value=float(np.degrees(spec.overclosure)),
             limit=float(np.degrees(least)),
             unit="deg",
-            nearest=f"at least {np.degrees(abs(least)):.3g} deg",
+            nearest=f"at least {shown(np.degrees(abs(least)), 3)} deg",
         )
     both = [halve(replace(gear.profile, tolerance=tolerance)) for gear in gears]
     for gear, halves in zip(gears, both, strict=True):
@@ -262,7 +263,7 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
             value=spec.center_distance,
             limit=near if spec.center_distance <= near else far,
             unit="mm",
-            nearest=f"between {near:.6g} and {far:.6g} mm",
+            nearest=f"between {shown(near)} and {shown(far)} mm",
         )
     return spec.center_distance
 

@@ -19,6 +19,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
@@ -174,7 +175,7 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
             where=where,
             value=size,
             unit="mm",
-            nearest=f"a {what} of {low:.3g} mm leaves one" if low else "leave it out",
+            nearest=f"a {what} of {shown(low, 3)} mm leaves one" if low else "leave it out",
         ) from None
 
 

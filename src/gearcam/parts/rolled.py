@@ -21,6 +21,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
@@ -291,7 +292,7 @@ def too_far(contour: Contour, radius: float) -> InfeasibleError:
     side = "outside" if radius > 0 else "inside"
     return InfeasibleError(
         f"no simple outline is left by a disc of this radius that rolls {side}",
-        where=f"an outline of {np.ptp(contour.vertices[:, 0]):.6g} mm",
+        where=f"an outline of {shown(np.ptp(contour.vertices[:, 0]))} mm",
         value=abs(radius),
         unit="mm",
     )

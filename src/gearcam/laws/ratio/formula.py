@@ -23,6 +23,7 @@ from gearcam.laws.ratio.span import (
     span_of,
     travel_problems,
 )
+from gearcam.numerals import shown
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece
@@ -92,7 +93,7 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
             place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
             raise InfeasibleError(
                 f"{name} is not periodic: it must repeat every "
-                f"{math.degrees(lobes.period):.6g} deg for these tooth counts",
+                f"{shown(math.degrees(lobes.period))} deg for these tooth counts",
                 where=angle_text(place + lobe * lobes.period),
                 value=wrong,
                 limit=right,

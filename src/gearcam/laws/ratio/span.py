@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet, exp, log
@@ -201,7 +202,7 @@ def open_travel(wheel: str) -> Any:
 
 def angle_text(angle: float) -> str:
     """Return a driver angle, rad, as a place for messages."""
-    return f"phi1 = {round(math.degrees(angle), 6) + 0.0:.6g} deg"
+    return f"phi1 = {shown(round(math.degrees(angle), 6) + 0.0)} deg"
 
 
 def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[Array, list[Piece]]:
