@@ -97,10 +97,8 @@ def _widest_tip(alpha: float) -> float:
 
 def _demand_rack(rack: BasicRack, largest: float) -> None:
     """Refuse a rack without clearance, or whose tooth tip has no land."""
-    depth, angle = (
-        rack.dedendum,
-        f"a pressure angle of {shown(math.degrees(rack.pressure_angle))} deg",
-    )
+    depth = rack.dedendum
+    angle = f"a pressure angle of {shown(math.degrees(rack.pressure_angle))} deg"
     if depth < rack.addendum:
         raise InfeasibleError(
             "the dedendum is less than the addendum: teeth would run into the mate's root",
