@@ -22,15 +22,13 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Part
 from gearcam.parts.shapes import Circle, Loop
-
-Array = NDArray[np.float64]
 
 OUTLINE: Final = "OUTLINE"
 BORE: Final = "BORE"

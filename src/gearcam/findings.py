@@ -8,12 +8,14 @@ cannot be built raises instead. Checks live beside what they check and register 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from functools import wraps
+from typing import Any, Final, Literal, NamedTuple
 
 from gearcam.numerals import settled
-from gearcam.quantities import Param
+from gearcam.quantities import NUMBER, Param
 
 Severity = Literal["note", "warning", "error"]
 
@@ -59,6 +61,34 @@ class Finding:
         }
 
 
+class Remark(NamedTuple):
+    """What a check yields: a finding without what its registration says of all of them.
+
+    Parameters
+    ----------
+    message, where, value
+        As of a `Finding`.
+    severity, unit : str
+        Where they are not those of the check.
+    limit : float
+        In `unit`, where it is not that of the check; infinite where there is none.
+    """
+
+    message: str
+    where: str = ""
+    value: float | None = None
+    severity: Severity | None = None
+    unit: str = ""
+    limit: float = math.nan
+
+
+Look = Callable[[Any, float], Iterable[Remark]]
+"""What looks at a subject, given the limit in inner units (nan where there is none)."""
+
+Run = Callable[[Any, float], Iterator[Finding]]
+"""The same with findings made of the remarks."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Check:
     """An entry of the registry.
@@ -81,7 +111,7 @@ class Check:
     kind: str
     doc: str
     limit: tuple[str, Param, float] | None
-    run: Callable[[Any, float], Iterable[Finding]]
+    run: Run
 
 
 CHECKS: Final[dict[tuple[str, str], Check]] = {}
@@ -94,18 +124,45 @@ def check(
     kind: str | tuple[str, ...],
     doc: str,
     limit: tuple[str, Param, float] | None = None,
-) -> Callable[[Callable[[Any, float], Iterable[Finding]]], Callable[..., Iterable[Finding]]]:
-    """Return a decorator that registers a function as a check of one or more kinds (see `Check`).
+    severity: Severity = "warning",
+    unit: str = "",
+) -> Callable[[Look], Run]:
+    """Return a decorator that makes a function a check of one or more kinds (see `Check`).
+
+    Parameters
+    ----------
+    code, kind, doc, limit
+        As of a `Check`.
+    severity : {"note", "warning", "error"}
+        Of findings that do not say another.
+    unit : str
+        Of values that do not say another; that of the limit if left out.
 
     Raises
     ------
     ValueError
         If a kind has the code already.
     """
+    quantity = limit[1].quantity if limit else NUMBER
+    unit = unit or quantity.unit
 
-    def register(
-        run: Callable[[Any, float], Iterable[Finding]],
-    ) -> Callable[..., Iterable[Finding]]:
+    def finding(found: Remark, own: float) -> Finding:
+        bound = own / quantity.factor if math.isnan(found.limit) else found.limit
+        return Finding(
+            code=code,
+            severity=found.severity or severity,
+            message=found.message,
+            value=found.value,
+            limit=bound if found.value is not None and math.isfinite(bound) else None,
+            unit="" if found.value is None else found.unit or unit,
+            where=found.where,
+        )
+
+    def register(look: Look) -> Run:
+        @wraps(look)
+        def run(subject: Any, own: float) -> Iterator[Finding]:
+            return (finding(found, own) for found in look(subject, own))
+
         for one in (kind,) if isinstance(kind, str) else kind:
             if (one, code) in CHECKS:
                 raise ValueError(f"check {code!r} is registered twice")

@@ -17,10 +17,10 @@ from functools import cached_property, singledispatch
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import GearcamError
 from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Body, Layer, Mark, Part
 from gearcam.parts.shapes import circle_segments
@@ -51,8 +51,8 @@ class Mesh:
         Indices of vertices.
     """
 
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
+    vertices: Array
+    triangles: Ints
 
     @cached_property
     def volume(self) -> float:

@@ -13,6 +13,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.outline import build_outline
+from gearcam.gears.subject import KIND as PAIR_KIND
 from gearcam.gears.subject import Subject
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
@@ -222,7 +223,7 @@ def test_the_pair_s_own_check_names_the_sides_alike() -> None:
     limits = {"contact_ratio": 1.4}
     found = [f for f in made.findings if f.code == "contact-ratio"]
     assert found == []
-    strict = run_checks("teeth", subject_of(made), limits)
+    strict = run_checks(PAIR_KIND, subject_of(made), limits)
     worse = [f for f in strict if f.code == "contact-ratio"]
     assert [f.where.partition(",")[0] for f in worse] == ["driving forward"]
     ratios = {side: flank_pairs(made.gears, side).contact_ratios.min() for side in (DRIVE, COAST)}

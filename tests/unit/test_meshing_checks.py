@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from gearcam.findings import CHECKS, Finding, run_checks
-from gearcam.gears.contact import DRIVE, flank_pairs
+from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.spec import Rack
 from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.checks import KIND, clearances, spans
@@ -86,6 +86,21 @@ def test_contact_ratio_below_one_is_an_error_and_says_that_edges_drive() -> None
     assert ratio < 1.0
     longer = job(Constant(), (20, 20), module=2.0, rack=Rack(addendum=0.7, dedendum=0.9))
     assert "contact-ratio" not in found(study(longer.gears, FEW))
+
+
+def test_what_is_the_same_of_both_sides_is_one_finding_with_the_worse_value() -> None:
+    """The nail machine carries worse driving than holding back; both limits are above both."""
+    sides = tuple(flank_pairs(profile("nail_machine_three_phase").gears, s) for s in (COAST, DRIVE))
+    least = [float(side.contact_ratios.min()) for side in sides]
+    assert least[1] < least[0]
+    (both,) = contact_ratio(SimpleNamespace(sides=sides), 2.0)
+    assert both.value == least[1]
+    assert both.severity == "warning"
+    backward, forward = both.where.split("; ")
+    assert backward.startswith("driving backward, wheel 1, tooth ")
+    assert forward.startswith("driving forward, wheel 1, tooth ")
+    (one,) = contact_ratio(SimpleNamespace(sides=sides), 0.5 * sum(least))
+    assert one.where == forward
 
 
 def test_a_flank_of_less_than_a_pitch_is_an_error_though_its_neighbours_drive() -> None:

@@ -11,7 +11,8 @@ from typing import Final
 
 from gearcam.cams.disc import DiscCam
 from gearcam.cams.spec import KIND
-from gearcam.findings import Finding, check
+from gearcam.findings import Remark, check
+from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH, Param
 
 PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
@@ -22,7 +23,7 @@ _TURN: Final = 2.0 * math.pi
 
 
 def _deg(theta: float) -> str:
-    return f"{math.degrees(theta):.6g} deg"
+    return f"{shown(math.degrees(theta))} deg"
 
 
 @check(
@@ -35,7 +36,7 @@ def _deg(theta: float) -> str:
         math.nan,
     ),
 )
-def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Finding]:
+def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Remark]:
     """Warn of large pressure angles on rises and returns."""
     if math.isnan(limit):
         limit = PRESSURE[cam.mechanism.oscillating]
@@ -44,14 +45,11 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Finding]:
         if found is None or found.largest <= limit:
             continue
         worst = max(found.low, found.high, key=lambda end: abs(end.value))
-        yield Finding(
-            code="pressure-angle",
-            severity="warning",
-            message=f"The pressure angle on the {kind} reaches {_deg(worst.value)}.",
-            value=math.degrees(abs(worst.value)),
+        yield Remark(
+            f"The pressure angle on the {kind} reaches {_deg(worst.value)}.",
+            f"{kind}, at {_deg(worst.theta)}",
+            math.degrees(abs(worst.value)),
             limit=math.degrees(limit),
-            unit="deg",
-            where=f"{kind}, at {_deg(worst.theta)}",
         )
 
 
@@ -61,7 +59,7 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Finding]:
     doc="stretches on which the follower would cut away what it needs elsewhere; they are trimmed",
     limit=("lost_lift", Param(LENGTH, ge=0, doc="lift that trimming may cost"), 0.01),
 )
-def undercut(cam: DiscCam, limit: float) -> Iterator[Finding]:
+def undercut(cam: DiscCam, limit: float) -> Iterator[Remark]:
     """Tell where a profile is undercut, and the lift that its trimming costs."""
     left = cam.undercut_ranges
     lever = cam.mechanism.lever
@@ -70,24 +68,19 @@ def undercut(cam: DiscCam, limit: float) -> Iterator[Finding]:
         inside = [pair for pair in left if _within(pair, low, high)]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * lever
-        angle = f" ({math.degrees(loss.value):.4g} deg)" if cam.mechanism.oscillating else ""
-        yield Finding(
-            code="undercut",
-            severity="error" if lost > limit else "warning",
-            message=f"The profile is {_stretches(inside)}. Trimmed, it has a corner on which the "
-            f"follower rests from {_deg(low)} to {_deg(high)}: it loses up to {lost:.4g} mm"
+        angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if cam.mechanism.oscillating else ""
+        yield Remark(
+            f"The profile is {_stretches(inside)}. Trimmed, it has a corner on which the "
+            f"follower rests from {_deg(low)} to {_deg(high)}: it loses up to {shown(lost, 4)} mm"
             f"{angle} of lift.",
-            value=lost,
-            limit=limit,
-            unit="mm",
-            where=f"at {_deg(loss.theta)}",
+            f"at {_deg(loss.theta)}",
+            lost,
+            severity="error" if lost > limit else "warning",
         )
     for pair in left:
-        yield Finding(
-            code="undercut",
-            severity="warning",
-            message=f"The profile is {_stretches([pair])}, so little that trimming costs nothing.",
-            where=f"at {_deg(pair[0])}",
+        yield Remark(
+            f"The profile is {_stretches([pair])}, so little that trimming costs nothing.",
+            f"at {_deg(pair[0])}",
         )
 
 
@@ -117,31 +110,27 @@ def _shocks(cam: DiscCam, order: int) -> Iterator[tuple[str, float, str]]:
 
 
 @check("hard-shock", kind=KIND, doc="knots where the velocity jumps")
-def hard_shock(cam: DiscCam, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+def hard_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of every knot where the velocity jumps."""
     for where, by, unit in _shocks(cam, 1):
-        yield Finding(
-            code="hard-shock",
-            severity="warning",
-            message=f"The velocity jumps by {by:.6g} {unit}: the follower strikes or leaves the "
+        yield Remark(
+            f"The velocity jumps by {shown(by)} {unit}: the follower strikes or leaves the "
             "cam, but at crawling speed.",
-            value=by,
+            where,
+            by,
             unit=unit,
-            where=where,
         )
 
 
-@check("soft-shock", kind=KIND, doc="knots where the acceleration jumps")
-def soft_shock(cam: DiscCam, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+@check("soft-shock", kind=KIND, doc="knots where the acceleration jumps", severity="note")
+def soft_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Note every knot where the acceleration jumps."""
     for where, by, unit in _shocks(cam, 2):
-        yield Finding(
-            code="soft-shock",
-            severity="note",
-            message=f"The acceleration jumps by {by:.6g} {unit}: vibration at high speed.",
-            value=by,
+        yield Remark(
+            f"The acceleration jumps by {shown(by)} {unit}: vibration at high speed.",
+            where,
+            by,
             unit=unit,
-            where=where,
         )
 
 
@@ -151,15 +140,10 @@ def soft_shock(cam: DiscCam, limit: float) -> Iterator[Finding]:  # noqa: ARG001
     doc="the smallest convex radius of an untrimmed profile: sharp ones wear and pit",
     limit=("profile_radius", Param(LENGTH, ge=0, doc="least convex radius of the profile"), 1.0),
 )
-def sharp_profile(cam: DiscCam, limit: float) -> Iterator[Finding]:
+def sharp_profile(cam: DiscCam, limit: float) -> Iterator[Remark]:
     """Warn of a sharp profile."""
     convex, _ = cam.profile_radius
     if not cam.corners and convex < limit:
-        yield Finding(
-            code="sharp-profile",
-            severity="warning",
-            message=f"The smallest convex radius of the profile is {convex:.4g} mm.",
-            value=convex,
-            limit=limit,
-            unit="mm",
+        yield Remark(
+            f"The smallest convex radius of the profile is {shown(convex, 4)} mm.", value=convex
         )

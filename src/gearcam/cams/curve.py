@@ -18,16 +18,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.cams.contact import Contact, contact
 from gearcam.cams.mechanism import Mechanism
 from gearcam.laws.program import Program
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.jets import Jet
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-Plane = NDArray[np.complex128]
 
 
 def unit(angle: Array) -> Plane:
@@ -159,26 +155,26 @@ class ProfileSegments:
 
     curve: CamCurve
     inset: float
-    piece: Index
+    piece: Ints
     start: Array
     end: Array
-    jump: NDArray[np.bool_]
-    corner: NDArray[np.bool_]
+    jump: Mask
+    corner: Mask
 
     @property
-    def backward(self) -> NDArray[np.bool_]:
+    def backward(self) -> Mask:
         """Which are jumps that run backwards: about a corner of the pitch curve on their side."""
         return self.jump & ((self.end - self.start) * (-1.0 if self.inset < 0.0 else 1.0) < 0.0)
 
     @property
-    def breaks(self) -> tuple[Index, Array]:
+    def breaks(self) -> tuple[Ints, Array]:
         """Where a law bends sharply inside sweeps."""
         cuts = self.curve.program.cuts
         inside = (self.start[:, None] < cuts) & (cuts < self.end[:, None]) & ~self.jump[:, None]
         index, number = np.nonzero(inside)
         return index, cuts[number]
 
-    def states(self, index: Index, parameter: Array, order: int = 1) -> tuple[Array, ...]:
+    def states(self, index: Ints, parameter: Array, order: int = 1) -> tuple[Array, ...]:
         """Return cam angle, lift, velocity and more derivatives.
 
         Parameters
@@ -195,7 +191,7 @@ class ProfileSegments:
         s, ds, *more = program.lift.on_pieces(self.piece[index], theta, order)
         return theta, s, np.where(jump, parameter, ds), *more
 
-    def at(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
+    def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points and unit tangents in the direction of drawing; backwards where undercut.
 
         Parameters
@@ -208,7 +204,7 @@ class ProfileSegments:
         theta, s, ds = self.states(index, parameter)
         return self.curve.trace(theta, s, ds, self.inset)
 
-    def moving(self, index: Index, parameter: Array) -> tuple[Plane, Plane]:
+    def moving(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, and their velocities as the curve is drawn.
 
         Parameters

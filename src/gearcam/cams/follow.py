@@ -26,15 +26,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.profile_points import ProfilePoints, profile_points
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.bulges import Complex
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from gearcam.numeric.arrays import Array, Ints, Plane
 
 _ROUNDING: Final = 1e-12
 """Lengths over the profile's size that rounding may make different."""
@@ -66,7 +63,7 @@ class Followed:
     theta: Array
     lift: Array
     error: Array
-    contact: Complex
+    contact: Plane
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -76,10 +73,10 @@ class _Places:
     angle: Ints
     position: Array
     error: Array
-    point: Complex
+    point: Plane
 
 
-def follow(points: Complex | Array, mechanism: Mechanism, theta: ArrayLike) -> Followed:
+def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Followed:
     """Return the lift that a profile gives: the polygon of some points.
 
     Parameters
@@ -136,7 +133,7 @@ def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
         )
 
 
-def _highest(places: _Places, angles: Array) -> tuple[Array, Array, Complex]:
+def _highest(places: _Places, angles: Array) -> tuple[Array, Array, Plane]:
     """Return position, error and contact at each angle.
 
     Raises
@@ -166,7 +163,7 @@ def _highest(places: _Places, angles: Array) -> tuple[Array, Array, Complex]:
 # --- one place ---------------------------------------------------------------------------------
 
 
-def _rest(mechanism: Mechanism, z: Complex, grow: Array | float = 0.0) -> tuple[Array, Array]:
+def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Array, Array]:
     """Return the position at which a follower touches discs, and the room within its reach.
 
     Parameters
@@ -207,7 +204,7 @@ def _rest(mechanism: Mechanism, z: Complex, grow: Array | float = 0.0) -> tuple[
 
 
 def _reached(
-    mechanism: Mechanism, z: Complex, grow: Array | float = 0.0, tolerance: float = 0.0
+    mechanism: Mechanism, z: Plane, grow: Array | float = 0.0, tolerance: float = 0.0
 ) -> Array:
     """Return the positions of `_rest`, minus infinity out of reach by more than the tolerance."""
     position, room = _rest(mechanism, z, grow)
@@ -218,7 +215,7 @@ def _reached(
 
 
 def _on_chord(
-    mechanism: Mechanism, z: Complex, chord: Complex, grow: Array | float, tolerance: float
+    mechanism: Mechanism, z: Plane, chord: Plane, grow: Array | float, tolerance: float
 ) -> tuple[Array, Array]:
     """Return the position on chords from `z`, and where it touches: 0 at the start, 1 at the end.
 
@@ -249,7 +246,7 @@ def _on_chord(
 
 
 def _candidates(
-    profile: ProfilePoints, mechanism: Mechanism, turn: Complex, tolerance: float
+    profile: ProfilePoints, mechanism: Mechanism, turn: Plane, tolerance: float
 ) -> tuple[Ints, Ints, Array]:
     """Return the chords that may hold the contact: number of angle and chord, and upper bound.
 
@@ -271,7 +268,7 @@ def _candidates(
 
 
 def _on_chords(
-    profile: ProfilePoints, mechanism: Mechanism, turn: Complex, tolerance: float
+    profile: ProfilePoints, mechanism: Mechanism, turn: Plane, tolerance: float
 ) -> _Places:
     """Return the contacts with chords."""
     angle, chord, upper = _candidates(profile, mechanism, turn, tolerance)

@@ -15,9 +15,10 @@ from itertools import product
 
 import numpy as np
 
-from gearcam.cams.curve import Array, ProfileSegments
+from gearcam.cams.curve import ProfileSegments
 from gearcam.cams.measures import over_the_end
 from gearcam.cams.trim import Corner, cut_out
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.crossings import Branch, CurvePoint, rows_between
 from gearcam.numeric.roots import bracketed_root
 

@@ -14,11 +14,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gearcam.cams.curve import Array
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner
 from gearcam.laws.program import Program
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, acos, asin, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import extremes
 

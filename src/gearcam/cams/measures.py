@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.cams.contact import Contact
-from gearcam.cams.curve import Array, CamCurve, ProfileSegments
+from gearcam.cams.curve import CamCurve, ProfileSegments
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes, extremes_among
 from gearcam.numeric.roots import bracketed_root

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.errors import InfeasibleError, Way
+from gearcam.numerals import shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,7 +127,7 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
             value=size,
             limit=low if size <= low else high,
             unit="mm",
-            nearest=f"arm and pivot allow {low:.6g} to {high:.6g} mm, both excluded",
+            nearest=f"arm and pivot allow {shown(low)} to {shown(high)} mm, both excluded",
             ways=_between("cam.prime_radius_mm", size, low, high),
         )
     # half the angle from the sides: exact where the triangle is nearly flat
@@ -160,7 +161,7 @@ def _swinging_face(follower: FollowerSpec, size: float, pivot: float) -> Mechani
             value=size,
             limit=low if size <= low else high,
             unit="mm",
-            nearest=f"pivot and face offset allow {low:.6g} to {high:.6g} mm, both excluded",
+            nearest=f"pivot and face offset allow {shown(low)} to {shown(high)} mm, both excluded",
             ways=(
                 *_between("cam.base_radius_mm", size, max(low, 0.0), high),
                 Way(far={"follower.face_offset_mm": 0.0}),

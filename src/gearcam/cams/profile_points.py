@@ -12,13 +12,10 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.bulges import Complex, as_complex
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.bulges import as_complex
 
 FEWEST: Final = 8
 """Fewest points of a profile."""
@@ -37,7 +34,7 @@ class ProfilePoints:
         Counter-clockwise around the cam's axis at 0, no neighbours alike, first not repeated.
     """
 
-    points: Complex
+    points: Plane
 
     @cached_property
     def size(self) -> float:
@@ -45,7 +42,7 @@ class ProfilePoints:
         return float(np.abs(self.points).max())
 
     @cached_property
-    def chords(self) -> Complex:
+    def chords(self) -> Plane:
         """From each point to the next, mm."""
         return np.roll(self.points, -1) - self.points
 
@@ -58,7 +55,7 @@ class ProfilePoints:
         return np.maximum(bend, np.roll(bend, -1)) * length**2 / 8.0
 
     @cached_property
-    def blocks(self) -> tuple[Ints, Complex, Array]:
+    def blocks(self) -> tuple[Ints, Plane, Array]:
         """Blocks of neighbouring chords, and a disc around the curve over each.
 
         Returns
@@ -79,7 +76,7 @@ class ProfilePoints:
         return index, middle, radius + 2.0 * self.sagitta[index].max(axis=1)
 
 
-def profile_points(points: Complex | Array) -> ProfilePoints:
+def profile_points(points: Plane | Array) -> ProfilePoints:
     """Return the points of a profile, cleaned.
 
     Parameters
@@ -119,7 +116,7 @@ def profile_points(points: Complex | Array) -> ProfilePoints:
     return ProfilePoints(points=z if around > 0.0 else z[::-1].copy())
 
 
-def in_plane(points: Complex | Array) -> Complex:
+def in_plane(points: Plane | Array) -> Plane:
     """Return points, complex numbers (n,) or pairs (n, 2), as complex numbers."""
     if np.iscomplexobj(points):
         return np.asarray(points, dtype=np.complex128)

@@ -14,8 +14,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
+from gearcam.numerals import shown
 from gearcam.quantities import LENGTH, TEXT, param
 
 KIND: Final = "cams"
@@ -31,6 +32,16 @@ _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
 """The sizes of round followers."""
 
 
+def _size(doc: str) -> Any:
+    """Return a length that a follower or cam may have."""
+    return param(LENGTH, default=None, gt=0, le=1e6, doc=doc)
+
+
+def _aside(doc: str) -> Any:
+    """Return a length to either side."""
+    return param(LENGTH, default=0.0, ge=-1e6, le=1e6, doc=doc)
+
+
 @dataclass(frozen=True, kw_only=True)
 class FollowerSpec:
     """A follower: what touches the cam, and how it is guided."""
@@ -43,31 +54,15 @@ class FollowerSpec:
     motion: str = param(
         TEXT, default="translating", choices=("translating", "oscillating"), doc="how it moves"
     )
-    roller_radius: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, doc="radius of the roller"
+    roller_radius: float | None = _size("radius of the roller")
+    dome_radius: float | None = _size("radius of a domed face")
+    offset: float = _aside(
+        "of a translating follower's axis from the cam's; positive makes the rise easier"
     )
-    dome_radius: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, doc="radius of a domed face"
-    )
-    offset: float = param(
-        LENGTH,
-        default=0.0,
-        ge=-1e6,
-        le=1e6,
-        doc="of a translating follower's axis from the cam's; positive makes the rise easier",
-    )
-    arm: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, doc="from the pivot to the roller's centre"
-    )
-    pivot_distance: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, doc="from the cam's axis to the pivot"
-    )
-    face_offset: float = param(
-        LENGTH,
-        default=0.0,
-        ge=-1e6,
-        le=1e6,
-        doc="of an oscillating flat follower: how far its face stands off the pivot to the cam",
+    arm: float | None = _size("from the pivot to the roller's centre")
+    pivot_distance: float | None = _size("from the cam's axis to the pivot")
+    face_offset: float = _aside(
+        "of an oscillating flat follower: how far its face stands off the pivot to the cam"
     )
 
     @property
@@ -114,20 +109,12 @@ class CamSpec:
     """A cam: its form, its size, its direction of turning."""
 
     form: str = param(TEXT, default="disc", choices=("disc",), doc="the form of the cam")
-    prime_radius: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=1e6,
-        doc="from the cam's axis to the centre of a round follower at zero lift",
+    prime_radius: float | None = _size(
+        "from the cam's axis to the centre of a round follower at zero lift"
     )
-    base_radius: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=1e6,
-        doc="from the cam's axis to a flat face at zero lift; of round followers the prime "
-        "radius less the roller's",
+    base_radius: float | None = _size(
+        "from the cam's axis to a flat face at zero lift; of round followers the prime "
+        "radius less the roller's"
     )
     thickness: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="of the plate")
     rotation: str = param(
@@ -171,5 +158,5 @@ def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
         rule = "one of prime_radius_mm and base_radius_mm"
         yield "base_radius", None, "prime_radius_mm is given too", rule
     elif prime is not None and prime <= follower.radius:
-        rule = f"above the follower's radius of {follower.radius:.6g} mm"
+        rule = f"above the follower's radius of {shown(follower.radius)} mm"
         yield "prime_radius", None, "leaves no cam below the follower", rule

@@ -17,13 +17,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.cams.profile_points import in_plane
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.bulges import Complex
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array, Ints, Plane
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -40,13 +37,13 @@ class CurvatureStudy:
         Largest error, and root of the mean square, over all points.
     """
 
-    count: NDArray[np.int64]
+    count: Ints
     spacing: Array
     largest: Array
     rms: Array
 
 
-def three_point_curvature(points: Complex | Array, closed: bool = True) -> Array:
+def three_point_curvature(points: Plane | Array, closed: bool = True) -> Array:
     """Return the curvature of the circle through each point and its two neighbours.
 
     Parameters
@@ -85,7 +82,7 @@ def three_point_curvature(points: Complex | Array, closed: bool = True) -> Array
 
 
 def curvature_study(
-    curve: Callable[[Array], Complex],
+    curve: Callable[[Array], Plane],
     exact: Callable[[Array], Array],
     counts: Sequence[int],
     period: float = 2.0 * math.pi,

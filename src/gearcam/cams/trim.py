@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.cams.curve import Array, Plane, ProfileSegments
+from gearcam.cams.curve import ProfileSegments
 from gearcam.errors import InfeasibleError
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
 
 _PROBES = 33

@@ -19,7 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.cams.curve import Array, CamCurve, Plane, ProfileSegments, begun, segments
+from gearcam.cams.curve import CamCurve, ProfileSegments, begun, segments
 from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
@@ -27,6 +27,7 @@ from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, star_shaped, trimmed
 from gearcam.errors import InfeasibleError
 from gearcam.laws.program import Program
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.sampling import Sampler

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Key
+from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH
 
 MISSING: Final = object()
@@ -172,19 +173,19 @@ def bounds(entry: Key) -> str:
     """Return the range of a value with its unit, in words; empty where there is none."""
     made = entry.param
     unit = f" {made.quantity.unit}" if made.quantity.unit else ""
-    low = f"from {made.ge:.10g}" if made.ge is not None else ""
-    low = f"above {made.gt:.10g}" if made.gt is not None else low
-    high = f"to {made.le:.10g}" if made.le is not None else ""
-    high = f"below {made.lt:.10g}" if made.lt is not None else high
+    low = f"from {shown(made.ge, 10)}" if made.ge is not None else ""
+    low = f"above {shown(made.gt, 10)}" if made.gt is not None else low
+    high = f"to {shown(made.le, 10)}" if made.le is not None else ""
+    high = f"below {shown(made.lt, 10)}" if made.lt is not None else high
     if low and high:
         joint = " and " if made.gt is not None and made.lt is not None else " "
         return f"{low}{joint}{_upper(high, low)}{unit}"
     if not low and not high:
         return f"in{unit}" if unit else ""
     if made.ge is not None:
-        low = f"of at least {made.ge:.10g}"
+        low = f"of at least {shown(made.ge, 10)}"
     if made.le is not None:
-        high = f"of at most {made.le:.10g}"
+        high = f"of at most {shown(made.le, 10)}"
     return f"{low}{high}{unit}"
 
 

@@ -18,7 +18,6 @@ from typing import Final
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, reach
 from gearcam.export.dxf import CURVE_PART
@@ -27,8 +26,6 @@ from gearcam.numerals import decimal, shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import Circle, Loop
-
-Array = NDArray[np.float64]
 
 CUT: Final = "#ff0000"
 ENGRAVED: Final = "#0000ff"

@@ -19,12 +19,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam import drawings
 from gearcam.drawings import Circle, Cross, Drawing, Loop, Path, Shape, reach
 from gearcam.numerals import shown
 from gearcam.numeric.arcs import fit_closed
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.splines import DEGREE, fit_spline
 
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
     from ezdxf.layouts.layout import Modelspace
 
-Array = NDArray[np.float64]
 
 CURVES: Final = ("arcs", "splines", "lines")
 """How curves may be written."""

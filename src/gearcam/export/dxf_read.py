@@ -13,18 +13,17 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import CLOSED, KERF, OUTLINE, PROFILE
 from gearcam.errors import GearcamError
 from gearcam.export.dxf import MILLIMETRES
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex, deviation
 from gearcam.numeric.contour import Contour
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
-Array = NDArray[np.float64]
 
 _Outline = tuple[Array, Array, bool]
 """Vertices, bulges, and whether it is closed."""

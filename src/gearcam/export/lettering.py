@@ -12,9 +12,8 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 _TALL: Final = 6
 _ADVANCE: Final = 6

@@ -18,16 +18,15 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, place, reach
 from gearcam.export.lettering import strokes, text_width
 from gearcam.numerals import NOISE
+from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from shapely import Polygon
 
-Array = NDArray[np.float64]
 
 GAP: Final = 3.0
 """Least distance between what is cut of two parts, mm."""

@@ -13,14 +13,12 @@ from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import CENTRODE, OUTLINE, THROUGH, Circle, Feature, chains
 from gearcam.export.svg import svg_document
 from gearcam.numerals import decimal
+from gearcam.numeric.arrays import Array
 from gearcam.sheets.sheet import CENTERLINE, EDGE, HIDDEN, DrawnDimension, Sheet, Text
-
-Array = NDArray[np.float64]
 
 THICK: Final = 0.5
 THIN: Final = 0.25

@@ -17,14 +17,12 @@ from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam import drawings
 from gearcam.drawings import Circle, Cross, Drawing, Feature, Loop, Path, chains, reach
 from gearcam.numerals import decimal
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
-
-Array = NDArray[np.float64]
 
 THINNING: Final = 0.005
 """Largest distance, mm, by which thinning may move a line of the picture."""

@@ -12,11 +12,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.numerals import exact
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 
 def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:

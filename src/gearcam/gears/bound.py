@@ -10,6 +10,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Toothing
 from gearcam.gears.tips import find_tips
 from gearcam.gears.undercut import find_cusps
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _FAR = 1.5
@@ -71,7 +72,7 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
             limit=least if drives else 1.0,
             unit="mm" if drives else "",
             nearest="these are the smallest concave radius, and the least for this module; the "
-            f"flanks by themselves allow a contact ratio of at most {bound:.4g}"
+            f"flanks by themselves allow a contact ratio of at most {shown(bound, 4)}"
             if drives
             else "this is the most that the contact ratio can be, whatever cuts the roots",
             more_teeth=least / radius,

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import Finding, check
+from gearcam.findings import Remark, check
 from gearcam.gears.subject import KIND, ROUNDING, Subject
 from gearcam.laws.ratio.span import angle_text
+from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
 CLOSURE = math.radians(1e-7)
@@ -25,18 +26,14 @@ _ANY_RADIUS = 1e6
     doc="miss of the driven angle over a lobe",
     limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE),
 )
-def closure(subject: Subject, limit: float) -> Iterator[Finding]:
+def closure(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn if the law closes only roughly: ratios typed with too few digits."""
     miss = abs(subject.pair.law.closure_error)
     if miss > limit:
-        yield Finding(
-            code="closure",
-            severity="warning",
-            message="The law does not close exactly: over a lobe the driven angle is off by this.",
-            value=math.degrees(miss),
-            limit=math.degrees(limit),
-            unit="deg",
-            where="law",
+        yield Remark(
+            "The law does not close exactly: over a lobe the driven angle is off by this.",
+            "law",
+            math.degrees(miss),
         )
 
 
@@ -46,7 +43,7 @@ def closure(subject: Subject, limit: float) -> Iterator[Finding]:
     doc="smallest ratio, and largest as its inverse",
     limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0),
 )
-def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
+def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large."""
     law = subject.pair.law
     (low_place, low), (high_place, high) = law.ratio_range
@@ -54,14 +51,11 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
     low, high = low / mean, high / mean
     for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
         if swing > limit:
-            yield Finding(
-                code="ratio-positive",
-                severity="warning",
-                message=f"The ratio is {value:.6g} here: one wheel hardly moves, and its centrode "
-                "comes close to the other's shaft.",
-                value=swing,
-                limit=limit,
-                where=angle_text(place),
+            yield Remark(
+                f"The ratio is {shown(value)} here: one wheel hardly moves, and its "
+                "centrode comes close to the other's shaft.",
+                angle_text(place),
+                swing,
             )
 
 
@@ -71,19 +65,16 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Finding]:
     doc="order to which the ratio is continuous at its knots",
     limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
 )
-def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
+def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn at knots where a derivative jumps that the limit wants continuous."""
     law = subject.pair.law
     for jump in law.jumps:
         order = jump.order - 2  # of the ratio, which is a derivative itself
         if order < limit:
-            yield Finding(
-                code="ratio-continuity",
-                severity="warning",
-                message=f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
-                value=float(order),
-                limit=limit,
-                where=angle_text(jump.theta or law.period),
+            yield Remark(
+                f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
+                angle_text(jump.theta or law.period),
+                float(order),
             )
 
 
@@ -96,23 +87,21 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Finding]:
         Param(LENGTH, gt=0, doc="concave radii below this are reported"),
         _ANY_RADIUS,
     ),
+    severity="note",
 )
-def concave(subject: Subject, limit: float) -> Iterator[Finding]:
+def concave(subject: Subject, limit: float) -> Iterator[Remark]:
     """Note a concave part, which a rack or hob cannot cut."""
     for gear in subject.gears:
         cutter, radius = gear.toothing.cutter, gear.concave_radius
         if cutter.kind == "pinion" and radius < limit:
             place = float(gear.curvature_places[np.argmin(gear.curvatures)])
             count = 2.0 / (cutter.kc * subject.pair.module)
-            yield Finding(
-                code="concave",
-                severity="note",
-                message="The centrode is concave here: no rack or hob can cut this wheel; its "
-                f"fillets are those of a pinion cutter with up to {count:.3g} teeth.",
-                value=radius,
-                limit=limit if limit < _ANY_RADIUS else None,
-                unit="mm",
-                where=f"wheel {gear.wheel}, {angle_text(place)}",
+            yield Remark(
+                "The centrode is concave here: no rack or hob can cut this wheel; its "
+                f"fillets are those of a pinion cutter with up to {shown(count, 3)} teeth.",
+                f"wheel {gear.wheel}, {angle_text(place)}",
+                radius,
+                limit=limit if limit < _ANY_RADIUS else math.inf,
             )
 
 
@@ -121,22 +110,19 @@ def concave(subject: Subject, limit: float) -> Iterator[Finding]:
     kind=KIND,
     doc="smallest convex radius of the centrodes",
     limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
+    unit="modules",
 )
-def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
+def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn where a centrode bends so sharply that teeth have hardly a root."""
     for gear in subject.gears:
         radius = gear.convex_radius / subject.pair.module
         if radius < limit * (1.0 - ROUNDING):
             place = float(gear.curvature_places[np.argmax(gear.curvatures)])
-            yield Finding(
-                code="sharp",
-                severity="warning",
-                message=f"The centrode bends with a radius of {gear.convex_radius:.6g} mm here. "
+            yield Remark(
+                f"The centrode bends with a radius of {shown(gear.convex_radius)} mm here. "
                 f"{subject.with_teeth(limit / radius)} the limit is kept.",
-                value=radius,
-                limit=limit,
-                unit="modules",
-                where=f"wheel {gear.wheel}, {angle_text(place)}",
+                f"wheel {gear.wheel}, {angle_text(place)}",
+                radius,
             )
 
 
@@ -145,8 +131,9 @@ def sharp(subject: Subject, limit: float) -> Iterator[Finding]:
     kind=KIND,
     doc="teeth of the largest pinion cutter that fits into the concave parts",
     limit=("cutter_teeth", Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"), 12.0),
+    unit="teeth",
 )
-def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
+def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn where teeth are wide for a concave part: tips crowd, and only a tiny cutter fits."""
     for gear in subject.gears:
         cutter = gear.toothing.cutter
@@ -155,16 +142,12 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
         count = 2.0 / (cutter.kc * subject.pair.module)
         if count < limit:
             place = float(gear.curvature_places[np.argmin(gear.curvatures)])
-            yield Finding(
-                code="concave-teeth",
-                severity="warning",
-                message="The teeth are wide for this concave part, whose radius is "
-                f"{gear.concave_radius:.6g} mm. {subject.with_teeth(limit / count)} the limit is "
-                "kept.",
-                value=count,
-                limit=limit,
-                unit="teeth",
-                where=f"wheel {gear.wheel}, {angle_text(place)}",
+            yield Remark(
+                "The teeth are wide for this concave part, whose radius is "
+                f"{shown(gear.concave_radius)} mm. {subject.with_teeth(limit / count)} the "
+                "limit is kept.",
+                f"wheel {gear.wheel}, {angle_text(place)}",
+                count,
             )
 
 
@@ -178,21 +161,17 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Finding]:
         math.radians(50.0),
     ),
 )
-def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
+def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn where the tooth force pushes the shafts apart rather than turn the wheel."""
     found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
     if found:
         where = (f"driving {way}, {angle_text(place)}" for way, (place, _) in found.items())
-        yield Finding(
-            code="pressure-angle",
-            severity="warning",
-            message="The tooth force stands so steep that it mostly loads the bearings: the "
-            f"rack's {math.degrees(subject.pair.rack.pressure_angle):.6g} deg and the slope of "
+        yield Remark(
+            "The tooth force stands so steep that it mostly loads the bearings: the "
+            f"rack's {shown(math.degrees(subject.pair.rack.pressure_angle))} deg and the slope of "
             "the centrode add up.",
-            value=math.degrees(max(angle for _, angle in found.values())),
-            limit=math.degrees(limit),
-            unit="deg",
-            where="; ".join(where),
+            "; ".join(where),
+            math.degrees(max(angle for _, angle in found.values())),
         )
 
 
@@ -206,7 +185,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Finding]:
         math.radians(10.0),
     ),
 )
-def self_crossing(subject: Subject, limit: float) -> Iterator[Finding]:
+def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn where the ends of an open wheel nearly meet; those that meet are refused.
 
     A centrode given by its radius over a rising angle crosses itself only beyond a full turn.
@@ -217,14 +196,10 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Finding]:
             continue
         gap = 2.0 * math.pi - float(np.ptp(track.rotation(track.angle(gear.toothing.ends))))
         if gap < limit:
-            yield Finding(
-                code="self-crossing",
-                severity="warning",
-                message="Little is left between the first and the last tooth.",
-                value=math.degrees(gap),
-                limit=math.degrees(limit),
-                unit="deg",
-                where=f"wheel {gear.wheel}",
+            yield Remark(
+                "Little is left between the first and the last tooth.",
+                f"wheel {gear.wheel}",
+                math.degrees(gap),
             )
 
 
@@ -232,25 +207,18 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Finding]:
     "acceleration",
     kind=KIND,
     doc="largest angular acceleration of the driven wheel over the driver's speed squared",
-    limit=(
-        "acceleration_ratio",
-        Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"),
-        2.0,
-    ),
+    limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
 )
-def acceleration(subject: Subject, limit: float) -> Iterator[Finding]:
+def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of a motion that will shake: at steady speed the driven wheel's acceleration."""
     places, values = subject.accelerations
     worst = int(np.argmax(np.abs(values)))
     if abs(float(values[worst])) > limit:
-        yield Finding(
-            code="acceleration",
-            severity="warning",
-            message="The ratio changes fast here: at n turns a second of the driver the driven "
+        yield Remark(
+            "The ratio changes fast here: at n turns a second of the driver the driven "
             "wheel's angular acceleration is this number times (2*pi*n)^2 rad/s2.",
-            value=abs(float(values[worst])),
-            limit=limit,
-            where=angle_text(float(places[worst])),
+            angle_text(float(places[worst])),
+            abs(float(values[worst])),
         )
 
 
@@ -258,8 +226,9 @@ def acceleration(subject: Subject, limit: float) -> Iterator[Finding]:
     "remote-cutter",
     kind=KIND,
     doc="pinion cutter that reaches a remote part of its wheel",
+    unit="mm",
 )
-def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if the pinion cutter would cut a tooth far from the space it is in."""
     for gear in subject.gears:
         cutter = gear.toothing.cutter
@@ -281,14 +250,11 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Finding]:  # noqa:
                 row, column = np.unravel_index(int(again.argmin()), again.shape)
                 places = s[[row, (row + way * column) % count]]
                 teeth = np.floor(places / gear.toothing.pitch).astype(int) % gear.toothing.teeth + 1
-                yield Finding(
-                    code="remote-cutter",
-                    severity="warning",
-                    message="A pinion cutter in this space would also cut the other tooth: laser, "
+                yield Remark(
+                    "A pinion cutter in this space would also cut the other tooth: laser, "
                     "wire or printer can make the wheel, a shaper cannot.",
-                    value=float(-again.min()),
+                    f"wheel {gear.wheel}, space after tooth {teeth[0]} and tooth {teeth[1]}",
+                    float(-again.min()),
                     limit=0.0,
-                    unit="mm",
-                    where=f"wheel {gear.wheel}, space after tooth {teeth[0]} and tooth {teeth[1]}",
                 )
                 break

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import Finding, Severity, check
+from gearcam.findings import Remark, Severity, check
 from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject
-from gearcam.numerals import rounded_down
+from gearcam.numerals import rounded_down, shown
 from gearcam.quantities import LENGTH, NUMBER, Param
 
 __all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
@@ -73,17 +73,18 @@ def _straight_depth(cutter: Cutter) -> float:
     kind=KIND,
     doc="flanks that turn back on themselves, and whether the pair still drives",
     limit=CONTACT_RATIO,
+    unit="teeth",
 )
-def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
+def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of undercut teeth; an error where they no longer drive well enough."""
     ratio = subject.contact_ratio
     driven = subject.driven
     severity: Severity = "warning" if driven and ratio >= limit else "error"
-    left = f"the least contact ratio that is left is {ratio:.4g}"
+    left = f"the least contact ratio that is left is {shown(ratio, 4)}"
     if not driven:
         left += ", and in some phases no flanks touch"
     elif ratio < limit:
-        left += f", below the limit {limit:.4g}"
+        left += f", below the limit {shown(limit, 4)}"
     for gear in subject.gears:
         teeth = gear.profile.undercut_teeth
         if not teeth:
@@ -96,17 +97,14 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
-            message = (
-                f"Undercut takes up to {lost:.4g} mm from the root end of these flanks; {left}."
-            )
-        yield Finding(
-            code="undercut",
+            message = f"Undercut takes up to {shown(lost, 4)} mm from the root end of these "
+            message += f"flanks; {left}."
+        yield Remark(
+            f"{message} {subject.with_teeth(factor)} this wheel has no undercut.",
+            f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
+            gear.toothing.teeth,
             severity=severity,
-            message=f"{message} {subject.with_teeth(factor)} this wheel has no undercut.",
-            value=gear.toothing.teeth,
             limit=fewest,
-            unit="teeth",
-            where=f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
         )
 
 
@@ -115,22 +113,19 @@ def undercut(subject: Subject, limit: float) -> Iterator[Finding]:
     kind=KIND,
     doc="thickness of the teeth at their tips",
     limit=("tip_thickness", Param(NUMBER, ge=0, doc="least tip thickness, in modules"), 0.2),
+    unit="modules",
 )
-def thin_tip(subject: Subject, limit: float) -> Iterator[Finding]:
+def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of thin or pointed teeth."""
     for gear in subject.gears:
         thickness = gear.profile.tip_thickness / subject.pair.module
         thin = np.flatnonzero(thickness < limit)
         if thin.size:
             state = "pointed" if thickness.min() < _POINTED else "thin"
-            yield Finding(
-                code="thin-tip",
-                severity="warning",
-                message=f"Teeth are {state} at the tip.",
-                value=float(thickness.min()),
-                limit=limit,
-                unit="modules",
-                where=f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in thin])}",
+            yield Remark(
+                f"Teeth are {state} at the tip.",
+                f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in thin])}",
+                float(thickness.min()),
             )
 
 
@@ -139,22 +134,20 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Finding]:
     kind=KIND,
     doc="flanks that end before the addendum curve",
     limit=("tip_height", Param(NUMBER, ge=0, le=1, doc="least tip height, in addenda"), 0.9),
+    severity="note",
+    unit="addenda",
 )
-def short_flank(subject: Subject, limit: float) -> Iterator[Finding]:
+def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
     """Note flanks that stop well below the addendum curve."""
     for gear in subject.gears:
         height = gear.profile.tip_height / gear.toothing.cutter.addendum
         short = np.flatnonzero(height < limit)
         if short.size:
-            yield Finding(
-                code="short-flank",
-                severity="note",
-                message="Flanks end below the addendum curve: at the end of the mate's flank, at a "
+            yield Remark(
+                "Flanks end below the addendum curve: at the end of the mate's flank, at a "
                 "cusp, or where the tooth comes to a point.",
-                value=float(height.min()),
-                limit=limit,
-                unit="addenda",
-                where=f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in short])}",
+                f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in short])}",
+                float(height.min()),
             )
 
 
@@ -163,8 +156,9 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Finding]:
     kind=KIND,
     doc="rim between bore and root",
     limit=("rim_thickness", Param(NUMBER, ge=0, doc="least rim, in modules"), 2.7),
+    unit="modules",
 )
-def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
+def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of a rim below 1.2 tooth depths (2.7 modules for the common rack)."""
     for gear, bore in zip(subject.gears, subject.bores, strict=True):
         if bore is None:
@@ -177,14 +171,10 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
                 if largest > 0
                 else "no bore keeps the limit"
             )
-            yield Finding(
-                code="thin-rim",
-                severity="warning",
-                message=f"The rim between bore and root is {rim:.6g} mm thick; {hint}.",
-                value=rim / subject.pair.module,
-                limit=limit,
-                unit="modules",
-                where=f"wheel {gear.wheel}",
+            yield Remark(
+                f"The rim between bore and root is {shown(rim)} mm thick; {hint}.",
+                f"wheel {gear.wheel}",
+                rim / subject.pair.module,
             )
 
 
@@ -193,17 +183,14 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Finding]:
     kind=KIND,
     doc="backlash between the flanks",
     limit=("backlash", Param(LENGTH, ge=0, doc="least backlash that is not reported"), 0.01),
+    severity="note",
 )
-def no_backlash(subject: Subject, limit: float) -> Iterator[Finding]:
+def no_backlash(subject: Subject, limit: float) -> Iterator[Remark]:
     """Note that the wheels are made without backlash."""
     if subject.backlash < limit:
-        yield Finding(
-            code="no-backlash",
-            severity="note",
-            message="The wheels are made without backlash: printed ones want some, and so do "
+        yield Remark(
+            "The wheels are made without backlash: printed ones want some, and so do "
             "shafts whose distance is not exact.",
-            value=max(subject.backlash, 0.0),
-            limit=limit,
-            unit="mm",
-            where="pair",
+            "pair",
+            max(subject.backlash, 0.0),
         )

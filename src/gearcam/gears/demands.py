@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
+from gearcam.numerals import shown
 
 _TIP_PART = 0.95
 """Largest tip radius over the dedendum: with its centre on the pitch line a tip arc would cut the
@@ -96,7 +97,8 @@ def _widest_tip(alpha: float) -> float:
 
 def _demand_rack(rack: BasicRack, largest: float) -> None:
     """Refuse a rack without clearance, or whose tooth tip has no land."""
-    depth, angle = rack.dedendum, f"a pressure angle of {math.degrees(rack.pressure_angle):.6g} deg"
+    depth = rack.dedendum
+    angle = f"a pressure angle of {shown(math.degrees(rack.pressure_angle))} deg"
     if depth < rack.addendum:
         raise InfeasibleError(
             "the dedendum is less than the addendum: teeth would run into the mate's root",
@@ -169,7 +171,7 @@ def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
             value=spec.backlash,
             limit=most,
             unit="mm",
-            nearest=f"the limit is that of a module of {module:.6g} mm",
+            nearest=f"the limit is that of a module of {shown(module)} mm",
             ways=(Way(near={"pair.backlash_mm": most}, far={"pair.backlash_mm": 0.0}),),
         )
 
@@ -207,7 +209,7 @@ def demand_clearance(
                 value=wheel.clearance,
                 limit=most,
                 unit="mm",
-                nearest=f"the limit is that of a module of {module:.6g} mm",
+                nearest=f"the limit is that of a module of {shown(module)} mm",
                 ways=(
                     Way(
                         near={f"blank.clearance_mm[{number}]": most},

@@ -22,6 +22,7 @@ from gearcam.gears.spaces import (
 )
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
 from gearcam.gears.undercut import Undercut, find_cusps
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run, polygon_area
@@ -359,7 +360,7 @@ def _demand_shaft(outline: Outline) -> None:
     largest = module * radius / toothing.cutter.dedendum
     raise InfeasibleError(
         f"the teeth of wheel {toothing.wheel} reach past its own shaft",
-        where=f"the centrode comes within {radius:.6g} mm of the axis",
+        where=f"the centrode comes within {shown(radius)} mm of the axis",
         value=module,
         limit=largest,
         unit="mm",

@@ -19,6 +19,7 @@ from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import Lobes
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
 from gearcam.tolerances import Tolerances
@@ -105,7 +106,7 @@ class GearPair:
                 value=asked,
                 limit=limit,
                 unit="mm",
-                nearest=f"the limit is for the module {self.module:.6g} mm",
+                nearest=f"the limit is for the module {shown(self.module)} mm",
                 ways=(Way(near={"output.chord_tolerance_mm": (1.001 if fine else 0.999) * limit}),),
             )
         return asked

@@ -20,6 +20,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import MISS, ROUGH, TipEnds, cross, flank_at, flank_crossings
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import largest_fitting
 
@@ -89,7 +90,7 @@ def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Arr
             value=toothing.rounding,
             limit=largest,
             unit="mm",
-            nearest=f"a radius up to {largest:.6g} mm",
+            nearest=f"a radius up to {shown(largest)} mm",
         )
     return found
 

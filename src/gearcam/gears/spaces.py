@@ -13,16 +13,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.tips import TipEnds
 from gearcam.gears.undercut import Undercut
-from gearcam.numeric.arrays import Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.crossings import Branch, Chain, CurvePoint, remaining, rows_between
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 ROWS_PER_TOOTH = 6
 _SHARP = 0.9
@@ -102,7 +98,7 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     return Rows(**columns)
 
 
-def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
+def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Ints:
     """Return the spaces (from 0) whose chain of curves may have loops.
 
     Parameters
@@ -132,7 +128,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Index:
     return np.flatnonzero(loops)
 
 
-def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, list[CurvePoint]]]:
+def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[tuple[Rows, list[CurvePoint]]]:
     """Take the loops out of spaces.
 
     Parameters
@@ -163,7 +159,7 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Index) -> list[tuple[Rows, 
     return made
 
 
-def select(rows: Rows, index: Index) -> Rows:
+def select(rows: Rows, index: Ints) -> Rows:
     """Return some rows, in the order of `index`."""
     return Rows(**{name: getattr(rows, name)[index] for name in Rows.__dataclass_fields__})
 
@@ -178,7 +174,7 @@ def join(parts: list[Rows]) -> Rows:
     )
 
 
-def _chains(curves: WheelCurves, spaces: Index) -> list[Chain]:
+def _chains(curves: WheelCurves, spaces: Ints) -> list[Chain]:
     """Draw the five curves of spaces, ever denser to the form points, where loops can be tiny."""
     t = np.linspace(0.0, 1.0, _SAMPLES)
     towards_start, towards_end = t**3, 1.0 - (1.0 - t) ** 3
@@ -198,7 +194,7 @@ def _chains(curves: WheelCurves, spaces: Index) -> list[Chain]:
     ]
 
 
-def _points(curves: WheelCurves, index: Index, phi: Array) -> Plane:
+def _points(curves: WheelCurves, index: Ints, phi: Array) -> Plane:
     """Return points of rows at driver angles, mirrored where rising s runs clockwise."""
     points = curves.at(index.ravel(), phi.ravel())[0].reshape(phi.shape)
     return np.conj(points) if curves.toothing.track.clockwise else points

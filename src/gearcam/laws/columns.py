@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
+
+from gearcam.numeric.arrays import Array
 
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _POINT_NUMBER: Final = re.compile(r"[+-]?\d*\.\d*([eE][+-]?\d+)?")
@@ -44,7 +45,7 @@ class CsvRows:
     cells: tuple[list[str], ...]
     note: str = ""
 
-    def columns(self, names: Names) -> tuple[NDArray[np.float64], list[int]]:
+    def columns(self, names: Names) -> tuple[Array, list[int]]:
         """Return columns of numbers by their names.
 
         Parameters

@@ -18,9 +18,9 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 JUMP: Final = 1e-9
 """Jump of a derivative that counts, in its largest value: far above rounding."""

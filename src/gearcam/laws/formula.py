@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
-
-Array = NDArray[np.float64]
 
 
 def formula_problems(

@@ -27,6 +27,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.errors import GearcamError
+from gearcam.numerals import shown
 
 VARIABLE: Final = "phi1"
 """The angle of the driver, rad."""
@@ -301,7 +302,9 @@ def _check_number(word: str, column: int) -> None:
         )
     if word.isdigit() and word != "0" and word.startswith("0"):
         raise FormulaError(
-            f"the number {word} begins with a zero", column=column, hint=f"write {float(word):g}"
+            f"the number {word} begins with a zero",
+            column=column,
+            hint=f"write {shown(float(word))}",
         )
 
 
@@ -377,9 +380,9 @@ def _append(program: list[_Step], step: _Step) -> None:
 def _check_exponent(step: _Step) -> None:
     if step.kind == "constant" and abs(step.payload) > MAX_EXPONENT:
         raise FormulaError(
-            f"exponent {step.payload:g} is too large",
+            f"exponent {shown(step.payload)} is too large",
             column=step.column,
-            allowed=f"exponents from {-MAX_EXPONENT:g} to {MAX_EXPONENT:g}",
+            allowed=f"exponents from {shown(-MAX_EXPONENT)} to {shown(MAX_EXPONENT)}",
         )
 
 

@@ -19,6 +19,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.numerals import shown
 from gearcam.quantities import (
     ANGLE,
     ANGLE_PER_RAD,
@@ -188,8 +189,8 @@ def _closure_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     total = sum(phase.angle for phase in phases)
     if abs(total - 2.0 * math.pi) > TURN_MISS:
         last = math.degrees(2.0 * math.pi - total + phases[-1].angle)
-        hint = f"; the last phase would take {last:.10g} deg" if last > 0 else ""
-        message = f"the phases take {math.degrees(total):.10g} deg"
+        hint = f"; the last phase would take {shown(last, 10)} deg" if last > 0 else ""
+        message = f"the phases take {shown(math.degrees(total), 10)} deg"
         yield None, "", message, f"360 deg in all{hint}"
     found = levels(phases)
     for number, phase in enumerate(phases):
@@ -202,6 +203,6 @@ def _closure_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     elif abs(found[-1]) > _LIFT_MISS * largest:
         named = [getattr(phase, name, None) for phase in phases for name in ("swing", "to_swing")]
         angular = any(value is not None for value in named)
-        shown = f"{math.degrees(found[-1]):.10g} deg" if angular else f"{found[-1]:.10g} mm"
+        end, unit = (math.degrees(found[-1]), "deg") if angular else (found[-1], "mm")
         rule = "the lift at the end of the turn is that at its beginning, 0"
-        yield None, "", f"the program ends at a lift of {shown}", rule
+        yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule

@@ -10,12 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.piecewise import Pieces, Piecewise, members
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,14 +57,14 @@ class PlacedLaws(Pieces):
     """
 
     laws: tuple[Piecewise | None, ...]
-    law: Index
-    part: Index
+    law: Ints
+    part: Ints
     origin: Array
     per_width: Array
     base: Array
     scale: Array
 
-    def on_pieces(self, index: Index, x: Array, order: int) -> Array:
+    def on_pieces(self, index: Ints, x: Array, order: int) -> Array:
         """Return function and derivatives by given pieces (see `Pieces.on_pieces`)."""
         law, part = self.law[index], self.part[index]
         factor, per_width = self.scale[index], self.per_width[index]

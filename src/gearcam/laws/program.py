@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import JUMP, Displacement, Jump
@@ -30,6 +29,7 @@ from gearcam.laws.phases_of_lift import (
 )
 from gearcam.laws.placed import PlacedLaws, PlacedPiece, placed
 from gearcam.laws.rises.base import Rise, RiseParameters
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import polynomial
 from gearcam.numeric.piecewise import (
@@ -40,8 +40,6 @@ from gearcam.numeric.piecewise import (
     places_between,
 )
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 _INNER = slice(5, -5, 6)
 """Surveyed places at which the size of derivatives is known well enough to judge jumps."""

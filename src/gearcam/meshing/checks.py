@@ -9,18 +9,18 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.findings import Finding, check
+from gearcam.findings import Remark, check
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing import drive_checks
 from gearcam.meshing.settings import KIND
 from gearcam.meshing.study import Meshing, trespasses
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array, Mask
 from gearcam.quantities import NUMBER, Param
 
 __all__ = ["KIND", "clearances", "drive_checks", "spans"]
 
-Array = NDArray[np.float64]
 
 _CLEARANCE = (
     "tip_clearance",
@@ -53,13 +53,19 @@ def spans(angles: Array, step: float) -> str:
     return drive_checks.ranges_text(list(zip(angles[starts], angles[ends], strict=True)))
 
 
-def _at(meshing: Meshing, chosen: NDArray[np.bool_]) -> str:
+def _at(meshing: Meshing, chosen: Mask) -> str:
     start, end = meshing.setup.stretch
     return spans(meshing.phi1[chosen], (end - start) / meshing.setup.spec.steps)
 
 
-@check("interference", kind=KIND, doc="overlap where none may be, or deeper than the overclosure")
-def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+@check(
+    "interference",
+    kind=KIND,
+    doc="overlap where none may be, or deeper than the overclosure",
+    severity="error",
+    unit="mm",
+)
+def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report interference, as an error."""
     hit = meshing.every("interferes").astype(bool)
     if not hit.any():
@@ -67,7 +73,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
     backlash = meshing.every("backlash")
     worst = int(np.where(np.isfinite(backlash), backlash, np.inf).argmin())
     deepest = -float(backlash[worst])
-    where = f"no room between both sides, phi1 = {math.degrees(meshing.phi1[worst]):.6g} deg"
+    where = f"no room between both sides, phi1 = {shown(math.degrees(meshing.phi1[worst]))} deg"
     for block in meshing.blocks:
         found, turning = block.overlaps, meshing.setup.turning
         bad = np.where(trespasses(meshing.setup, found), found.depth, 0.0)
@@ -82,31 +88,30 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
                 )
             )
             angle = math.degrees(block.phi1[found.step[k]])
-            where = f"deepest at phi1 = {angle:.6g} deg, {one} in {two}"
-    yield Finding(
-        code="interference",
-        severity="error",
-        message=f"The wheels run into each other at {_at(meshing, hit)}.",
-        value=deepest,
+            where = f"deepest at phi1 = {shown(angle)} deg, {one} in {two}"
+    yield Remark(
+        f"The wheels run into each other at {_at(meshing, hit)}.",
+        where,
+        deepest,
         limit=meshing.setup.noise,
-        unit="mm",
-        where=where,
     )
 
 
-@check("edge-contact", kind=KIND, doc="phases at which an edge touches before the flanks do")
-def edge_contact(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+@check(
+    "edge-contact",
+    kind=KIND,
+    doc="phases at which an edge touches before the flanks do",
+    unit="phases",
+)
+def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of edges that touch first."""
     edge = meshing.every("edge").astype(bool)
     if edge.any():
-        yield Finding(
-            code="edge-contact",
-            severity="warning",
-            message="The end of a flank touches before the flanks do: it scratches, and the "
+        yield Remark(
+            "The end of a flank touches before the flanks do: it scratches, and the "
             "motion is not the one asked for.",
-            value=float(np.count_nonzero(edge)),
-            unit="phases",
-            where=_at(meshing, edge),
+            _at(meshing, edge),
+            float(np.count_nonzero(edge)),
         )
 
 
@@ -114,8 +119,9 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: 
     "fillet-interference",
     kind=KIND,
     doc="contact of the outlines where no active flanks predict it",
+    unit="phases",
 )
-def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of facing halves that overlap although their flanks cannot."""
     least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
     rows = meshing.columns
@@ -124,13 +130,10 @@ def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  #
     off = np.zeros(len(meshing.phi1), dtype=bool)
     off[rows["step"].data[strange].astype(np.int64)] = True
     if off.any():
-        yield Finding(
-            code="fillet-interference",
-            severity="warning",
-            message="The outlines touch where neither flank is: on a fillet or on a tip.",
-            value=float(np.count_nonzero(off)),
-            unit="phases",
-            where=_at(meshing, off),
+        yield Remark(
+            "The outlines touch where neither flank is: on a fillet or on a tip.",
+            _at(meshing, off),
+            float(np.count_nonzero(off)),
         )
 
 
@@ -139,21 +142,18 @@ def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Finding]:  #
     kind=KIND,
     doc="smallest distance of a tip's middle from the mate's root as it passes the pitch point",
     limit=_CLEARANCE,
+    unit="modules",
 )
-def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Finding]:
+def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Remark]:
     """Warn of tips that nearly touch the mate's root."""
     module = meshing.setup.pairs[DRIVE].pitch / math.pi
     for wheel, distances in enumerate(clearances(meshing), start=1):
         least = float(distances.min()) / module
         if least < limit:
-            yield Finding(
-                code="tip-clearance",
-                severity="warning",
-                message="The tip comes as near to the mate's root as this, or touches it.",
-                value=least,
-                limit=limit,
-                unit="modules",
-                where=f"wheel {wheel}, tooth {int(distances.argmin()) + 1}",
+            yield Remark(
+                "The tip comes as near to the mate's root as this, or touches it.",
+                f"wheel {wheel}, tooth {int(distances.argmin()) + 1}",
+                least,
             )
 
 

@@ -9,15 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import normals, touch
 from gearcam.gears.track import WHEELS
-from gearcam.numeric.arrays import Plane
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from gearcam.numeric.arrays import Array, Ints, Plane
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -27,7 +24,7 @@ class Contacts:
     Parameters
     ----------
     step : (n,) int array
-        Index of the phase.
+        Ints of the phase.
     pair : (n,) int array
         j.
     lead : (n,) array, rad

@@ -10,17 +10,20 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Protocol
 
-from gearcam.findings import Finding, check
+from gearcam.findings import Remark, Severity, check
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
 from gearcam.meshing.settings import KIND
+from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.meshing.idle import Idle
 
 _SHOWN = 3
 """Ranges of driver angles that a finding names."""
+
+_FEW = "Few teeth carry at a time."
 
 
 class Sided(Protocol):
@@ -35,9 +38,9 @@ class Sided(Protocol):
 def ranges_text(ranges: list[tuple[float, float]]) -> str:
     """Return ranges of driver angles, rad, in degrees, with the number of those left out."""
     degrees = [(math.degrees(a), math.degrees(b)) for a, b in ranges[:_SHOWN]]
-    shown = [f"{a:.6g}" if a == b else f"{a:.6g} to {b:.6g}" for a, b in degrees]
+    named = [f"{shown(a)}" if a == b else f"{shown(a)} to {shown(b)}" for a, b in degrees]
     more = f" and {len(ranges) - _SHOWN} more" if len(ranges) > _SHOWN else ""
-    return f"phi1 = {', '.join(shown)} deg{more}"
+    return f"phi1 = {', '.join(named)} deg{more}"
 
 
 def arcs_text(found: list[Idle]) -> str:
@@ -69,20 +72,24 @@ def _repeats(pairs: FlankPairs) -> str:
     doc="smallest contact ratio of any flank, both sides; what drives where no flanks touch",
     limit=CONTACT_RATIO,
 )
-def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
-    """Warn of a low contact ratio; below 1, or where no flanks touch, it is an error."""
+def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
+    """Warn of a low contact ratio; below 1, or where no flanks touch, it is an error.
+
+    What is the same of both sides is said once, with the lower ratio.
+    """
+    told: dict[str, list[tuple[float, str]]] = {}
     for pairs in subject.sides:
         worst, found = float(pairs.contact_ratios.min()), _idle(pairs)
         if worst >= limit and not found:
             continue
         tooth = int(pairs.tooth(1, pairs.numbers)[pairs.contact_ratios.argmin()])
-        message = "Few teeth carry at a time."
+        message = _FEW
         if found and all(stretch.edges for stretch in found):
             apart = max(stretch.apart for stretch in found)
             message = (
                 f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}. Meanwhile ends of flanks "
-                f"drive: they scratch, and the driven wheel is up to {apart:.3g} mm off its place "
-                "along the pitch curve."
+                f"drive: they scratch, and the driven wheel is up to {shown(apart, 3)} mm off its "
+                "place along the pitch curve."
             )
         elif found:
             message = (
@@ -91,28 +98,29 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Finding]:
             )
         elif worst < 1.0:
             message = "This flank carries for less than a pitch; its neighbours drive meanwhile."
-        yield Finding(
-            code="contact-ratio",
-            severity="error" if found or worst < 1.0 else "warning",
-            message=message,
-            value=worst,
-            limit=limit,
-            where=f"{side_name(pairs)}, wheel 1, tooth {tooth}",
-        )
+        place = f"{side_name(pairs)}, wheel 1, tooth {tooth}"
+        told.setdefault(message, []).append((worst, place))
+    for message, sides in told.items():
+        where = "; ".join(place for _, place in sides)
+        severity: Severity = "warning" if message == _FEW else "error"
+        yield Remark(message, where, min(sides)[0], severity)
 
 
-@check("nothing-drives", kind=KIND, doc="arcs of the driver's turn on which nothing touches")
-def nothing_drives(subject: Sided, limit: float) -> Iterator[Finding]:  # noqa: ARG001
+@check(
+    "nothing-drives",
+    kind=KIND,
+    doc="arcs of the driver's turn on which nothing touches",
+    severity="error",
+    unit="deg",
+)
+def nothing_drives(subject: Sided, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report the arcs on which neither flanks nor their ends touch, as errors."""
     for pairs in subject.sides:
         empty = [stretch for stretch in _idle(pairs) if not stretch.edges]
         if empty:
-            yield Finding(
-                code="nothing-drives",
-                severity="error",
-                message="On these arcs neither flanks nor their ends reach the mate all along: "
+            yield Remark(
+                "On these arcs neither flanks nor their ends reach the mate all along: "
                 "the pair jumps or stops there.",
-                value=math.degrees(sum(stretch.end - stretch.start for stretch in empty)),
-                unit="deg",
-                where=f"{side_name(pairs)}, {arcs_text(empty)}{_repeats(pairs)}",
+                f"{side_name(pairs)}, {arcs_text(empty)}{_repeats(pairs)}",
+                math.degrees(sum(stretch.end - stretch.start for stretch in empty)),
             )

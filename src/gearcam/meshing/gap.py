@@ -20,16 +20,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from gearcam.gears.contact import FlankPairs, Ints
+from gearcam.gears.contact import FlankPairs
 from gearcam.gears.guide import Guide
 from gearcam.gears.track import Wheel
 from gearcam.meshing.contact import Contacts
-from gearcam.numeric.arrays import Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
-
-Array = NDArray[np.float64]
 
 _SAMPLES = 13
 """Points of a flank between which the extreme is sought: on a smooth flank there is one."""
@@ -51,7 +49,7 @@ class Facing:
     pairs : FlankPairs
         The side.
     step, pair : (n,) int arrays
-        Index of the phase; j.
+        Ints of the phase; j.
     phi1 : (n,) array, rad
         Phase.
     """
@@ -61,7 +59,7 @@ class Facing:
     pair: Ints
     phi1: Array
 
-    def select(self, index: NDArray[np.bool_] | Ints) -> Facing:
+    def select(self, index: Mask | Ints) -> Facing:
         """Return some of the pairs, by `index`."""
         return Facing(
             pairs=self.pairs,
@@ -193,13 +191,13 @@ class Touches:
     facing: Facing
     turn: Array
     angle: Array
-    edge: NDArray[np.bool_]
+    edge: Mask
     low: Array
     high: Array
 
     @property
     def step(self) -> Ints:
-        """Index of the phase."""
+        """Ints of the phase."""
         return self.facing.step
 
     @property
@@ -289,7 +287,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     )
 
 
-def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array, NDArray[np.bool_]]:
+def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array, Mask]:
     """Return how the driven wheel stands where a side touches first, and whether by an edge.
 
     Parameters

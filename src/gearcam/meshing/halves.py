@@ -16,14 +16,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from gearcam.gears.contact import Ints
 from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
-from gearcam.numeric.arrays import Plane
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array, Ints, Plane
 
 _BELOW = 0.5
 """Depth of the halves below the root, in dedendums: more than any overlap that is worth a name."""

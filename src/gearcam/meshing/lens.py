@@ -14,18 +14,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import Normals, Pose, normals
 from gearcam.gears.track import WHEELS, Wheel
-from gearcam.numeric.arrays import Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.newton import damped_newton
 from gearcam.numeric.roots import newton_in_bracket
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
@@ -49,7 +45,7 @@ class Lenses:
     Parameters
     ----------
     step, pair : (n,) int arrays
-        Index of the phase; j.
+        Ints of the phase; j.
     area : (n,) array, mm^2
         By integrating the gap.
     closed : (n,) array, mm^2

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.meshing.study import Meshing
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array, Ints, Mask
 
 LEAST_STEPS = 8
 """Steps a tooth below which harmonics are not told."""
@@ -105,7 +103,7 @@ def motion(meshing: Meshing) -> dict[str, Any]:
     return {"lag_mm": extent((-lead * along)[touching]), "transmission_error": error}
 
 
-def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
+def without_harmonics(meshing: Meshing, touching: Mask) -> str:
     """Return why a study has no harmonics, or nothing.
 
     Parameters
@@ -133,7 +131,7 @@ def without_harmonics(meshing: Meshing, touching: NDArray[np.bool_]) -> str:
         return "in some phases nothing touches"
     if meshing.asked < LEAST_STEPS * teeth * round(turns):
         return (
-            f"{meshing.asked / (teeth * turns):.3g} steps a tooth, {LEAST_STEPS} are needed: "
+            f"{shown(meshing.asked / (teeth * turns), 3)} steps a tooth, {LEAST_STEPS} are needed: "
             f"steps = {LEAST_STEPS * teeth * round(turns)}"
         )
     return ""

@@ -16,15 +16,11 @@ from typing import Any, cast
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from gearcam.gears.contact import Ints
 from gearcam.gears.guide import Guide
 from gearcam.gears.rolling import Rolling
 from gearcam.meshing.halves import Halves, as_polygons
-from gearcam.numeric.arrays import Plane
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -34,7 +30,7 @@ class Overlaps:
     Parameters
     ----------
     step : (n,) int array
-        Index of the phase.
+        Ints of the phase.
     half : (2, n) int array
         Halves h of driver and driven wheel that overlap, counted within the first turn; the number
         after the last one is the body of an open wheel.
@@ -50,7 +46,7 @@ class Overlaps:
 
     step: Ints
     half: Ints
-    facing: NDArray[np.bool_]
+    facing: Mask
     area: Array
     length: Array
     radius: Array
@@ -148,7 +144,7 @@ class Turning:
             radius=np.stack(radius),
         )
 
-    def face(self, phi1: Array, one: Ints, two: Ints) -> NDArray[np.bool_]:
+    def face(self, phi1: Array, one: Ints, two: Ints) -> Mask:
         """Return whether halves face each other.
 
         Parameters

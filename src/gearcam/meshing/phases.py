@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import FlankPairs
 from gearcam.meshing.settings import MeshingSpec
-
-Array = NDArray[np.float64]
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
 
 _BESIDE = 0.15
 """Phases studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""
@@ -60,9 +59,9 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     first, last = stretch(spec, pairs)
     if not last > first:
         raise InfeasibleError(
-            f"the study ends at {np.degrees(last):.6g} deg before it begins",
+            f"the study ends at {shown(np.degrees(last))} deg before it begins",
             where="meshing.from_deg",
-            nearest=f"below {np.degrees(last):.6g} deg",
+            nearest=f"below {shown(np.degrees(last))} deg",
         )
     phi1 = np.linspace(first, last, spec.steps, endpoint=not pairs.closed)
     if not pairs.closed:
@@ -84,7 +83,7 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
             "none of the phases has one of these teeth in contact",
             where="meshing.teeth",
             nearest="their contact is about phi1 = "
-            + ", ".join(f"{angle:.4g}" for angle in angles)
+            + ", ".join(f"{shown(angle, 4)}" for angle in angles)
             + " deg; take more steps or another range",
         )
     return chosen
@@ -100,5 +99,5 @@ def _demand_travel(first: float, last: float, travel: float) -> None:
             value=float(np.degrees(first if early else last)),
             limit=0.0 if early else float(np.degrees(travel)),
             unit="deg",
-            nearest=f"between 0 and {np.degrees(travel):.8g} deg",
+            nearest=f"between 0 and {shown(np.degrees(travel), 8)} deg",
         )

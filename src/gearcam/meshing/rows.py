@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.meshing.contact import Contacts
 from gearcam.meshing.lens import Lenses
 from gearcam.meshing.overlap import Overlaps, Turning
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from gearcam.numeric.arrays import Array, Mask
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -63,7 +60,7 @@ class Block:
     interferes: Mask
 
 
-def on_side(found: Overlaps, side: int) -> NDArray[np.bool_]:
+def on_side(found: Overlaps, side: int) -> Mask:
     """Return which overlaps lie on facing halves of a side.
 
     Parameters

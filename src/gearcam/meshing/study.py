@@ -15,7 +15,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
@@ -28,8 +27,9 @@ from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.phases import phases, stretch
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array, Mask
 
-Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
 
 _SHARE = 1.0 / 200.0
@@ -124,7 +124,7 @@ class Meshing:
         return columns_of(self.blocks, self.setup.turning)
 
     @property
-    def on_side(self) -> NDArray[np.bool_]:
+    def on_side(self) -> Mask:
         """Which rows are of facing halves of the side that is pressed together."""
         rows = self.columns
         return (rows["facing"].data > 0.0) & (rows["side"].data == self.setup.side)
@@ -214,7 +214,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
             value=float(np.degrees(spec.overclosure)),
             limit=float(np.degrees(least)),
             unit="deg",
-            nearest=f"at least {np.degrees(abs(least)):.3g} deg",
+            nearest=f"at least {shown(np.degrees(abs(least)), 3)} deg",
         )
     both = [halve(replace(gear.profile, tolerance=tolerance)) for gear in gears]
     for gear, halves in zip(gears, both, strict=True):
@@ -263,7 +263,7 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
             value=spec.center_distance,
             limit=near if spec.center_distance <= near else far,
             unit="mm",
-            nearest=f"between {near:.6g} and {far:.6g} mm",
+            nearest=f"between {shown(near)} and {shown(far)} mm",
         )
     return spec.center_distance
 
@@ -302,7 +302,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     )
 
 
-def trespasses(setup: Setup, found: Overlaps) -> NDArray[np.bool_]:
+def trespasses(setup: Setup, found: Overlaps) -> Mask:
     """Return which overlaps should not be, or are deeper than the overclosure explains.
 
     Parameters

@@ -18,9 +18,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Array, Complex, as_complex, as_pairs, off_circle
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.bulges import as_complex, as_pairs, off_circle
 from gearcam.numeric.contour import Run
 from gearcam.numeric.hermite import on_cubics
 
@@ -65,11 +65,11 @@ class _Curve:
     beside a sharper bend; `place` is where each point stands among the checks.
     """
 
-    points: Complex
-    tangents: Complex
+    points: Plane
+    tangents: Plane
     turned: Array
-    checks: Complex
-    place: NDArray[np.int64]
+    checks: Plane
+    place: Ints
 
 
 def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
@@ -164,7 +164,7 @@ def _curve(run: Run, tolerance: float) -> _Curve:
     return _Curve(points, tangents, turned, checks, place)
 
 
-def _checks(length: Array, turn: Array, tolerance: float) -> NDArray[np.int64]:
+def _checks(length: Array, turn: Array, tolerance: float) -> Ints:
     """Return into how many parts each step of a run is cut for checking.
 
     Next to a sharp bend an arc may carry on the bend's curvature over a long, flat step and leave
@@ -177,9 +177,7 @@ def _checks(length: Array, turn: Array, tolerance: float) -> NDArray[np.int64]:
     return np.clip(parts, 1, MOST_CHECKS).astype(np.int64)
 
 
-def _between(
-    points: Complex, tangents: Complex, parts: NDArray[np.int64]
-) -> tuple[Complex, NDArray[np.int64]]:
+def _between(points: Plane, tangents: Plane, parts: Ints) -> tuple[Plane, Ints]:
     """Return points with others between them (cubic Hermite), and where the points stand."""
     place = np.concatenate([[0], np.cumsum(parts)])
     index = np.repeat(np.arange(len(parts)), parts)
@@ -258,7 +256,7 @@ def _largest(values: Array) -> float:
     return float(values.max()) if values.size else 0.0
 
 
-def _to_arc(points: Complex, start: complex, tangent: complex, end: complex) -> Array:
+def _to_arc(points: Plane, start: complex, tangent: complex, end: complex) -> Array:
     """Return distances of points to the circle through two points with a tangent at the first."""
     chord = end - start
     bend = 2 * (chord / tangent).imag / abs(chord) ** 2

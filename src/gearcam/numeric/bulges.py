@@ -12,26 +12,24 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from gearcam.numeric.arrays import Array, Plane
 
 BLOCK = 24
 """Points whose distances are computed together."""
 
 
-def as_complex(values: Array) -> Complex:
+def as_complex(values: Array) -> Plane:
     """Return points (n, 2) as complex numbers (n,)."""
     return np.ascontiguousarray(values, dtype=np.float64).view(np.complex128).ravel()
 
 
-def as_pairs(values: Complex) -> Array:
+def as_pairs(values: Plane) -> Array:
     """Return complex numbers (n,) as points (n, 2)."""
     return np.ascontiguousarray(values).view(np.float64).reshape(-1, 2)
 
 
-def off_circle(local: Complex, bend: float | Array) -> Array:
+def off_circle(local: Plane, bend: float | Array) -> Array:
     """Return distances to the circle that passes 0 along +x, or to the line.
 
     Parameters
@@ -90,14 +88,14 @@ def flatten_bulges(
     return as_pairs(points)
 
 
-def _along(half: Array, part: Array) -> Complex:
+def _along(half: Array, part: Array) -> Plane:
     """Return the place on an arc over the chord from 0 to 1 that turns by ``2 * half``."""
     safe = np.where(half == 0, 1.0, half)
     reach = np.where(half == 0, part, np.sin(part * safe) / np.sin(safe))
     return reach * np.exp(1j * half * (part - 1))
 
 
-def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Complex, Complex, Array]:
+def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Plane, Plane, Array]:
     """Return start, chord (complex, mm) and bulge of each piece (see `flatten_bulges`).
 
     Raises
@@ -153,7 +151,7 @@ def distances(points: Array, vertices: Array, bulges: Array, closed: bool = True
     return result
 
 
-def _nearest(points: Complex, start: Complex, chord: Complex, bends: Array) -> Array:
+def _nearest(points: Plane, start: Plane, chord: Plane, bends: Array) -> Array:
     """Return the distance of points (n,) to the nearest of the pieces (k,)."""
     half = 2 * np.arctan(bends)
     length = np.abs(chord)

@@ -13,11 +13,10 @@ from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.errors import GearcamError
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 _DEGREE = 8
 

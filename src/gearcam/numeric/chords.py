@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Array, Complex
-
-Index = NDArray[np.int64]
+from gearcam.numeric.arrays import Array, Ints, Plane
 
 _TOGETHER = 64
 """Boxes that are compared each with each: faster than halving so few."""
 
 
-def near_chords(starts: Array, ends: Array) -> tuple[Index, Index]:
+def near_chords(starts: Array, ends: Array) -> tuple[Ints, Ints]:
     """Return the pairs of chords whose boxes overlap, by boxes of ever fewer neighbours.
 
     Parameters
@@ -45,7 +42,7 @@ def near_chords(starts: Array, ends: Array) -> tuple[Index, Index]:
     return one, two
 
 
-def chord_shares(a: Complex, b: Complex, c: Complex, d: Complex) -> tuple[Array, Array]:
+def chord_shares(a: Plane, b: Plane, c: Plane, d: Plane) -> tuple[Array, Array]:
     """Return where the lines of chords cross.
 
     Parameters

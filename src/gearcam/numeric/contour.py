@@ -14,14 +14,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.moments import Moments, curve_moments
 
 if TYPE_CHECKING:
     from shapely import Polygon
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

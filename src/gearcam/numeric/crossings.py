@@ -24,14 +24,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Array, Complex, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.chords import chord_shares, near_chords
 from gearcam.numeric.sampling import Curves
-
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 _TOUCH = 1e-9
 """Length of a loop over that of its chain below which it is none: neighbours of a curve without
@@ -67,7 +64,7 @@ class Branch(NamedTuple):
     end: CurvePoint
 
 
-def rows_between(curves: Curves, branches: Iterable[Branch]) -> tuple[Index, Array, Array, Mask]:
+def rows_between(curves: Curves, branches: Iterable[Branch]) -> tuple[Ints, Array, Array, Mask]:
     """Return the curves along branches.
 
     Parameters
@@ -118,10 +115,10 @@ class Chain:
         Where each chord begins; of an open chain also where the last one ends.
     """
 
-    curve: Index
+    curve: Ints
     low: Array
     high: Array
-    points: Complex
+    points: Plane
 
     @property
     def open(self) -> bool:
@@ -148,7 +145,7 @@ class Ring:
 
     branches: tuple[Branch, ...]
     crossed: bool
-    polygon: Complex
+    polygon: Plane
     gap: float
 
     @property
@@ -210,12 +207,12 @@ class _Tangle:
     """
 
     chain: Chain
-    chord: Index
+    chord: Ints
     share: Array
-    turn: Index
+    turn: Ints
 
     @property
-    def brackets(self) -> tuple[Index, Array, Array]:
+    def brackets(self) -> tuple[Ints, Array, Array]:
         """Curves that cross, and parameters around their crossings, (2, m) each."""
         low, high = self.chain.low[self.chord], self.chain.high[self.chord]
         middle = low + self.share * (high - low)
@@ -284,12 +281,12 @@ def _rings(tangle: _Tangle) -> list[_Stays]:
     return [[(-1, end), *others, (begin, -1)]]
 
 
-def _events(tangle: _Tangle) -> tuple[Array, Index]:
+def _events(tangle: _Tangle) -> tuple[Array, Ints]:
     """Return the places of events, in chords, and the change of the winding number to the right."""
     return (tangle.chord + tangle.share).ravel(), np.concatenate([-tangle.turn, tangle.turn])
 
 
-def _right_of_start(chain: Chain, at: Array, change: Index) -> int:
+def _right_of_start(chain: Chain, at: Array, change: Ints) -> int:
     """Return the winding number to the right of a chain's beginning."""
     if chain.open:
         return 0
@@ -341,7 +338,7 @@ def _within(shares: Array) -> Mask:
     return np.all((shares >= 0.0) & (shares <= 1.0), axis=0)
 
 
-def _refined(curves: Curves, index: Index, low: Array, high: Array) -> tuple[Array, Array]:
+def _refined(curves: Curves, index: Ints, low: Array, high: Array) -> tuple[Array, Array]:
     """Narrow crossings of curves `index` between `low` and `high`, (2, m): parameters and gaps.
 
     The cell in which chords cross is kept with its neighbours, since the curves may cross just
@@ -349,7 +346,7 @@ def _refined(curves: Curves, index: Index, low: Array, high: Array) -> tuple[Arr
     """
     ends = np.sort([curves.start[index], curves.end[index]], axis=0)[..., None]
 
-    def at(parameter: Array) -> Complex:
+    def at(parameter: Array) -> Plane:
         which = np.broadcast_to(index[..., None], parameter.shape)
         return curves.at(which.ravel(), parameter.ravel())[0].reshape(parameter.shape)
 

@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Array, Complex
+from gearcam.numeric.arrays import Array, Ints, Plane
 
-Ints = NDArray[np.int64]
 Numbers = NDArray[Any]
 """Real or complex numbers."""
 
 
-def hermite_arms(points: Complex, tangents: Complex) -> Array:
+def hermite_arms(points: Plane, tangents: Plane) -> Array:
     """Return the length of the end derivatives of the cubics through a curve's points.
 
     Parameters
@@ -34,7 +33,7 @@ def hermite_arms(points: Complex, tangents: Complex) -> Array:
     return _arms(np.diff(points), tangents[:-1], tangents[1:])
 
 
-def _arms(chord: Complex, first: Complex, second: Complex) -> Array:
+def _arms(chord: Plane, first: Plane, second: Plane) -> Array:
     turn = np.angle(second * np.conj(first))
     return np.abs(chord) / np.sinc(0.5 * turn / np.pi)
 
@@ -65,7 +64,7 @@ def hermite_cubic(
     return way, slope
 
 
-def on_cubics(p: Complex, t: Complex, step: Ints, share: Array) -> tuple[Complex, Complex]:
+def on_cubics(p: Plane, t: Plane, step: Ints, share: Array) -> tuple[Plane, Plane]:
     """Return places on the cubics between a curve's points.
 
     Parameters

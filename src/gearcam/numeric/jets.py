@@ -13,9 +13,10 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
+
 Value = Array | float
 """A number, or one at each sample point."""
 

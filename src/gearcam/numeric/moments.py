@@ -13,12 +13,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Complex, as_complex, bulge_pieces
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.bulges import as_complex, bulge_pieces
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
-
-Array = NDArray[np.float64]
 
 _ON_ARC: Final = 16
 """Gauss points of an arc up to a half circle: rounding."""
@@ -117,7 +115,7 @@ def _gauss(count: int) -> tuple[Array, Array]:
     return 0.5 * (place + 1.0), 0.5 * weight
 
 
-def _integrate(points: Complex, speed: Complex, weight: Array) -> Moments:
+def _integrate(points: Plane, speed: Plane, weight: Array) -> Moments:
     swept = weight[:, None] * (np.conj(points) * speed).imag
     square = points.real**2 + points.imag**2
     return Moments(

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
+
 State = TypeVar("State")
 
 _STEPS = 40

@@ -14,14 +14,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import Expansion, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.roots import bracketed_root
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _SAME = 1e-9
 """Difference of derivatives on both sides of a knot, in the largest of them or 1, that is none."""
@@ -76,7 +74,7 @@ class Pieces(ABC):
         return list(self.on_pieces(index, x.ravel(), order).reshape(order + 1, *x.shape))
 
     @abstractmethod
-    def on_pieces(self, index: Index, x: Array, order: int) -> Array:
+    def on_pieces(self, index: Ints, x: Array, order: int) -> Array:
         """Return function and derivatives by given pieces, right at knots too.
 
         Parameters
@@ -110,7 +108,7 @@ class Piecewise(Pieces):
     offsets: Array
 
     @cached_property
-    def _families(self) -> tuple[Index, list[tuple[Callable[..., Jet], Array]]]:
+    def _families(self) -> tuple[Ints, list[tuple[Callable[..., Jet], Array]]]:
         """Number of each piece's function; and the functions, with a column a piece of parameters.
 
         The columns of other functions' pieces are never read.
@@ -135,7 +133,7 @@ class Piecewise(Pieces):
         jet = piece(Jet.variable(x.ravel(), order)) + self.offsets[0]
         return [values.reshape(x.shape) for values in jet.derivatives()]
 
-    def on_pieces(self, index: Index, x: Array, order: int) -> Array:
+    def on_pieces(self, index: Ints, x: Array, order: int) -> Array:
         """Return function and derivatives by given pieces (see `Pieces.on_pieces`)."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
@@ -192,7 +190,7 @@ class Piecewise(Pieces):
         return tuple((np.logical_and.accumulate(equal).sum(axis=0) - 1).tolist())
 
 
-def members(index: Index, count: int) -> Iterator[tuple[int, Index | slice]]:
+def members(index: Ints, count: int) -> Iterator[tuple[int, Ints | slice]]:
     """Yield every number that occurs in an index, and where.
 
     Parameters

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 _STEPS = 80
 """Bisection alone narrows a bracket to rounding in 60 steps; 80 leaves room for mixed steps."""

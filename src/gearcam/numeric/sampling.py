@@ -14,13 +14,10 @@ from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Array, Complex, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
-
-Index = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 _PROBES = 24
 """Intervals per curve on which the density of points is found."""
@@ -75,11 +72,11 @@ class Curves(Protocol):
         ...
 
     @property
-    def breaks(self) -> tuple[Index, Array]:
+    def breaks(self) -> tuple[Ints, Array]:
         """Places inside curves at which the curvature jumps: numbers of curves, parameters (k,)."""
         ...
 
-    def at(self, index: Index, parameter: Array) -> tuple[Complex, Complex]:
+    def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, mm, and forward unit tangents of curves at parameters, all (k,)."""
         ...
 
@@ -103,7 +100,7 @@ class Sampler:
     closed: bool = True
 
     @cached_property
-    def probes(self) -> tuple[Complex, Complex]:
+    def probes(self) -> tuple[Plane, Plane]:
         """Points and tangents at even places of every curve and at its ends, a curve a line."""
         count = len(self.curves.start)
         index = np.repeat(np.arange(count), _PROBES + 1)
@@ -126,21 +123,21 @@ class Sampler:
         """The number of chords that the curvature asks for: integral of sqrt(kappa/(8 tol)) ds."""
         return float(self.density[-1])
 
-    def _along(self, index: Index, share: Array) -> tuple[Complex, Complex]:
+    def _along(self, index: Ints, share: Array) -> tuple[Plane, Plane]:
         start, end = self.curves.start[index], self.curves.end[index]
         return self.curves.at(index, start + share * (end - start))
 
-    def _places(self, j: Array) -> tuple[Index, Array]:
+    def _places(self, j: Array) -> tuple[Ints, Array]:
         """Return numbers of curves and shares of their ways at places given by their J."""
         place = np.interp(j, self.density, np.arange(len(self.density)) / _PROBES)
         index = np.minimum(place.astype(np.int64), len(self.curves.start) - 1)
         return index, place - index
 
-    def curve_of(self, j: Array) -> Index:
+    def curve_of(self, j: Array) -> Ints:
         """Return the numbers of the curves at places given by their J (after a joint)."""
         return self._places(j)[0]
 
-    def at(self, j: Array) -> tuple[Complex, Complex]:
+    def at(self, j: Array) -> tuple[Plane, Plane]:
         """Return points and forward unit tangents at places given by their J (after a corner)."""
         return self._along(*self._places(j))
 
@@ -150,7 +147,7 @@ class Sampler:
         return self.density[:-1][::_PROBES][self.curves.corner]
 
     @cached_property
-    def chords(self) -> tuple[Array, Complex, float]:
+    def chords(self) -> tuple[Array, Plane, float]:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
         vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
         ends = self._ends(vertices)
@@ -190,14 +187,14 @@ class Sampler:
         vertices[np.cumsum(counts)[:-1]] = self.corners[1:]
         return vertices
 
-    def _ends(self, vertices: Array) -> Complex:
+    def _ends(self, vertices: Array) -> Plane:
         """Points and tangents, (2, n), at the vertices; of a closed polygon the first repeated."""
         if not self.closed:
             return np.stack(self.at(vertices))
         ends = np.stack(self.at(vertices[:-1]))
         return np.append(ends, ends[:, :1], axis=1)
 
-    def _errors(self, vertices: Array, ends: Complex) -> tuple[Array, Mask]:
+    def _errors(self, vertices: Array, ends: Plane) -> tuple[Array, Mask]:
         """Distance of the curve from all chords, and which of them are rough.
 
         Where the curvature hardly changes it is the middle of the cubic with the end tangents.
@@ -216,7 +213,7 @@ class Sampler:
         errors[unsure] = self._measure(vertices, ends[0], np.flatnonzero(unsure), rough[unsure])
         return errors, rough
 
-    def _measure(self, vertices: Array, points: Complex, chords: Index, rough: Mask) -> Array:
+    def _measure(self, vertices: Array, points: Plane, chords: Ints, rough: Mask) -> Array:
         """Distance of the curve from some chords: at quarters, of `rough` ones with more care.
 
         They are measured at eighths and around the best of them. A chord that only has uneven
@@ -225,7 +222,7 @@ class Sampler:
         direction = points[chords + 1] - points[chords]
         direction /= np.maximum(np.abs(direction), np.finfo(float).tiny)
 
-        def off(number: Index, share: Array) -> Array:
+        def off(number: Ints, share: Array) -> Array:
             k = chords[number]
             j = vertices[k] + (vertices[k + 1] - vertices[k]) * share
             return np.abs(np.imag(np.conj(direction[number]) * (self.at(j)[0] - points[k])))
@@ -302,13 +299,13 @@ class Sampler:
             runs.append(run.reversed if reverse else run)
         return tuple(runs[::-1] if reverse else runs)
 
-    def _left_ends(self, j: Array) -> tuple[Complex, Complex]:
+    def _left_ends(self, j: Array) -> tuple[Plane, Plane]:
         """Points and tangents at the ends of the curves that end at corners."""
         index = np.searchsorted(self.density[::_PROBES], j) - 1
         return self.curves.at(index, self.curves.end[index])
 
 
-def _told_apart(points: Complex, rank: Index, grain: float) -> Mask:
+def _told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
     """Choose points in order so that no two are nearer than a grain; the lowest rank stays.
 
     Points of rank 0, the corners, all stay.

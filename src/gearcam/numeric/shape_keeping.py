@@ -9,11 +9,9 @@ coefficients on the interval are kept on one side, which is enough.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
-
-Array = NDArray[np.float64]
 
 _STENCIL = 5
 

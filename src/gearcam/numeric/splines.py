@@ -14,13 +14,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Complex, as_complex, as_pairs
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Run
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
-
-Array = NDArray[np.float64]
 
 DEGREE: Final = 3
 
@@ -99,7 +97,7 @@ def fit_spline(run: Run, tolerance: float) -> Spline:
     return Spline(poles=as_pairs(poles), breaks=way[index])
 
 
-def _longest(p: Complex, t: Complex, way: Array, start: int, guess: int, tolerance: float) -> int:
+def _longest(p: Plane, t: Plane, way: Array, start: int, guess: int, tolerance: float) -> int:
     """Return the last point to which one cubic from `start` stays within the tolerance."""
     low, high, rounds = start + 1, len(p) - 1, 0
     trial = min(start + guess, high)
@@ -116,7 +114,7 @@ def _longest(p: Complex, t: Complex, way: Array, start: int, guess: int, toleran
     return low
 
 
-def _error(p: Complex, t: Complex, way: Array, start: int, end: int) -> float:
+def _error(p: Plane, t: Plane, way: Array, start: int, end: int) -> float:
     """Return the largest distance of inner points from the cubic that joins two of them."""
     inner = slice(start + 1, end)
     length = way[end] - way[start]

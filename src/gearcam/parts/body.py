@@ -22,8 +22,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments
 from gearcam.parts.shapes import Circle, Loop, frozen
@@ -31,7 +31,6 @@ from gearcam.parts.shapes import Circle, Loop, frozen
 if TYPE_CHECKING:
     from shapely import Polygon
 
-Array = NDArray[np.float64]
 
 Kind = Literal["BORE", "HOLE", "SLOT", "INNER"]
 """What an opening is for: the shaft, bolts and lightness, a stop pin, inner teeth."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from gearcam.findings import Finding, check
+from gearcam.findings import Remark, check
 from gearcam.numerals import decimal, shown
 from gearcam.parts.blank import KIND
 from gearcam.parts.body import Part
@@ -51,7 +51,7 @@ class PartsSubject:
     doc="walls between openings, and between openings and the outline or the hub's edge",
     limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0),
 )
-def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Finding]:
+def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
     """Warn of thin walls."""
     for name, part in zip(subject.names, subject.parts, strict=True):
         walls = list(_walls(part))
@@ -59,15 +59,7 @@ def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Finding]:
             continue
         width, what = min(walls)
         if width < limit:
-            yield Finding(
-                code="thin-wall",
-                severity="warning",
-                message=f"The wall between the {what} is {shown(width, 4)} mm thick.",
-                value=width,
-                limit=limit,
-                unit="mm",
-                where=name,
-            )
+            yield Remark(f"The wall between the {what} is {shown(width, 4)} mm thick.", name, width)
 
 
 def _walls(part: Part) -> Iterator[tuple[float, str]]:
@@ -97,8 +89,9 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
     "wide-kerf",
     kind=KIND,
     doc="whether what the cutter burns away fits into every place of an outline",
+    unit="mm",
 )
-def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
+def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
     """Warn of a kerf wider than an inner corner or a slot, an error where flanks stay uncut."""
     rows = zip(subject.names, subject.tools, subject.uncut, strict=True)
     for name, tools, uncut in rows:
@@ -106,15 +99,13 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
             continue
         what, where = _tightest(tools)
         left = "metal is left there, on flanks too" if uncut else "metal is left there"
-        yield Finding(
-            code="wide-kerf",
-            severity="error" if uncut else "warning",
-            message=f"A cutter that burns {shown(subject.kerf, 4)} mm does not get into "
+        yield Remark(
+            f"A cutter that burns {shown(subject.kerf, 4)} mm does not get into "
             f"{what}{where}, which takes {shown(tools.diameter, 4)} mm: {left}.",
-            value=subject.kerf,
+            name,
+            subject.kerf,
+            severity="error" if uncut else "warning",
             limit=tools.diameter,
-            unit="mm",
-            where=name,
         )
 
 
@@ -123,22 +114,19 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Finding]:
     kind=KIND,
     doc="the largest round tool or wire that reaches every place of an outline",
     limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
+    severity="note",
 )
-def large_tool(subject: PartsSubject, limit: float) -> Iterator[Finding]:
+def large_tool(subject: PartsSubject, limit: float) -> Iterator[Remark]:
     """Warn that the tool at hand (a wire of 0.25 mm with its gap by default) is too large."""
     for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
             continue
         what, where = _tightest(tools)
-        yield Finding(
-            code="large-tool",
-            severity="note",
-            message=f"The largest round tool that reaches every place has "
+        yield Remark(
+            f"The largest round tool that reaches every place has "
             f"{shown(tools.diameter, 4)} mm: {what}{where} limits it.",
-            value=tools.diameter,
-            limit=limit,
-            unit="mm",
-            where=name,
+            name,
+            tools.diameter,
         )
 
 

@@ -20,7 +20,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
@@ -31,7 +30,6 @@ from gearcam.parts.shapes import Circle, Loop
 if TYPE_CHECKING:
     from shapely import Polygon
 
-Array = NDArray[np.float64]
 
 RIM: Final = 2.7
 """Rim below the roots, in modules, where the design gives none: 1.2 tooth depths."""

@@ -17,16 +17,14 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.bulges import Complex, as_complex, as_pairs
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Mask, Plane
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.hermite import on_cubics
 from gearcam.parts.rolled import Touched, arc_run, roll, too_far
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 _DEPTH: Final = 2.0
 """A place is lost where the outline comes nearer than the distance by this many chord errors."""
@@ -177,7 +175,7 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
             where=where,
             value=size,
             unit="mm",
-            nearest=f"a {what} of {low:.3g} mm leaves one" if low else "leave it out",
+            nearest=f"a {what} of {shown(low, 3)} mm leaves one" if low else "leave it out",
         ) from None
 
 
@@ -211,7 +209,7 @@ def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
     return contour
 
 
-def touches(contour: Contour, points: Complex, normals: Complex, by: float) -> Mask:
+def touches(contour: Contour, points: Plane, normals: Plane, by: float) -> Mask:
     """Return whether a disc can touch an outline at some of its points.
 
     Parameters

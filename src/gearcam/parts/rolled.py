@@ -19,16 +19,14 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.bulges import Complex, as_complex, as_pairs
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.crossings import Chain, remaining, rows_between
 from gearcam.numeric.hermite import on_cubics
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 _SMOOTH: Final = 1e-9
 """Gap between parallels, in tolerances, below which no corner is between their runs."""
@@ -192,10 +190,10 @@ class _Middles:
 
     start: Array
     end: Array
-    corner: NDArray[np.bool_]
+    corner: Mask
     first: Ints
-    points: Complex
-    tangents: Complex
+    points: Plane
+    tangents: Plane
     by: Array
 
     @classmethod
@@ -217,7 +215,7 @@ class _Middles:
         """None that matter here."""
         return np.zeros(0, dtype=np.int64), np.zeros(0)
 
-    def at(self, index: Ints, parameter: Array) -> tuple[Complex, Complex]:
+    def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, mm, and unit tangents of pieces at places."""
         first = self.first[index]
         step = np.clip(parameter, 0.0, self.end[index] - 1.0).astype(np.int64)
@@ -294,7 +292,7 @@ def too_far(contour: Contour, radius: float) -> InfeasibleError:
     side = "outside" if radius > 0 else "inside"
     return InfeasibleError(
         f"no simple outline is left by a disc of this radius that rolls {side}",
-        where=f"an outline of {np.ptp(contour.vertices[:, 0]):.6g} mm",
+        where=f"an outline of {shown(np.ptp(contour.vertices[:, 0]))} mm",
         value=abs(radius),
         unit="mm",
     )

@@ -15,13 +15,11 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs, bulge_pieces, flatten_bulges
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.moments import Moments, arc_moments
-
-Array = NDArray[np.float64]
 
 FEWEST: Final = 12
 """Fewest chords of a circle."""

@@ -18,14 +18,11 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gearcam.numeric.bulges import Complex, as_complex
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.hermite import on_cubics
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _FACING: Final = -0.5
 """Cosine of the angle between outward normals below which walls face each other: 120 degrees."""
@@ -159,11 +156,11 @@ class _ByLength:
     `first` and `last` are the numbers of the runs' first and last points.
     """
 
-    points: Complex
-    tangents: Complex
+    points: Plane
+    tangents: Plane
     way: Array
-    first: Index
-    last: Index
+    first: Ints
+    last: Ints
 
     @classmethod
     def of(cls, runs: Sequence[Run]) -> _ByLength:
@@ -179,7 +176,7 @@ class _ByLength:
             last=last,
         )
 
-    def at(self, run: Index, way: Array) -> tuple[Complex, Complex]:
+    def at(self, run: Ints, way: Array) -> tuple[Plane, Plane]:
         """Points and outward normals at ways along the chain, none beyond its run's ends."""
         way = np.clip(way, self.way[self.first[run]], self.way[self.last[run]])
         step = np.searchsorted(self.way, way, side="right") - 1
@@ -189,7 +186,7 @@ class _ByLength:
         return points, -1j * tangents
 
 
-def _narrowest(p: Complex, n: Complex) -> tuple[float, tuple[int, int]]:
+def _narrowest(p: Plane, n: Plane) -> tuple[float, tuple[int, int]]:
     """Find the least width of any pair, and the pair: of those that lie near enough."""
     from shapely import STRtree, points
 
@@ -205,7 +202,7 @@ def _narrowest(p: Complex, n: Complex) -> tuple[float, tuple[int, int]]:
     return (float(width[k]), (int(i[k]), int(j[k]))) if width[k] < best else (best, pair)
 
 
-def _of_neighbours(p: Complex, n: Complex, of: int, most: int) -> tuple[float, tuple[int, int]]:
+def _of_neighbours(p: Plane, n: Plane, of: int, most: int) -> tuple[float, tuple[int, int]]:
     """Find the least width of pairs up to `most` apart among one `of` so many points."""
     p, n = p[::of], n[::of]
     best, pair, size = math.inf, (0, 0), len(p)
@@ -218,7 +215,7 @@ def _of_neighbours(p: Complex, n: Complex, of: int, most: int) -> tuple[float, t
     return best, pair
 
 
-def _width(p: Complex, n: Complex, q: Complex, m: Complex) -> Array:
+def _width(p: Plane, n: Plane, q: Plane, m: Plane) -> Array:
     """Diameter of the disc that touches p along its normal n and passes q; inf if none faces it."""
     way = q - p
     ahead = (way * np.conj(n)).real

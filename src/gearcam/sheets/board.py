@@ -14,10 +14,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import Feature, Path, Shape, chains
 from gearcam.numerals import decimal
+from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.sheets.sheet import (
     ARROW_ROOM,
     CENTERLINE,
@@ -25,7 +25,6 @@ from gearcam.sheets.sheet import (
     GAP,
     HEIGHT,
     TAIL,
-    Array,
     Box,
     Dimension,
     LinearDimension,
@@ -325,13 +324,13 @@ class Board:
         hits = int(self._lines[cells[:, 0], cells[:, 1]].sum())
         return float(hits) if hits <= MOST else math.inf
 
-    def _cells(self, points: Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    def _cells(self, points: Array) -> tuple[Ints, Mask]:
         """Return the cells of points, and which of them lie on the grid."""
         cells = np.floor((points - self.area[0]) * self.scale / CELL).astype(np.int64)
         inside = np.logical_and.reduce((cells >= 0) & (cells < self._lines.shape), axis=1)
         return cells, inside
 
-    def _empty(self, low: Array, high: Array) -> NDArray[np.bool_]:
+    def _empty(self, low: Array, high: Array) -> Mask:
         """Return which of some boxes, (n, 2) each, hold nothing and lie in the area."""
         edge = CLEAR * self.unit
         first, inside = self._cells(low - edge)

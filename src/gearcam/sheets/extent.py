@@ -9,13 +9,11 @@ from collections.abc import Iterable
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.hermite import on_cubics
-
-Array = NDArray[np.float64]
 
 _BETWEEN: Final = 129
 """Points of a cubic that stands for the curve between two dense points."""

@@ -16,10 +16,11 @@ from typing import Final
 import numpy as np
 
 from gearcam.drawings import CENTER, CENTRODE, Circle, Cross, Drawing, Path
+from gearcam.numeric.arrays import Array
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.extent import true_points
 from gearcam.sheets.paper import begin, finish
-from gearcam.sheets.sheet import CENTERLINE, Array, Sheet, fine
+from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 
 LEFT: Final = 24.0
 RIGHT: Final = 20.0

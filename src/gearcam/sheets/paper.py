@@ -18,8 +18,9 @@ import numpy as np
 
 from gearcam.drawings import Feature, Path
 from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
 from gearcam.sheets.board import Board
-from gearcam.sheets.sheet import FRAME, GLYPH, HEIGHT, Array, Box, Sheet, Text
+from gearcam.sheets.sheet import FRAME, GLYPH, HEIGHT, Box, Sheet, Text
 
 PAPERS: Final = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}
 """Width and height, mm."""

@@ -16,12 +16,10 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.drawings import Feature
 from gearcam.numerals import decimal
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array
 
 Box = tuple[Array, Array]
 """Lower left and upper right corner."""

@@ -21,6 +21,7 @@ import numpy as np
 
 from gearcam.drawings import INNER, part_features, placed, reach
 from gearcam.numerals import decimal
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
@@ -33,7 +34,6 @@ from gearcam.sheets.sheet import (
     GAP,
     HEIGHT,
     HIDDEN,
-    Array,
     Sheet,
     Text,
     fine,

@@ -110,7 +110,7 @@ class CamResult(Result):
 
         profile, thickness = self.profile, self.design.cam.thickness
         with self.stage("part"):
-            place = Workpiece(name=CAM, module=_RIM_PART * thickness / RIM)
+            place = Workpiece(name=STEM, module=_RIM_PART * thickness / RIM)
             blank = self.design.blank
             return make_part(STEM, [finished(profile, blank, place)], thickness, blank, place)
 

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.cams.disc import DiscCam
 from gearcam.cams.three_points import curvature_study
 from gearcam.errors import InfeasibleError
-
-Array = NDArray[np.float64]
+from gearcam.numeric.arrays import Array, Plane
 
 
 def curvature_columns(
@@ -47,7 +45,7 @@ def curvature_columns(
             nearest="profiles without undercut have one; the other files do not need it",
         )
 
-    def points(theta: Array) -> NDArray[np.complex128]:
+    def points(theta: Array) -> Plane:
         s, ds = cam.program.derivatives(theta, 1)
         return np.conj(curve.trace(theta, s, ds, 0.0)[0])  # mirrored: counter-clockwise
 

@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.findings import Finding, in_order, run_checks
@@ -22,6 +21,7 @@ from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
+from gearcam.numeric.arrays import Array
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 from gearcam.result import Progress, Result, Written
@@ -207,7 +207,7 @@ class GearPairResult(Result):
             for step in range(len(part.contours))
         )
 
-    def centrode_angles(self) -> NDArray[np.float64]:
+    def centrode_angles(self) -> Array:
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
         lobes = self.law.lobes
         if self.pair.on_rack:

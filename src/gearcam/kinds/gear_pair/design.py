@@ -19,6 +19,7 @@ from gearcam.gears.subject import KIND as TEETH_KIND
 from gearcam.laws.ratio.base import LAWS
 from gearcam.meshing.settings import KIND as MESHING_KIND
 from gearcam.meshing.settings import MeshingSpec
+from gearcam.numerals import shown
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 from gearcam.quantities import COUNT, param
@@ -161,7 +162,7 @@ def _tolerance_faults(raw: Any, pair: Any) -> Iterator[Fault]:
         coarsest = module / _COARSEST
         if tolerance > coarsest > 0:
             message = f"{show(tolerance)} is too coarse for a module of {show(module)} mm"
-            rule = f"at most module/{_COARSEST} = {coarsest:g} mm"
+            rule = f"at most module/{_COARSEST} = {shown(coarsest)} mm"
             yield Fault(("output", "chord_tolerance_mm"), message, tolerance, rule)
 
 

@@ -15,6 +15,7 @@ from gearcam.findings import limit_of
 from gearcam.gears.subject import KIND
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
+from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
@@ -95,7 +96,7 @@ def _rack(result: GearPairResult) -> Tree:
 
     def height(name: str) -> Fact:
         gave = name in yielded
-        place = f"for the default {yielded[name]:.6g}, which gave way" if gave else ""
+        place = f"for the default {shown(yielded[name])}, which gave way" if gave else ""
         return Fact(getattr(rack, name), place=place, unit="modules", shown=gave)
 
     return {

@@ -19,6 +19,7 @@ from gearcam.export.shared import (
     sheet_bytes,
     sheet_rows,
 )
+from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing, Pose
@@ -161,7 +162,7 @@ def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
         names = (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
         sheets.append(wheel_sheet(part, sheet_rows(facts, names), title))
     rows = {"law": result.design.law_type} | sheet_rows(facts, (*_PAIR_ROWS, *_RACK_ROWS))
-    rows["drawn at phi1"] = f"{np.degrees(pose):.6g} deg"
+    rows["drawn at phi1"] = f"{shown(np.degrees(pose))} deg"
     pair = _pair_drawing(result)
     sheets.append(pair_sheet(pair, result.pair.shift, rows, title, pitch_radius=radius))
     style = _style(result)

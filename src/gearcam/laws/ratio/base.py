@@ -15,18 +15,18 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.span import RackTravel, Span, angle_text, continued, rough
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -216,8 +216,8 @@ def make_law(
             value=math.degrees(law.travelled),
             limit=math.degrees(lobes.advance),
             unit="deg",
-            nearest=f"over {math.degrees(lobes.period):.10g} deg of the driver the driven wheel "
-            f"turns by the first; {asks} for the second",
+            nearest=f"over {shown(math.degrees(lobes.period), 10)} deg of the driver the driven "
+            f"wheel turns by the first; {asks} for the second",
         )
     return law
 
@@ -242,7 +242,7 @@ def _demand_smooth(law: RatioLaw) -> None:
             if not math.isfinite(jump.before + jump.after):
                 raise InfeasibleError(f"the {name} has no value", where=place)
             raise InfeasibleError(
-                f"the {name} {'is not periodic' if ends else 'jumps'}: it is {jump.before:.6g} "
-                f"before {place} and {jump.after:.6g} {'at 0 deg' if ends else 'after it'}",
+                f"the {name} {'is not periodic' if ends else 'jumps'}: it is {shown(jump.before)} "
+                f"before {place} and {shown(jump.after)} {'at 0 deg' if ends else 'after it'}",
                 where=place,
             )

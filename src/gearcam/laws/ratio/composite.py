@@ -15,6 +15,7 @@ from gearcam.laws.ratio.arcs import ARCS, SMOOTH
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.phases import arcs_law, one_lobe
 from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
+from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet, cos, sin
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
@@ -109,7 +110,7 @@ class ThreePhasePolynomial:
         """
         if abs(self.knots[3] - lobes.period) > SAME:
             raise InfeasibleError(
-                f"the knots must span {360 / lobes.n1:g} deg for these tooth counts",
+                f"the knots must span {shown(360 / lobes.n1)} deg for these tooth counts",
                 where="law.knots_deg[3]",
                 value=math.degrees(self.knots[3]),
                 limit=360 / lobes.n1,
@@ -200,7 +201,7 @@ class Fourier:
                 where=angle_text(place),
                 value=smallest,
                 limit=0.0,
-                nearest=f"with all coefficients times {share:.6g} it would just be 0",
+                nearest=f"with all coefficients times {shown(share)} it would just be 0",
                 ways=(Way(far={"law.cosines": 0.0, "law.sines": 0.0}),),
             )
         return make_law(lobes, knots, pieces, tolerances)

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.span import PLACES, Lobes, Span, angle_text, rough
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import newton_in_bracket
 from gearcam.tolerances import Tolerances
 
-Array = NDArray[np.float64]
 _APART = 1e-9
 """Least distance of the driven shaft from the largest radius, in this: nearer, all is lost."""
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
@@ -24,13 +23,12 @@ from gearcam.laws.ratio.span import (
     span_of,
     travel_problems,
 )
+from gearcam.numerals import shown
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 _NAMES = ("phi2", "ratio", "r1")
 
@@ -95,7 +93,7 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
             place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
             raise InfeasibleError(
                 f"{name} is not periodic: it must repeat every "
-                f"{math.degrees(lobes.period):.6g} deg for these tooth counts",
+                f"{shown(math.degrees(lobes.period))} deg for these tooth counts",
                 where=angle_text(place + lobe * lobes.period),
                 value=wrong,
                 limit=right,

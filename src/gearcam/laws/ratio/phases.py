@@ -14,6 +14,7 @@ from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.arcs import ARCS, Arc
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
+from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
 
@@ -135,7 +136,9 @@ def one_lobe(
             lobe = list(ratios[: count + 1])
             if lobe[:-1] * repeats == list(ratios[:-1]) and lobe[0] == lobe[-1]:
                 return np.append(knots[:count], lobes.period), lobe
-    spans = "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {360 / lobes.n1:g}"
+    spans = (
+        "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {shown(360 / lobes.n1)}"
+    )
     raise InfeasibleError(
         f"the knots must span {spans} deg for these tooth counts",
         where=where,
@@ -224,7 +227,7 @@ def _close(
                 value=closing,
                 limit=0.0,
                 nearest="closure asks for this value; it is positive with all other ratios times "
-                f"less than {lobes.advance / (lobes.advance - rest):.6g}",
+                f"less than {shown(lobes.advance / (lobes.advance - rest))}",
             )
     elif abs(rest) > tolerances.refusal:
         nearest, ways = _closing_values(given, rest / weights, lobes.closed)
@@ -250,8 +253,10 @@ def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> tupl
     for index, (value, step) in enumerate(zip(given.tolist(), change.tolist(), strict=True)):
         closing = value + step
         names = [f"ratios[{index}]", *([f"ratios[{len(given)}]"] if closed and not index else [])]
-        state = f"{closing:.10g}" if closing > 0 else f"none ({closing:.6g} is not positive)"
-        lines.append(f"{' and '.join(names)} = {state} instead of {value:.10g}")
+        state = (
+            f"{shown(closing, 10)}" if closing > 0 else f"none ({shown(closing)} is not positive)"
+        )
+        lines.append(f"{' and '.join(names)} = {state} instead of {shown(value, 10)}")
         if closing > 0.0:
             ways.append(Way(near={f"law.{name}": closing for name in names}))
     return "; ".join(lines), ways
@@ -285,7 +290,8 @@ def _solve_knot(
             value=math.degrees(travel),
             limit=nearest,
             unit="deg",
-            nearest=f"the knots allow {ways[0]:.10g} to {ways[1]:.10g} deg, both excluded",
+            nearest="the knots allow "
+            f"{shown(ways[0], 10)} to {shown(ways[1], 10)} deg, both excluded",
             ways=(Way(near={key: nearest}, far={key: 0.5 * (ways[0] + ways[1])}),),
         )
     return filled, list(ratios), {f"knots_deg[{index}]": math.degrees(place)}

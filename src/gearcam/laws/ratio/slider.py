@@ -18,15 +18,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.span import SAME, angle_text
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, asin, atan, polynomial, slope, sqrt
 from gearcam.numeric.piecewise import Piece, extremes
 
-Array = NDArray[np.float64]
 Function = Callable[[Jet], Jet]
 
 _ORDER = 30

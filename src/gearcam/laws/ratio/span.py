@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece, Piecewise
@@ -201,10 +202,10 @@ def open_travel(wheel: str) -> Any:
 
 def angle_text(angle: float) -> str:
     """Return a driver angle, rad, as a place for messages."""
-    return f"phi1 = {round(math.degrees(angle), 6) + 0.0:.6g} deg"
+    return f"phi1 = {shown(round(math.degrees(angle), 6) + 0.0)} deg"
 
 
-def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[NDArray[np.float64], list[Piece]]:
+def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[Array, list[Piece]]:
     """Continue an open ratio beyond both ends.
 
     Parameters

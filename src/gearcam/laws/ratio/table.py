@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, CsvRows, FromFile
@@ -17,13 +16,12 @@ from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
 from gearcam.laws.ratio.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
 from gearcam.quantities import ANGLE, NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 _ANGLE: Final = "phi1_deg"
 _VALUES: Final = ("ratio", "phi2_deg", "r1")

@@ -15,15 +15,11 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gearcam.laws.entry import LawEntry
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 NARROWEST: Final = 1e-6
 """Least part of the angle that a sector or a step of a table may take.

@@ -7,19 +7,18 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import compiled, formula_problems
 from gearcam.laws.rises.base import RISES, Rise
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
-
-Array = NDArray[np.float64]
 
 _ODD_PLACE: Final = 0.3819660112501052
 """Where the search for corners is cut first: a corner at a round place then lies inside a part."""
@@ -53,7 +52,7 @@ class FormulaRise:
         for place, value in ((0.0, start), (1.0, end)):
             if not abs(value - place) <= TYPED:
                 raise InfeasibleError(
-                    f"the formula must give {place:g} at x = {place:g}",
+                    f"the formula must give {shown(place)} at x = {shown(place)}",
                     where=_WHERE,
                     value=value,
                     limit=place,
@@ -80,7 +79,7 @@ def _demand_smooth(shape: Callable[[Jet], Jet], tolerances: Tolerances) -> Array
             order = int(np.argmin(np.isfinite(found)))
             raise InfeasibleError(
                 f"{(*_NAMES, 'the derivative of its jerk')[order]} cannot be computed",
-                where=f"{_WHERE}, x = {place:g}",
+                where=f"{_WHERE}, x = {shown(place)}",
                 nearest="roots of zero and powers of zero that are not whole have no derivatives",
             )
     return cuts
@@ -97,7 +96,7 @@ def _cuts(shape: Callable[[Jet], Jet], order: int, tolerances: Tolerances) -> Ar
         return expand(values, [0.0, _ODD_PLACE, 1.0], tolerances.expansion).knots
     except NotSmoothError as error:
         state = "smooth" if error.finite else "finite"
-        place = f"{_WHERE}, x = {round(error.place, 5):g}"
+        place = f"{_WHERE}, x = {shown(round(error.place, 5))}"
         raise InfeasibleError(f"{_NAMES[order]} is not {state}", where=place) from error
 
 

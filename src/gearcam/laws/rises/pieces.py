@@ -14,12 +14,11 @@ from math import comb, factorial
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gearcam.numeric.jets import Jet, Value, polynomial, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 
-Array = NDArray[np.float64]
 Shape = Callable[[Jet], Jet]
 
 _NOTHING: Final = 1e-12

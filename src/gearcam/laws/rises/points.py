@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, FromFile
@@ -21,12 +20,13 @@ from gearcam.laws.rises.base import (
     Rise,
 )
 from gearcam.laws.rises.pieces import about, product, spline, total
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
-Array = NDArray[np.float64]
 Problem = tuple[str, int | None, str, str]
 
 _FEWEST: Final = 3
@@ -61,8 +61,8 @@ class BSplineRise(ClosedForm):
             return
         for index, place, corner in ((0, "first", 0.0), (count - 1, "last", 1.0)):
             if self.control[index] != corner:
-                message = f"the {place} control value is not {corner:g}"
-                yield "control", index, message, f"{corner:g}"
+                message = f"the {place} control value is not {shown(corner)}"
+                yield "control", index, message, f"{shown(corner)}"
 
     def function(self) -> Piecewise:
         """S over phi, exact polynomials between the knots."""
@@ -182,10 +182,10 @@ def _point_problems(points: Array) -> Iterator[Problem]:
         for row, place, corner in ((0, "first", 0.0), (len(points) - 1, "last", 1.0)):
             value = float(points[row, column])
             if abs(value - corner) > TYPED:
-                message = f"the {place} {name} is {value:.10g}, not {corner:g}"
+                message = f"the {place} {name} is {shown(value, 10)}, not {shown(corner)}"
                 yield name, row, message, "x and y from 0 to 1: parts of the angle and of the lift"
     for row in np.flatnonzero(np.diff(points[:, 0]) < NARROWEST)[:1]:
-        rule = f"each x at least {NARROWEST:g} above the one before"
+        rule = f"each x at least {shown(NARROWEST)} above the one before"
         yield "x", int(row) + 1, "x does not rise", rule
 
 

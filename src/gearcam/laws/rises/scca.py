@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
 from gearcam.laws.rises.pieces import from_half, lag
+from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import NUMBER, param
@@ -35,13 +36,13 @@ class Scca(ClosedForm):
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in ("b", "c", "d"):
             if 0.0 < getattr(self, name) < NARROWEST:
-                rule = f"0, or at least {NARROWEST:g}"
+                rule = f"0, or at least {shown(NARROWEST)}"
                 yield name, None, "this sector is too narrow", rule
         total = self.b + self.c + self.d
         if abs(total - 1.0) > TYPED:
             last = 1.0 - self.b - self.c
-            hint = f"; with this b and c, d is {last:.10g}" if last >= 0.0 else ""
-            yield "d", None, f"b + c + d is {total:.10g}", f"b + c + d = 1{hint}"
+            hint = f"; with this b and c, d is {shown(last, 10)}" if last >= 0.0 else ""
+            yield "d", None, f"b + c + d is {shown(total, 10)}", f"b + c + d = 1{hint}"
 
     def function(self) -> Piecewise:
         """S of the three sectors of the first half."""
