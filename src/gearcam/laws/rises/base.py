@@ -97,6 +97,6 @@ _HOMES: Final = {
 }
 
 RISES: Final[Registry[LawEntry]] = Registry(
-    "rise", {f"gearcam.laws.rises.base.{home}": names for home, names in _HOMES.items()}
+    "rise", {f"gearcam.laws.rises.{home}": names for home, names in _HOMES.items()}
 )
 """The rises by name."""
