@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import random_designs
-from compare_files import Difference, called, folders, told
+from compare_files import MORE, Difference, called, folders, told
 from compare_sides import GALLERY, Side, tree_of
 from random_draw import ROOT, toml
 
@@ -58,6 +58,8 @@ class Report:
     ----------
     allowed : sequence of str
         Patterns of places that may differ.
+    more : bool
+        Whether summaries of the tree may tell what the base does not.
     counts : mapping of str to Counter
         Ends, by kind.
     found : mapping of str to list
@@ -65,6 +67,7 @@ class Report:
     """
 
     allowed: Sequence[str] = ()
+    more: bool = False
     counts: dict[str, Counter[str]] = field(default_factory=dict)
     found: dict[str, list[tuple[str, Difference]]] = field(default_factory=dict)
 
@@ -90,6 +93,8 @@ class Report:
         return bool(kept)
 
     def _may(self, one: Difference) -> bool:
+        if self.more and one.words == MORE:
+            return True
         return any(fnmatch.fnmatchcase(one.place, pattern) for pattern in self.allowed)
 
     def lines(self) -> Iterator[str]:
@@ -204,7 +209,7 @@ class Comparison:
         self.sides = (made[0], made[1])
         self.renames = dict(pair.split("=")[::-1] for pair in given.rename)
         self.names = dict(pair.split("=")[::-1] for pair in given.called)
-        self.report = Report(given.allow)
+        self.report = Report(given.allow, given.more)
         self.waiting: deque[Task] = deque()
         self.built = 0
 
@@ -289,6 +294,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--no-gallery", action="store_true", help="random designs only")
     words = "a place that may differ, such as 'summary.json:accuracy.*' or 'finding:tip-*'"
     parser.add_argument("--allow", action="append", default=[], metavar="PATTERN", help=words)
+    words = "summaries of this tree may tell what those of the base do not"
+    parser.add_argument("--more", action="store_true", help=words)
     words = "a key or word of designs that the base calls otherwise, as helix.steps=steps.count"
     parser.add_argument("--rename", action="append", default=[], metavar="OLD=NEW", help=words)
     words = "a name in files and findings that the base calls otherwise, such as way_mm=travel_mm"

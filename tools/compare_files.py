@@ -34,6 +34,9 @@ SINGLE: Final = 1e-6
 TOLD: Final = 1e-5
 """The same for numbers in texts, which have six digits."""
 
+MORE: Final = "told by tree only"
+"""Words of a difference that is more told."""
+
 _FINER: Final = 0.01
 """How much finer than an outline's tolerance its curves are compared."""
 
@@ -255,7 +258,7 @@ def summaries(
             continue
         place = f"{name}:{key[1:]}"
         if key not in one or key not in two:
-            yield Difference(place, math.inf, f"only in {'base' if key in one else 'tree'}")
+            yield Difference(place, math.inf, "told by base only" if key in one else MORE)
             continue
         (a, near), (b, _) = one[key], two[key]
         if isinstance(a, float) and isinstance(b, float):
