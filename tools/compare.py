@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
+import json
 import shutil
 import sys
 import tempfile
@@ -23,7 +24,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import random_designs
-from compare_files import Difference, folders, told
+from compare_files import MORE, Difference, called, folders, told
 from compare_sides import GALLERY, Side, tree_of
 from random_draw import ROOT, toml
 
@@ -57,6 +58,8 @@ class Report:
     ----------
     allowed : sequence of str
         Patterns of places that may differ.
+    more : bool
+        Whether summaries of the tree may tell what the base does not.
     counts : mapping of str to Counter
         Ends, by kind.
     found : mapping of str to list
@@ -64,6 +67,7 @@ class Report:
     """
 
     allowed: Sequence[str] = ()
+    more: bool = False
     counts: dict[str, Counter[str]] = field(default_factory=dict)
     found: dict[str, list[tuple[str, Difference]]] = field(default_factory=dict)
 
@@ -89,6 +93,8 @@ class Report:
         return bool(kept)
 
     def _may(self, one: Difference) -> bool:
+        if self.more and one.words == MORE:
+            return True
         return any(fnmatch.fnmatchcase(one.place, pattern) for pattern in self.allowed)
 
     def lines(self) -> Iterator[str]:
@@ -109,17 +115,21 @@ class Report:
 
 
 def renamed(text: str, renames: Mapping[str, str]) -> str:
-    """Return a design file with the base's keys for the tree's.
+    """Return a design file with the base's keys and words for the tree's.
 
     Parameters
     ----------
     text : str
         The file.
     renames : mapping of str to str
-        Dotted keys of the base by those of the tree.
+        Dotted keys, and words without a dot, of the base by those of the tree.
     """
     document = tomllib.loads(text)
     for new, old in renames.items():
+        if "." not in new:
+            for table in filter(lambda one: isinstance(one, dict), document.values()):
+                table |= {key: old for key, value in table.items() if value == new}
+            continue
         (title, key), (old_title, old_key) = new.split("."), old.split(".")
         if key in document.get(title, {}):
             document.setdefault(old_title, {})[old_key] = document[title].pop(key)
@@ -134,6 +144,7 @@ def differences(
     *,
     limit: float,
     messages: bool,
+    names: Mapping[str, str],
 ) -> tuple[str, list[Difference]]:
     """Return how two sides ended with a design, and where they differ.
 
@@ -147,7 +158,10 @@ def differences(
         CPU time that each had.
     messages : bool
         Whether words are compared too.
+    names : mapping of str to str
+        Names of the base by those of the tree (see `called`).
     """
+    ends = (json.loads(called(json.dumps(ends[0]), names)), ends[1])
     one, two = (end["end"] for end in ends)
     if OUT in (one, two) and (one == two or min(end["seconds"] for end in ends) > 0.5 * limit):
         return OUT, []
@@ -163,7 +177,7 @@ def differences(
         found += told("finding", ends[0]["findings"], ends[1]["findings"], messages=messages)
     if one == two:
         first, second = (path.with_suffix(".out") for path in files)
-        found += folders(first, second, tolerance_of(files[0]))
+        found += folders(first, second, tolerance_of(files[0]), names)
     return end, found
 
 
@@ -194,7 +208,8 @@ class Comparison:
                 for tree, name in zip(trees, names, strict=True)]  # fmt: skip
         self.sides = (made[0], made[1])
         self.renames = dict(pair.split("=")[::-1] for pair in given.rename)
-        self.report = Report(given.allow)
+        self.names = dict(pair.split("=")[::-1] for pair in given.called)
+        self.report = Report(given.allow, given.more)
         self.waiting: deque[Task] = deque()
         self.built = 0
 
@@ -252,8 +267,9 @@ class Comparison:
         ends = tuple(side.answer() for side in self.sides)
         self.built += ends[0]["end"] == "built"
         end, found = differences(
-            task.files, ends, limit=self.given.limit, messages=self.given.messages
-        )
+            task.files, ends,
+            limit=self.given.limit, messages=self.given.messages, names=self.names,
+        )  # fmt: skip
         differs = self.report.take(task, end, found)
         if differs and self.given.keep:
             for side, file in zip(self.sides, task.files, strict=True):
@@ -278,8 +294,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--no-gallery", action="store_true", help="random designs only")
     words = "a place that may differ, such as 'summary.json:accuracy.*' or 'finding:tip-*'"
     parser.add_argument("--allow", action="append", default=[], metavar="PATTERN", help=words)
-    words = "a key of designs that the base calls otherwise, such as helix.steps=steps.count"
+    words = "summaries of this tree may tell what those of the base do not"
+    parser.add_argument("--more", action="store_true", help=words)
+    words = "a key or word of designs that the base calls otherwise, as helix.steps=steps.count"
     parser.add_argument("--rename", action="append", default=[], metavar="OLD=NEW", help=words)
+    words = "a name in files and findings that the base calls otherwise, such as way_mm=travel_mm"
+    parser.add_argument("--called", action="append", default=[], metavar="OLD=NEW", help=words)
     parser.add_argument("--messages", action="store_true", help="compare the words of messages too")
     parser.add_argument("--limit", type=float, default=20.0, help="CPU seconds of a design")
     parser.add_argument("--keep", type=Path, help="folder for designs that differ")

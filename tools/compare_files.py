@@ -34,10 +34,13 @@ SINGLE: Final = 1e-6
 TOLD: Final = 1e-5
 """The same for numbers in texts, which have six digits."""
 
+MORE: Final = "told by tree only"
+"""Words of a difference that is more told."""
+
 _FINER: Final = 0.01
 """How much finer than an outline's tolerance its curves are compared."""
 
-NOISE: Final = ("timings_s", "versions", "design", "files", "findings", "format")
+NOISE: Final = ("timings_s", "versions", "design", "hash", "files", "findings", "format")
 """Keys of a summary that tell of the run, or that are compared elsewhere."""
 
 _COMPARED: Final = ("severity", "where", "value", "limit", "unit")
@@ -71,7 +74,9 @@ class Difference:
         return re.sub(r"\d+", "#", self.place)
 
 
-def folders(first: Path, second: Path, tolerance: float) -> Iterator[Difference]:
+def folders(
+    first: Path, second: Path, tolerance: float, names: Mapping[str, str] | None = None
+) -> Iterator[Difference]:
     """Yield where the files of two folders differ.
 
     Parameters
@@ -80,14 +85,25 @@ def folders(first: Path, second: Path, tolerance: float) -> Iterator[Difference]
         Folders that both sides have written.
     tolerance : float, mm
         How far arcs may lie from their curve.
+    names : mapping of str to str, optional
+        Names of the first by those of the second (see `called`).
     """
     one, two = (_names(folder) for folder in (first, second))
     for name in sorted(one.keys() ^ two.keys()):
         yield Difference(name, math.inf, f"only in {'base' if name in one else 'tree'}")
     for name in sorted(one.keys() & two.keys()):
         before, after = one[name].read_bytes(), two[name].read_bytes()
+        if names and name.endswith((".csv", ".json")):
+            before = called(before.decode(), names).encode()
         if before != after:
             yield from files(name, before, after, tolerance)
+
+
+def called(text: str, names: Mapping[str, str]) -> str:
+    """Return a `text` with other `names`, whole words, the old ones by the new ones."""
+    for new, old in names.items():
+        text = re.sub(rf"(?<![\w-]){re.escape(old)}(?![\w-])", new, text)
+    return text
 
 
 def _names(folder: Path) -> dict[str, Path]:
@@ -242,7 +258,7 @@ def summaries(
             continue
         place = f"{name}:{key[1:]}"
         if key not in one or key not in two:
-            yield Difference(place, math.inf, f"only in {'base' if key in one else 'tree'}")
+            yield Difference(place, math.inf, "told by base only" if key in one else MORE)
             continue
         (a, near), (b, _) = one[key], two[key]
         if isinstance(a, float) and isinstance(b, float):

@@ -13,7 +13,8 @@ from random_draw import Draw, short
 
 Rise = dict[str, Any]
 
-FOLLOWERS: Final = ("point", "roller", "flat", "domed")
+FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
+"""They take turns; a point is another word for a knife edge."""
 
 
 def _derivatives(d: Draw) -> Rise:
@@ -181,6 +182,6 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         output["motion_step_deg"] = d.log(0.2, 20)
     if d.chance(0.2):
         output["theta_deg"] = d.even(-400, 400)
-    if kind in ("flat", "point") or d.chance(0.3):
+    if kind in ("flat", "knife-edge", "point") or d.chance(0.3):
         output["tool_radius_mm"] = short(size * d.log(0.02, 0.3))
     return design | {"output": output}

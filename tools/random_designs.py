@@ -135,7 +135,7 @@ def _edges(d: Draw, unit: float, made: dict[str, Any]) -> None:
 
 def _vertices(document: dict[str, Any]) -> float:
     """Return about how many vertices the outlines of a pair have; time goes with them."""
-    pair, steps = document["pair"], document.get("helix", {}).get("steps", 1)
+    pair, steps = document["pair"], document.get("steps", {}).get("count", 1)
     module = pair.get("module_mm") or 2.0 * pair["center_distance_mm"] / sum(pair["teeth"])
     tolerance = document["output"].get("chord_tolerance_mm", min(1e-3, 1e-3 * module))
     return 1.7 * sum(pair["teeth"]) * steps * math.sqrt(module / tolerance)

@@ -207,7 +207,7 @@ def _rack(d: Draw) -> tuple[Law, Counts]:
     a, n = d.sign() * d.log(1e-3, 0.2), d.whole(1, 3)
     shape = {"r1": f"1 + {a}*cos({n}*phi1)"}
     if d.chance(0.5):
-        shape = {"way": f"3*phi1 + {short(a / n)}*sin({n}*phi1)"}
+        shape = {"travel": f"3*phi1 + {short(a / n)}*sin({n}*phi1)"}
     return shape, (d.whole(14, MOST_TEETH), d.whole(6, MOST_TEETH))
 
 
@@ -259,7 +259,7 @@ def _cutter(d: Draw) -> dict[str, Any]:
 
 
 def _steps(d: Draw, module: float) -> dict[str, Any]:
-    steps: dict[str, Any] = {"steps": d.whole(2, 5)}
+    steps: dict[str, Any] = {"count": d.whole(2, 5)}
     if d.chance(0.4):
         steps["offset_mm"] = short(d.sign() * module * d.log(0.1, 3))
     return steps
@@ -268,7 +268,7 @@ def _steps(d: Draw, module: float) -> dict[str, Any]:
 def _study(d: Draw, design: dict[str, Any]) -> dict[str, Any]:
     study: dict[str, Any] = {"steps": d.whole(8, 60)}
     if d.chance(0.4):
-        study["advance_deg"] = d.sign() * d.log(1e-3, 0.02)
+        study["overclosure_deg"] = d.sign() * d.log(1e-3, 0.02)
     if d.chance(0.3):
         ends = design["law"]["type"] == "rack" or "driven_travel_deg" in design["law"]
         start = d.even(0, 20) if ends else d.even(-90, 200)
@@ -279,8 +279,8 @@ def _study(d: Draw, design: dict[str, Any]) -> dict[str, Any]:
     distance = design["pair"].get("center_distance_mm")
     if distance and d.chance(0.6):
         study["center_distance_mm"] = short(distance * (1 + d.even(-1e-3, 4e-3)))
-    if "helix" in design:
-        study["helix_step"] = d.whole(1, design["helix"]["steps"])
+    if "steps" in design:
+        study["step"] = d.whole(1, design["steps"]["count"])
     return study
 
 
@@ -311,7 +311,7 @@ def gear_pair(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict
         if opened and d.chance(0.3):
             design["blank"]["stop_pin_mm"] = short(module * d.log(0.5, 2))
     if closed and not opened and d.chance(0.12):
-        design["helix"] = _steps(d, module)
+        design["steps"] = _steps(d, module)
     if d.chance(0.15):
         design["meshing"] = _study(d, design)
     design["output"] = {"chord_tolerance_mm": short(module * d.log(1e-3, 2e-2))}

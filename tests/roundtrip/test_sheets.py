@@ -18,6 +18,7 @@ import pytest
 from ezdxf.entities.dimension import Dimension
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
+import gearcam
 from gearcam.drawings import Drawing, pair_drawing
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
@@ -31,6 +32,7 @@ from gearcam.parts.shapes import Circle
 from gearcam.sheets import pair_sheet, wheel_sheet
 from gearcam.sheets.sheet import Sheet
 from helpers_contour import disc_contour, gear_contour
+from helpers_pairs import PROFILES
 
 STYLE = DxfStyle(tolerance=1e-3)
 R12 = DxfStyle(tolerance=1e-3, curves="lines", version="R12")
@@ -370,3 +372,25 @@ def test_a_stepped_part_shows_its_steps() -> None:
     edges = read_dxf(data).modelspace().query('LWPOLYLINE[layer=="EDGE"]')
     tops = {round(float(point[1]), 6) for edge in edges for point in edge.get_points()}  # type: ignore[attr-defined]
     assert {30.0, 24.0, 6.0, -6.0, -24.0, -30.0} == tops
+
+
+@pytest.mark.parametrize(
+    ("profile", "rows"),
+    [
+        (
+            "lathe_slide",
+            ("follower", "roller radius", "offset", "lift", "prime radius", "cam turns",
+             "pressure angle, rise", "pressure angle, return", "density", "mass", "unbalance"),
+        ),
+        (
+            "valve_lever",
+            ("follower", "pivot distance", "face offset", "lift", "base radius", "cam turns"),
+        ),
+        ("circular", ("teeth", "module", "pressure angle", "addendum", "dedendum", "backlash",
+                      "face width", "profile shift", "centrode length", "cutter")),
+    ],
+)  # fmt: skip
+def test_the_table_tells_what_the_part_is_made_by(profile: str, rows: tuple[str, ...]) -> None:
+    made = gearcam.build(gearcam.load(PROFILES / f"{profile}.toml")).files("drawing-svg")
+    text = next(iter(made.values())).decode()
+    assert [row for row in rows if f">{row}</text>" not in text] == []

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import compare
-from compare_files import files, folders, summaries, told
+from compare_files import called, files, folders, summaries, told
 from compare_sides import Side
 from random_designs import KINDS, design
 from random_draw import known_keys, schema
@@ -306,3 +306,15 @@ def test_the_base_has_its_own_keys() -> None:
         "pair": {"teeth": [3, 4]},
     }
     assert compare.renamed(compare.renamed(text, {}), {}) == compare.renamed(text, {})
+    words = compare.renamed('[follower]\ntype = "knife-edge"\n', {"knife-edge": "point"})
+    assert tomllib.loads(words) == {"follower": {"type": "point"}}
+
+
+def test_the_base_has_its_own_names(tmp_path: Path) -> None:
+    for name, head in (("a", "way_mm,by_way_mm"), ("b", "travel_mm,by_way_mm")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "rack.csv").write_text(f"{head}\n1,2\n")
+    sides = tmp_path / "a", tmp_path / "b"
+    assert [one.place for one in folders(*sides, 1e-3)] == ["rack.csv"]
+    assert [*folders(*sides, 1e-3, {"travel_mm": "way_mm"})] == []
+    assert called('"off-flank": "way-off-flank"', {"new": "off-flank"}) == '"new": "way-off-flank"'

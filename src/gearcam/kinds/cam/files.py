@@ -34,9 +34,9 @@ TOOL_PATH: Final = "tool_path"
 
 _ROWS: Final = (
     "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
-    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.lift_mm", "motion.lift_deg",
-    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle.rise_max_deg",
-    "cam.pressure_angle.return_max_deg", "cam.profile.clearance_mm", "part.density_kg_m3",
+    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.total_lift",
+    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle_deg.rise_max",
+    "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
     "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
 )  # fmt: skip
 """Facts that stand in the table of the drawing."""
