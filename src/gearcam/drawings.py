@@ -167,6 +167,12 @@ def reach(shape: Shape) -> Array:
             return np.array([center - 0.5 * size, center + 0.5 * size])
 
 
+def box(features: Iterable[Feature]) -> tuple[Array, Array]:
+    """Return the lower left and the upper right corner of `features`, (2,) each, mm."""
+    corners = np.vstack([reach(feature.shape) for feature in features])
+    return corners.min(axis=0), corners.max(axis=0)
+
+
 def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Array, bool]]:
     """Yield the chains of points of a `shape`, chords within `sagitta`, mm, and if they close."""
     match shape:

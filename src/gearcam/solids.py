@@ -117,13 +117,18 @@ def _(part: Part) -> Mesh:
     mesh = _mesh(made)
     if not mesh.watertight:
         raise SolidError(f"{part.name}: the solid came out empty or open")
-    missed, allowed = abs(mesh.volume - part.volume), volume_error(part)
+    demand_volume(part, mesh.volume, volume_error(part))
+    return mesh
+
+
+def demand_volume(part: Part, volume: float, allowed: float) -> None:
+    """Raise `SolidError` if a solid's `volume` misses its part's by more than `allowed`, mm^3."""
+    missed = abs(volume - part.volume)
     if missed > allowed:
         raise SolidError(
             f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
             f" {shown(allowed, 3)} mm3 is explained"
         )
-    return mesh
 
 
 def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:

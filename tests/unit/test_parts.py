@@ -14,7 +14,7 @@ from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.blank import Blank
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.shapes import Loop, circle_points
+from gearcam.parts.shapes import Loop
 from gearcam.quantities import params_of
 from helpers_contour import bore, gear_contour, square_contour
 
@@ -105,7 +105,7 @@ def test_no_rim_no_mark() -> None:
 
 
 def test_circle_points_keep_the_sagitta() -> None:
-    points = circle_points((1.0, 2.0), 40.0, 1e-3)
+    points = Circle(center=np.array([1.0, 2.0]), diameter=40.0).points(1e-3)
     assert np.hypot(*(points - [1.0, 2.0]).T) == pytest.approx(20.0, abs=1e-12)
     middles = 0.5 * (points + np.roll(points, -1, 0)) - [1.0, 2.0]
     sagitta = 20 - np.hypot(*middles.T).min()

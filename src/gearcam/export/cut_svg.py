@@ -19,7 +19,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, reach
+from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, box
 from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data, svg_document
 from gearcam.numerals import decimal, shown
@@ -75,8 +75,7 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
         raise ValueError(f"{title}: nothing to cut")
     tolerance = min(one.tolerance for drawing in drawings for one in drawing.contours)
     decimals = max(4, math.ceil(-math.log10(_FINER * tolerance)))
-    corners = np.vstack([reach(one.shape) for one in kept])
-    low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
+    low, high = box(kept) + np.array([[-MARGIN], [MARGIN]])
     wide, tall = (decimal(float(size), 4) for size in np.ceil((high - low) * 1e4) / 1e4)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
     told = f"; the paths are moved by half a kerf of {shown(kerf)} mm" if kerf else ""

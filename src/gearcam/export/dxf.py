@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from gearcam import drawings
-from gearcam.drawings import Circle, Cross, Drawing, Loop, Path, Shape, reach
+from gearcam.drawings import Circle, Cross, Drawing, Loop, Path, Shape, box
 from gearcam.numerals import shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array
@@ -140,7 +140,7 @@ def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
             dashed = "DASHED" if feature.kind in drawings.DASHED else "Continuous"
             document.layers.add(feature.layer, color=COLORS.get(feature.kind, 7), linetype=dashed)
     space = document.modelspace()
-    low, high = _bounds(drawing)
+    low, high = (corner.tolist() for corner in box(drawing.features))
     space.reset_extents((*low, 0.0), (*high, 0.0))
     for feature in drawing.features:
         add_shape(space, feature.shape, {"layer": feature.layer}, style)
@@ -221,13 +221,6 @@ def _outline(contour: Contour, style: DxfStyle) -> tuple[Array, Array]:
     if style.curves == "arcs":
         return fit_closed(contour.runs, CURVE_PART * style.tolerance)
     return contour.vertices, np.zeros(len(contour.vertices))
-
-
-def _bounds(drawing: Drawing) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the lower left and upper right corner of a drawing, for viewers."""
-    corners = np.vstack([reach(feature.shape) for feature in drawing.features])
-    low, high = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
-    return (low[0], low[1]), (high[0], high[1])
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, place, reach
+from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, box, place, reach
 from gearcam.export.lettering import strokes, text_width
 from gearcam.numerals import NOISE
 from gearcam.numeric.arrays import Array
@@ -57,7 +57,7 @@ def labelled(drawing: Drawing) -> Drawing:
     left, base = x - 0.5 * wide * height, y - 0.5 * height
     if height < _LOWEST:
         height = _LOWEST
-        low, high = _box([drawing])
+        low, high = box(drawing.features)
         left, base = 0.5 * float(low[0] + high[0] - wide * height), float(low[1]) - GAP - height
     lines = strokes(words, height, left, base)
     names = (Feature(layer=LABEL, shape=Path(points=line, closed=False)) for line in lines)
@@ -104,11 +104,6 @@ def _hull(drawing: Drawing) -> Polygon:
     corners = [reach(one.shape) for one in drawing.features if one.kind in kinds]
     hull: Any = MultiPoint(np.vstack(corners)).convex_hull
     return hull
-
-
-def _box(drawings: Sequence[Drawing]) -> tuple[Array, Array]:
-    corners = np.vstack([reach(one.shape) for drawing in drawings for one in drawing.features])
-    return corners.min(axis=0), corners.max(axis=0)
 
 
 def _rows(order: Sequence[int], sizes: Array, width: float) -> list[list[int]]:

@@ -23,13 +23,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numerals import shown
 from gearcam.numeric.bulges import as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
 from gearcam.parts.body import Edge, Part
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.solids import OVERSHOOT, SolidError
+from gearcam.solids import OVERSHOOT, SolidError, demand_volume
 
 COLLECTIONS: Final = ("Array1", "IndexedMap", "List", "Sequence")
 """Beginnings of names that the binding keeps in one room; all others name their room."""
@@ -102,13 +101,8 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
         raise SolidError(f"{part.name}: the solid could not be made: {error}") from error
     if not all(occt.BRepCheck_Analyzer(solid).IsValid() for solid in made):
         raise SolidError(f"{part.name}: the solid came out invalid")
-    missed = abs(sum(properties(solid).Mass() for solid in made) - part.volume)
-    allowed = VOLUME_ERROR * part.volume + _explained(part, tolerance)
-    if missed > allowed:
-        raise SolidError(
-            f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
-            f" {shown(allowed, 3)} mm3 is explained"
-        )
+    volume = sum(properties(solid).Mass() for solid in made)
+    demand_volume(part, volume, VOLUME_ERROR * part.volume + _explained(part, tolerance))
     return made
 
 

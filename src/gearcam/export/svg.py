@@ -19,7 +19,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from gearcam import drawings
-from gearcam.drawings import Circle, Cross, Drawing, Feature, Loop, Path, chains, reach
+from gearcam.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
@@ -77,8 +77,7 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     """
     if not drawing.contours:
         raise ValueError(f"{drawing.name}: nothing to draw")
-    corners = np.vstack([reach(feature.shape) for feature in drawing.features])
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    low, high = box(drawing.features)
     width = float(high[0] - low[0])
     margin, pixel = MARGIN * width, width / PIXELS
     lines = [title, ", ".join(notes)]
@@ -87,11 +86,11 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     left, top = float(low[0]) - margin, -float(high[1]) - margin
     whole = width + 2 * margin
     tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
-    box = " ".join(_number(value) for value in (left, top, whole, tall))
+    view = " ".join(_number(value) for value in (left, top, whole, tall))
     base = -float(low[1]) + margin + size
     ground = f'x="{_number(left)}" y="{_number(top)}"'
     ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="{GROUND}"'
-    sheet = f'viewBox="{box}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
+    sheet = f'viewBox="{view}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
     elements = [
         f"<rect {ground}/>",
         f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.errors import Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part
@@ -110,12 +110,11 @@ def _demand_within(hub: Hub, contours: Sequence[Contour], work: Workpiece) -> No
 
     room = min(2.0 * contour.polygon.boundary.distance(Point(0.0, 0.0)) for contour in contours)
     if hub.diameter >= room:
-        raise InfeasibleError(
+        raise work.refusal(
             "the hub reaches the roots of the teeth",
-            where=f"{work.name}, blank.hub_diameter_mm",
+            "blank.hub_diameter_mm",
             value=hub.diameter,
             limit=room,
-            unit="mm",
             nearest="the limit is where it would reach them",
             ways=(
                 Way(
@@ -137,12 +136,10 @@ def _demand_marks(part: Part, work: Workpiece) -> None:
         if part.hub is not None:
             room = min(room, float(np.hypot(*mark.center)) - 0.5 * part.hub.diameter)
         if room < radius:
-            raise InfeasibleError(
+            raise work.refusal(
                 "the timing mark meets an opening, the hub or the outline",
-                where=f"{work.name}, [blank]",
                 value=mark.diameter,
                 limit=max(0.0, 2.0 * room),
-                unit="mm",
                 nearest="the limit is the room around its middle",
                 ways=(
                     Way(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),

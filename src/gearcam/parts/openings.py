@@ -77,6 +77,10 @@ class Workpiece:
         """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
+    def refusal(self, what: str, place: str = "[blank]", **told: Any) -> InfeasibleError:
+        """Return a refusal of `what` at a `place` of the design; numbers are in mm."""
+        return InfeasibleError(what, where=f"{self.name}, {place}", unit="mm", **told)
+
 
 def bore(blank: WheelBlank) -> Circle | Loop:
     """Return the bore with its keyway or flat.
@@ -218,12 +222,10 @@ def _no_room(
             if limit
             else "its middle lies outside the roots"
         )
-    return InfeasibleError(
+    return work.refusal(
         f"the {opening.name} meets {what}",
-        where=f"{work.name}, [blank]",
         value=value,
         limit=limit,
-        unit="mm",
         nearest=nearest,
         ways=tuple(
             Way(far={work.key(key): small})
@@ -240,11 +242,10 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece) -> Opening:
     centres, goes from the polar angle 0 to the travel, or from pi back by the travel.
     """
     if work.travel is None:
-        raise InfeasibleError(
+        raise work.refusal(
             "a wheel that turns for ever has no stop",
-            where=f"{work.name}, blank.stop_pin_mm",
+            "blank.stop_pin_mm",
             value=blank.stop_pin,
-            unit="mm",
             nearest="only wheels of an open law (driven_travel_deg) have one",
             ways=(Way(near={work.key("stop_pin_mm"): 0.0}),),
         )
@@ -254,12 +255,11 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece) -> Opening:
     radius, room = _roomiest(solid, start, work.travel, inner)
     room -= blank.widening
     if blank.stop_pin >= room:
-        raise InfeasibleError(
+        raise work.refusal(
             "no room for the slot of the stop pin between shaft and roots",
-            where=f"{work.name}, blank.stop_pin_mm",
+            "blank.stop_pin_mm",
             value=blank.stop_pin,
             limit=room,
-            unit="mm",
             nearest="the limit is the widest slot that has room",
             ways=(
                 Way(
@@ -357,11 +357,9 @@ def _no_lightening(
     from shapely import Point
 
     least = solid.boundary.distance(Point(0.0, 0.0))
-    return InfeasibleError(
+    return work.refusal(
         f"lightening hole {number} has no room between hub and rim",
-        where=f"{work.name}, [blank]",
         value=least - core,
-        unit="mm",
         nearest="this is what lies between hub or bore and the nearest root",
         ways=(
             Way(near={"blank.rim_mm": 0.5 * rim}),

@@ -75,8 +75,11 @@ class Circle:
         return math.pi * self.diameter
 
     def points(self, sagitta: float) -> Array:
-        """Return points on the circle (see `circle_points`)."""
-        return circle_points(self.center, self.diameter, sagitta)
+        """Return points, (n, 2), mm, counter-clockwise, no chord farther than `sagitta`, mm."""
+        count = circle_segments(self.diameter, sagitta)
+        angle = 2 * math.pi * np.arange(count) / count
+        spokes = np.column_stack([np.cos(angle), np.sin(angle)])
+        return self.center + 0.5 * self.diameter * spokes
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -188,25 +191,3 @@ def circle_segments(diameter: float, sagitta: float) -> int:
     ratio = min(sagitta / diameter, 0.5)
     # Sagitta of n chords: (d/2)*(1 - cos(pi/n)) = d*sin(pi/(2n))^2.
     return max(FEWEST, 2 * math.ceil(math.pi / (4 * math.asin(math.sqrt(ratio)))))
-
-
-def circle_points(center: tuple[float, float] | Array, diameter: float, sagitta: float) -> Array:
-    """Return points on a circle, counter-clockwise, first not repeated.
-
-    Parameters
-    ----------
-    center : (2,) array, mm
-        Centre.
-    diameter : float, mm
-        Diameter.
-    sagitta : float, mm
-        Largest distance of a chord from the circle.
-
-    Returns
-    -------
-    (n, 2) array, mm
-    """
-    count = circle_segments(diameter, sagitta)
-    angle = 2 * math.pi * np.arange(count) / count
-    spokes = np.column_stack([np.cos(angle), np.sin(angle)])
-    return np.asarray(center, dtype=np.float64) + 0.5 * diameter * spokes
