@@ -99,8 +99,6 @@ class Check:
         Its name in findings.
     kind : str
         The kind of subject that it looks at.
-    doc : str
-        What it looks at, one line.
     limit : tuple of (str, Param, float) or None
         Name in ``[limits]``, quantity with range, and default in inner units.
     run : callable
@@ -109,7 +107,6 @@ class Check:
 
     code: str
     kind: str
-    doc: str
     limit: tuple[str, Param, float] | None
     run: Run
 
@@ -122,7 +119,6 @@ def check(
     code: str,
     *,
     kind: str | tuple[str, ...],
-    doc: str,
     limit: tuple[str, Param, float] | None = None,
     severity: Severity = "warning",
     unit: str = "",
@@ -131,7 +127,7 @@ def check(
 
     Parameters
     ----------
-    code, kind, doc, limit
+    code, kind, limit
         As of a `Check`.
     severity : {"note", "warning", "error"}
         Of findings that do not say another.
@@ -166,7 +162,7 @@ def check(
         for one in (kind,) if isinstance(kind, str) else kind:
             if (one, code) in CHECKS:
                 raise ValueError(f"check {code!r} is registered twice")
-            CHECKS[one, code] = Check(code=code, kind=one, doc=doc, limit=limit, run=run)
+            CHECKS[one, code] = Check(code=code, kind=one, limit=limit, run=run)
         return run
 
     return register

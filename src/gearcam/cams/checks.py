@@ -29,7 +29,6 @@ def _deg(theta: float) -> str:
 @check(
     "pressure-angle",
     kind=KIND,
-    doc="the pressure angle: beyond its limit a translating follower jams in its guide",
     limit=(
         "pressure_angle",
         Param(ANGLE, gt=0, lt=90, doc="largest pressure angle; 30 translating, 45 oscillating"),
@@ -37,7 +36,10 @@ def _deg(theta: float) -> str:
     ),
 )
 def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Remark]:
-    """Warn of large pressure angles on rises and returns."""
+    """Warn of large pressure angles on rises and returns.
+
+    Looks at: the pressure angle: beyond its limit a translating follower jams in its guide.
+    """
     if math.isnan(limit):
         limit = PRESSURE[cam.mechanism.oscillating]
     for kind in ("rise", "return"):
@@ -56,11 +58,14 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Remark]:
 @check(
     "undercut",
     kind=KIND,
-    doc="stretches on which the follower would cut away what it needs elsewhere; they are trimmed",
     limit=("lost_lift", Param(LENGTH, ge=0, doc="lift that trimming may cost"), 0.01),
 )
 def undercut(cam: DiscCam, limit: float) -> Iterator[Remark]:
-    """Tell where a profile is undercut, and the lift that its trimming costs."""
+    """Tell where a profile is undercut, and the lift that its trimming costs.
+
+    Looks at: stretches on which the follower would cut away what it needs elsewhere; they
+    are trimmed.
+    """
     left = cam.undercut_ranges
     lever = cam.mechanism.lever
     for corner, loss in zip(cam.corners, cam.lost, strict=True):
@@ -109,9 +114,12 @@ def _shocks(cam: DiscCam, order: int) -> Iterator[tuple[str, float, str]]:
             yield f"at {_deg(jump.theta)}", math.degrees(by) if swings else by, unit
 
 
-@check("hard-shock", kind=KIND, doc="knots where the velocity jumps")
+@check("hard-shock", kind=KIND)
 def hard_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of every knot where the velocity jumps."""
+    """Warn of every knot where the velocity jumps.
+
+    Looks at: knots where the velocity jumps.
+    """
     for where, by, unit in _shocks(cam, 1):
         yield Remark(
             f"The velocity jumps by {shown(by)} {unit}: the follower strikes or leaves the "
@@ -122,9 +130,12 @@ def hard_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
         )
 
 
-@check("soft-shock", kind=KIND, doc="knots where the acceleration jumps", severity="note")
+@check("soft-shock", kind=KIND, severity="note")
 def soft_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Note every knot where the acceleration jumps."""
+    """Note every knot where the acceleration jumps.
+
+    Looks at: knots where the acceleration jumps.
+    """
     for where, by, unit in _shocks(cam, 2):
         yield Remark(
             f"The acceleration jumps by {shown(by)} {unit}: vibration at high speed.",
@@ -137,11 +148,13 @@ def soft_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 @check(
     "sharp-profile",
     kind=KIND,
-    doc="the smallest convex radius of an untrimmed profile: sharp ones wear and pit",
     limit=("profile_radius", Param(LENGTH, ge=0, doc="least convex radius of the profile"), 1.0),
 )
 def sharp_profile(cam: DiscCam, limit: float) -> Iterator[Remark]:
-    """Warn of a sharp profile."""
+    """Warn of a sharp profile.
+
+    Looks at: the smallest convex radius of an untrimmed profile: sharp ones wear and pit.
+    """
     convex, _ = cam.profile_radius
     if not cam.corners and convex < limit:
         yield Remark(

@@ -168,9 +168,7 @@ def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return joined
 
 
-def over_the_end(
-    stretches: Sequence[tuple[float, float]],
-) -> list[list[tuple[float, float]]]:
+def over_the_end(stretches: Sequence[tuple[float, float]]) -> list[list[tuple[float, float]]]:
     """Return stretches of a turn by themselves, but for one that goes on over the turn's end.
 
     Parameters

@@ -32,12 +32,12 @@ _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
 """The sizes of round followers."""
 
 
-def _size(doc: str) -> Any:
+def _size(*, doc: str) -> Any:
     """Return a length that a follower or cam may have."""
     return param(LENGTH, default=None, gt=0, le=1e6, doc=doc)
 
 
-def _aside(doc: str) -> Any:
+def _aside(*, doc: str) -> Any:
     """Return a length to either side."""
     return param(LENGTH, default=0.0, ge=-1e6, le=1e6, doc=doc)
 
@@ -54,15 +54,15 @@ class FollowerSpec:
     motion: str = param(
         TEXT, default="translating", choices=("translating", "oscillating"), doc="how it moves"
     )
-    roller_radius: float | None = _size("radius of the roller")
-    dome_radius: float | None = _size("radius of a domed face")
+    roller_radius: float | None = _size(doc="radius of the roller")
+    dome_radius: float | None = _size(doc="radius of a domed face")
     offset: float = _aside(
-        "of a translating follower's axis from the cam's; positive makes the rise easier"
+        doc="of a translating follower's axis from the cam's; positive makes the rise easier"
     )
-    arm: float | None = _size("from the pivot to the roller's centre")
-    pivot_distance: float | None = _size("from the cam's axis to the pivot")
+    arm: float | None = _size(doc="from the pivot to the roller's centre")
+    pivot_distance: float | None = _size(doc="from the cam's axis to the pivot")
     face_offset: float = _aside(
-        "of an oscillating flat follower: how far its face stands off the pivot to the cam"
+        doc="of an oscillating flat follower: how far its face stands off the pivot to the cam"
     )
 
     @property
@@ -110,10 +110,10 @@ class CamSpec:
 
     form: str = param(TEXT, default="disc", choices=("disc",), doc="the form of the cam")
     prime_radius: float | None = _size(
-        "from the cam's axis to the centre of a round follower at zero lift"
+        doc="from the cam's axis to the centre of a round follower at zero lift"
     )
     base_radius: float | None = _size(
-        "from the cam's axis to a flat face at zero lift; of round followers the prime "
+        doc="from the cam's axis to a flat face at zero lift; of round followers the prime "
         "radius less the roller's"
     )
     thickness: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="of the plate")

@@ -23,11 +23,13 @@ _ANY_RADIUS = 1e6
 @check(
     "closure",
     kind=KIND,
-    doc="miss of the driven angle over a lobe",
     limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE),
 )
 def closure(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn if the law closes only roughly: ratios typed with too few digits."""
+    """Warn if the law closes only roughly: ratios typed with too few digits.
+
+    Looks at: miss of the driven angle over a lobe.
+    """
     miss = abs(subject.pair.law.closure_error)
     if miss > limit:
         yield Remark(
@@ -40,11 +42,13 @@ def closure(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "ratio-positive",
     kind=KIND,
-    doc="smallest ratio, and largest as its inverse",
     limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0),
 )
 def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large."""
+    """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large.
+
+    Looks at: smallest ratio, and largest as its inverse.
+    """
     law = subject.pair.law
     (low_place, low), (high_place, high) = law.ratio_range
     mean = subject.pair.rolling.mean_radius
@@ -62,11 +66,13 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "ratio-continuity",
     kind=KIND,
-    doc="order to which the ratio is continuous at its knots",
     limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
 )
 def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn at knots where a derivative jumps that the limit wants continuous."""
+    """Warn at knots where a derivative jumps that the limit wants continuous.
+
+    Looks at: order to which the ratio is continuous at its knots.
+    """
     law = subject.pair.law
     for jump in law.jumps:
         order = jump.order - 2  # of the ratio, which is a derivative itself
@@ -81,7 +87,6 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "concave",
     kind=KIND,
-    doc="concave parts of the centrodes",
     limit=(
         "concave_radius",
         Param(LENGTH, gt=0, doc="concave radii below this are reported"),
@@ -90,7 +95,10 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
     severity="note",
 )
 def concave(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Note a concave part, which a rack or hob cannot cut."""
+    """Note a concave part, which a rack or hob cannot cut.
+
+    Looks at: concave parts of the centrodes.
+    """
     for gear in subject.gears:
         cutter, radius = gear.toothing.cutter, gear.concave_radius
         if cutter.kind == "pinion" and radius < limit:
@@ -108,12 +116,14 @@ def concave(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "sharp",
     kind=KIND,
-    doc="smallest convex radius of the centrodes",
     limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
     unit="modules",
 )
 def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where a centrode bends so sharply that teeth have hardly a root."""
+    """Warn where a centrode bends so sharply that teeth have hardly a root.
+
+    Looks at: smallest convex radius of the centrodes.
+    """
     for gear in subject.gears:
         radius = gear.convex_radius / subject.pair.module
         if radius < limit * (1.0 - ROUNDING):
@@ -129,12 +139,14 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "concave-teeth",
     kind=KIND,
-    doc="teeth of the largest pinion cutter that fits into the concave parts",
     limit=("cutter_teeth", Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"), 12.0),
     unit="teeth",
 )
 def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where teeth are wide for a concave part: tips crowd, and only a tiny cutter fits."""
+    """Warn where teeth are wide for a concave part: tips crowd, and only a tiny cutter fits.
+
+    Looks at: teeth of the largest pinion cutter that fits into the concave parts.
+    """
     for gear in subject.gears:
         cutter = gear.toothing.cutter
         if cutter.kind != "pinion":
@@ -154,7 +166,6 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "pressure-angle",
     kind=KIND,
-    doc="largest angle between the tooth force and the motion of the pitch point",
     limit=(
         "pressure_angle",
         Param(ANGLE, gt=0, le=90, doc="largest pressure angle of the tooth force"),
@@ -162,7 +173,10 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
     ),
 )
 def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where the tooth force pushes the shafts apart rather than turn the wheel."""
+    """Warn where the tooth force pushes the shafts apart rather than turn the wheel.
+
+    Looks at: largest angle between the tooth force and the motion of the pitch point.
+    """
     found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
     if found:
         where = (f"driving {way}, {angle_text(place)}" for way, (place, _) in found.items())
@@ -178,7 +192,6 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "self-crossing",
     kind=KIND,
-    doc="angle left between the ends of an open wheel before its centrode comes round to itself",
     limit=(
         "end_gap",
         Param(ANGLE, ge=0, le=360, doc="least angle between the ends"),
@@ -187,6 +200,9 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
 )
 def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn where the ends of an open wheel nearly meet; those that meet are refused.
+
+    Looks at: angle left between the ends of an open wheel before its centrode comes round to
+    itself.
 
     A centrode given by its radius over a rising angle crosses itself only beyond a full turn.
     """
@@ -206,11 +222,14 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "acceleration",
     kind=KIND,
-    doc="largest angular acceleration of the driven wheel over the driver's speed squared",
     limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
 )
 def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of a motion that will shake: at steady speed the driven wheel's acceleration."""
+    """Warn of a motion that will shake: at steady speed the driven wheel's acceleration.
+
+    Looks at: largest angular acceleration of the driven wheel over the driver's speed
+    squared.
+    """
     places, values = subject.accelerations
     worst = int(np.argmax(np.abs(values)))
     if abs(float(values[worst])) > limit:
@@ -222,14 +241,12 @@ def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
         )
 
 
-@check(
-    "remote-cutter",
-    kind=KIND,
-    doc="pinion cutter that reaches a remote part of its wheel",
-    unit="mm",
-)
+@check("remote-cutter", kind=KIND, unit="mm")
 def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn if the pinion cutter would cut a tooth far from the space it is in."""
+    """Warn if the pinion cutter would cut a tooth far from the space it is in.
+
+    Looks at: pinion cutter that reaches a remote part of its wheel.
+    """
     for gear in subject.gears:
         cutter = gear.toothing.cutter
         if cutter.kind != "pinion" or not gear.toothing.closed:

@@ -68,15 +68,12 @@ def _straight_depth(cutter: Cutter) -> float:
     return math.ceil(depth * math.pi / cutter.pitch * 1e4 - 0.5) / 1e4
 
 
-@check(
-    "undercut",
-    kind=KIND,
-    doc="flanks that turn back on themselves, and whether the pair still drives",
-    limit=CONTACT_RATIO,
-    unit="teeth",
-)
+@check("undercut", kind=KIND, limit=CONTACT_RATIO, unit="teeth")
 def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of undercut teeth; an error where they no longer drive well enough."""
+    """Warn of undercut teeth; an error where they no longer drive well enough.
+
+    Looks at: flanks that turn back on themselves, and whether the pair still drives.
+    """
     ratio = subject.contact_ratio
     driven = subject.driven
     severity: Severity = "warning" if driven and ratio >= limit else "error"
@@ -111,12 +108,14 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "thin-tip",
     kind=KIND,
-    doc="thickness of the teeth at their tips",
     limit=("tip_thickness", Param(NUMBER, ge=0, doc="least tip thickness, in modules"), 0.2),
     unit="modules",
 )
 def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of thin or pointed teeth."""
+    """Warn of thin or pointed teeth.
+
+    Looks at: thickness of the teeth at their tips.
+    """
     for gear in subject.gears:
         thickness = gear.profile.tip_thickness / subject.pair.module
         thin = np.flatnonzero(thickness < limit)
@@ -132,13 +131,15 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "short-flank",
     kind=KIND,
-    doc="flanks that end before the addendum curve",
     limit=("tip_height", Param(NUMBER, ge=0, le=1, doc="least tip height, in addenda"), 0.9),
     severity="note",
     unit="addenda",
 )
 def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Note flanks that stop well below the addendum curve."""
+    """Note flanks that stop well below the addendum curve.
+
+    Looks at: flanks that end before the addendum curve.
+    """
     for gear in subject.gears:
         height = gear.profile.tip_height / gear.toothing.cutter.addendum
         short = np.flatnonzero(height < limit)
@@ -154,12 +155,14 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "thin-rim",
     kind=KIND,
-    doc="rim between bore and root",
     limit=("rim_thickness", Param(NUMBER, ge=0, doc="least rim, in modules"), 2.7),
     unit="modules",
 )
 def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of a rim below 1.2 tooth depths (2.7 modules for the common rack)."""
+    """Warn of a rim below 1.2 tooth depths (2.7 modules for the common rack).
+
+    Looks at: rim between bore and root.
+    """
     for gear, bore in zip(subject.gears, subject.bores, strict=True):
         if bore is None:
             continue
@@ -181,12 +184,14 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
 @check(
     "no-backlash",
     kind=KIND,
-    doc="backlash between the flanks",
     limit=("backlash", Param(LENGTH, ge=0, doc="least backlash that is not reported"), 0.01),
     severity="note",
 )
 def no_backlash(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Note that the wheels are made without backlash."""
+    """Note that the wheels are made without backlash.
+
+    Looks at: backlash between the flanks.
+    """
     if subject.backlash < limit:
         yield Remark(
             "The wheels are made without backlash: printed ones want some, and so do "

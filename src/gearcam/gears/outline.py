@@ -12,14 +12,7 @@ from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
-from gearcam.gears.spaces import (
-    ROWS_PER_TOOTH,
-    entangled,
-    join,
-    regular_rows,
-    select,
-    untangle,
-)
+from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, join, regular_rows, select, untangle
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numerals import shown

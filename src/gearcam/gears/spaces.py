@@ -59,12 +59,7 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     minus = places[following] + around - half
     forms = toothing.track.angle(
         np.stack(
-            [
-                plus + cutter.reach,
-                plus + cutter.offset,
-                minus - cutter.offset,
-                minus - cutter.reach,
-            ]
+            [plus + cutter.reach, plus + cutter.offset, minus - cutter.offset, minus - cutter.reach]
         )
     )
     top_plus = tips.phi[:count]

@@ -301,11 +301,8 @@ def _check_number(word: str, column: int) -> None:
             "this number is too large", column=column, allowed="numbers up to 1.8e308"
         )
     if word.isdigit() and word != "0" and word.startswith("0"):
-        raise FormulaError(
-            f"the number {word} begins with a zero",
-            column=column,
-            hint=f"write {shown(float(word))}",
-        )
+        hint = f"write {shown(float(word))}"
+        raise FormulaError(f"the number {word} begins with a zero", column=column, hint=hint)
 
 
 def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:

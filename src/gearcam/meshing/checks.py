@@ -58,15 +58,12 @@ def _at(meshing: Meshing, chosen: Mask) -> str:
     return spans(meshing.phi1[chosen], (end - start) / meshing.setup.spec.steps)
 
 
-@check(
-    "interference",
-    kind=KIND,
-    doc="overlap where none may be, or deeper than the overclosure",
-    severity="error",
-    unit="mm",
-)
+@check("interference", kind=KIND, severity="error", unit="mm")
 def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Report interference, as an error."""
+    """Report interference, as an error.
+
+    Looks at: overlap where none may be, or deeper than the overclosure.
+    """
     hit = meshing.every("interferes").astype(bool)
     if not hit.any():
         return
@@ -97,14 +94,12 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: A
     )
 
 
-@check(
-    "edge-contact",
-    kind=KIND,
-    doc="phases at which an edge touches before the flanks do",
-    unit="phases",
-)
+@check("edge-contact", kind=KIND, unit="phases")
 def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of edges that touch first."""
+    """Warn of edges that touch first.
+
+    Looks at: phases at which an edge touches before the flanks do.
+    """
     edge = meshing.every("edge").astype(bool)
     if edge.any():
         yield Remark(
@@ -115,14 +110,12 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: A
         )
 
 
-@check(
-    "fillet-interference",
-    kind=KIND,
-    doc="contact of the outlines where no active flanks predict it",
-    unit="phases",
-)
+@check("fillet-interference", kind=KIND, unit="phases")
 def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of facing halves that overlap although their flanks cannot."""
+    """Warn of facing halves that overlap although their flanks cannot.
+
+    Looks at: contact of the outlines where no active flanks predict it.
+    """
     least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
     rows = meshing.columns
     strange = meshing.on_side & np.ma.getmaskarray(rows["predicted_mm2"])
@@ -137,15 +130,13 @@ def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # 
         )
 
 
-@check(
-    "tip-clearance",
-    kind=KIND,
-    doc="smallest distance of a tip's middle from the mate's root as it passes the pitch point",
-    limit=_CLEARANCE,
-    unit="modules",
-)
+@check("tip-clearance", kind=KIND, limit=_CLEARANCE, unit="modules")
 def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Remark]:
-    """Warn of tips that nearly touch the mate's root."""
+    """Warn of tips that nearly touch the mate's root.
+
+    Looks at: smallest distance of a tip's middle from the mate's root as it passes the pitch
+    point.
+    """
     module = meshing.setup.pairs[DRIVE].pitch / math.pi
     for wheel, distances in enumerate(clearances(meshing), start=1):
         least = float(distances.min()) / module

@@ -66,14 +66,12 @@ def _repeats(pairs: FlankPairs) -> str:
     return ", in each lobe" if pairs.closed and pairs.even and pairs.track.periods > 1 else ""
 
 
-@check(
-    "contact-ratio",
-    kind=(PAIR_KIND, KIND),
-    doc="smallest contact ratio of any flank, both sides; what drives where no flanks touch",
-    limit=CONTACT_RATIO,
-)
+@check("contact-ratio", kind=(PAIR_KIND, KIND), limit=CONTACT_RATIO)
 def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
     """Warn of a low contact ratio; below 1, or where no flanks touch, it is an error.
+
+    Looks at: smallest contact ratio of any flank, both sides; what drives where no flanks
+    touch.
 
     What is the same of both sides is said once, with the lower ratio.
     """
@@ -106,15 +104,12 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
         yield Remark(message, where, min(sides)[0], severity)
 
 
-@check(
-    "nothing-drives",
-    kind=KIND,
-    doc="arcs of the driver's turn on which nothing touches",
-    severity="error",
-    unit="deg",
-)
+@check("nothing-drives", kind=KIND, severity="error", unit="deg")
 def nothing_drives(subject: Sided, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Report the arcs on which neither flanks nor their ends touch, as errors."""
+    """Report the arcs on which neither flanks nor their ends touch, as errors.
+
+    Looks at: arcs of the driver's turn on which nothing touches.
+    """
     for pairs in subject.sides:
         empty = [stretch for stretch in _idle(pairs) if not stretch.edges]
         if empty:

@@ -4,7 +4,7 @@ Where flanks share a tangent, `gearcam.gears.normals` knows it without a search.
 phases in which none do, and for wheels whose teeth are not evenly spaced.
 
 With wheel 1 held at a phase, the points of a driver's flank and those of its mate are compared at
-equal heights seen from what guides the driven wheel (see `gearcam.meshing.guide`): the angle
+equal heights seen from what guides the driven wheel (see `gearcam.gears.guide`): the angle
 between them is what it may turn until these points meet; of a rack, the way that it may move. The
 extreme over the common range of heights is the touch of the pair, where the flanks share a tangent
 or at the end of one of them (an edge). The driven wheel lies between the largest of these turns on
@@ -23,7 +23,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.guide import Guide
 from gearcam.gears.track import Wheel
 from gearcam.meshing.contact import Contacts
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -62,10 +61,7 @@ class Facing:
     def select(self, index: Mask | Ints) -> Facing:
         """Return some of the pairs, by `index`."""
         return Facing(
-            pairs=self.pairs,
-            step=self.step[index],
-            pair=self.pair[index],
-            phi1=self.phi1[index],
+            pairs=self.pairs, step=self.step[index], pair=self.pair[index], phi1=self.phi1[index]
         )
 
     def end(self, wheel: Wheel, tip: bool) -> Array:
@@ -94,14 +90,12 @@ class Facing:
         """
         toothing = self.pairs.toothings[wheel - 1]
         sigma = self.pairs.sigma(wheel)
-        alpha, w = toothing.cutter.alpha, toothing.turn
-        frames = toothing.frames(angle, curved=moving)
-        cosine, sine = np.cos(alpha), sigma * np.sin(alpha)
-        ahead = (self._places[wheel - 1] - frames.s) * cosine
-        point = frames.p + ahead * frames.t * (cosine + sine * w)
-        direction = frames.t * (cosine * w - sine)
+        frames, sf = toothing.frames(angle, curved=moving), self._places[wheel - 1]
+        point = toothing.flank_points(frames, sf, sigma)
         if moving:
-            direction = -(sine + ahead * frames.kappa) * frames.speed * direction
+            direction = toothing.flank_motion(frames, sf, sigma)
+        else:
+            direction = toothing.turn * toothing.normals(frames, sigma)
         turn, shift = self._stands[wheel - 1]
         return point * turn + shift, direction * turn
 
@@ -110,14 +104,9 @@ class Facing:
         return self.pairs.place(1, self.pair), self.pairs.place(2, self.pair)
 
     @cached_property
-    def guide(self) -> Guide:
-        """What guides the driven wheel."""
-        return self.pairs.guide
-
-    @cached_property
     def _stands(self) -> tuple[tuple[Plane, Plane | float], tuple[Plane, Plane]]:
         driver = np.exp(-1j * self.phi1)
-        return (driver, -self.pairs.distance), self.guide.stand(self.phi1, 0.0)
+        return (driver, -self.pairs.distance), self.pairs.guide.stand(self.phi1, 0.0)
 
     def find(self, wheel: Wheel, height: Array, low: Array, high: Array, start: Array) -> Array:
         """Return the driver angles, rad, of flank points of given heights.
@@ -138,10 +127,11 @@ class Facing:
         (n,) array
             The nearer end where a height is not reached.
         """
+        guide = self.pairs.guide
 
         def miss(angle: Array) -> tuple[Array, Array]:
             point, direction = self.flank(wheel, angle, moving=True)
-            return self.guide.height(point) - height, self.guide.rates(point, direction)[0]
+            return guide.height(point) - height, guide.rates(point, direction)[0]
 
         start = np.clip(start, np.minimum(low, high), np.maximum(low, high))
         return newton_in_bracket(miss, low, high, start, _FOUND)
@@ -162,11 +152,11 @@ class Facing:
             The driven wheel's turn until it meets the points, and its derivative.
         """
         point, direction = self.flank(1, angle, moving=False)
-        mate = self.find(2, self.guide.height(point), root, tip, angle)
+        mate = self.find(2, self.pairs.guide.height(point), root, tip, angle)
         other, along = self.flank(2, mate, moving=False)
-        rise, turn = self.guide.rates(point, direction)
-        mates, turned = self.guide.rates(other, along)
-        return self.guide.turn(point, other), turn / rise - turned / mates
+        rise, turn = self.pairs.guide.rates(point, direction)
+        mates, turned = self.pairs.guide.rates(other, along)
+        return self.pairs.guide.turn(point, other), turn / rise - turned / mates
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -226,7 +216,7 @@ def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     step, pair = pairs.beside(phi1)
     every = Facing(pairs=pairs, step=step, pair=pair, phi1=phi1[step])
-    height = every.guide.height
+    height = pairs.guide.height
     ends = [every.end(1, tip=False), every.end(1, tip=True)]
     mates = [every.end(2, tip=True), every.end(2, tip=False)]
     far, near = (height(every.flank(1, angle, moving=False)[0]) for angle in ends)
@@ -278,12 +268,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     edge = np.ones(len(low), dtype=bool)
     edge[inner] = False
     return Touches(
-        facing=found,
-        turn=-pairs.side * extreme,
-        angle=at,
-        edge=edge,
-        low=low,
-        high=high,
+        facing=found, turn=-pairs.side * extreme, angle=at, edge=edge, low=low, high=high
     )
 
 

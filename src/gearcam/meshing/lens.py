@@ -277,12 +277,7 @@ def _shared(pairs: FlankPairs, pose: Pose, separation: Array) -> tuple[Pose, Nor
 
 
 def _end(
-    graphs: Graphs,
-    ends: tuple[Array, Array],
-    top: Array,
-    limit: Array,
-    cut: Mask,
-    guess: Array,
+    graphs: Graphs, ends: tuple[Array, Array], top: Array, limit: Array, cut: Mask, guess: Array
 ) -> tuple[tuple[Array, Array], Array, Mask]:
     """Find where lenses end between their deepest place and a limit, in x; `cut` at the limit.
 

@@ -233,11 +233,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         moved=gears[0].toothing.moved,
     )
     return Setup(
-        spec=spec,
-        pairs=pairs,
-        turning=turning,
-        penetration=penetration,
-        lever=float(levers.max()),
+        spec=spec, pairs=pairs, turning=turning, penetration=penetration, lever=float(levers.max())
     )
 
 

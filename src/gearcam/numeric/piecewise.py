@@ -217,9 +217,7 @@ def members(index: Ints, count: int) -> Iterator[tuple[int, Ints | slice]]:
 def piecewise(knots: ArrayLike, pieces: list[Piece]) -> Piecewise:
     """Return the function that the pieces make between the knots."""
     return Piecewise(
-        knots=np.asarray(knots, dtype=float),
-        pieces=tuple(pieces),
-        offsets=np.zeros(len(pieces)),
+        knots=np.asarray(knots, dtype=float), pieces=tuple(pieces), offsets=np.zeros(len(pieces))
     )
 
 

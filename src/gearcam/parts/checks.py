@@ -45,14 +45,12 @@ class PartsSubject:
         return tuple(tool_limits(part.contour) for part in self.parts)
 
 
-@check(
-    "thin-wall",
-    kind=KIND,
-    doc="walls between openings, and between openings and the outline or the hub's edge",
-    limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0),
-)
+@check("thin-wall", kind=KIND, limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0))
 def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
-    """Warn of thin walls."""
+    """Warn of thin walls.
+
+    Looks at: walls between openings, and between openings and the outline or the hub's edge.
+    """
     for name, part in zip(subject.names, subject.parts, strict=True):
         walls = list(_walls(part))
         if not walls:
@@ -85,14 +83,12 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
             yield max(float(ring.distance(edge)) - radius, 0.0), f"{opening.name} and the {what}"
 
 
-@check(
-    "wide-kerf",
-    kind=KIND,
-    doc="whether what the cutter burns away fits into every place of an outline",
-    unit="mm",
-)
+@check("wide-kerf", kind=KIND, unit="mm")
 def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
-    """Warn of a kerf wider than an inner corner or a slot, an error where flanks stay uncut."""
+    """Warn of a kerf wider than an inner corner or a slot, an error where flanks stay uncut.
+
+    Looks at: whether what the cutter burns away fits into every place of an outline.
+    """
     rows = zip(subject.names, subject.tools, subject.uncut, strict=True)
     for name, tools, uncut in rows:
         if tools.diameter >= subject.kerf:
@@ -112,12 +108,14 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
 @check(
     "large-tool",
     kind=KIND,
-    doc="the largest round tool or wire that reaches every place of an outline",
     limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
     severity="note",
 )
 def large_tool(subject: PartsSubject, limit: float) -> Iterator[Remark]:
-    """Warn that the tool at hand (a wire of 0.25 mm with its gap by default) is too large."""
+    """Warn that the tool at hand (a wire of 0.25 mm with its gap by default) is too large.
+
+    Looks at: the largest round tool or wire that reaches every place of an outline.
+    """
     for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
             continue
