@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Final
 from gearcam.designs.examine import examine
 from gearcam.designs.faults import MISSING, Fault, dotted
 from gearcam.designs.kind import KINDS
+from gearcam.designs.outputs import OutputSpec
 from gearcam.errors import DesignError, InfeasibleError, Problem
 
 HASH_DIGITS: Final = 16
@@ -33,6 +34,8 @@ class Design:
         The file it came from, empty for a design made in Python.
     limits : mapping of str to float
         Limits of checks by name, in mm and rad; the others keep their defaults.
+    output : OutputSpec
+        Files and their tolerance.
     examined : bool
         Whether its values have passed an examination.
 
@@ -48,6 +51,7 @@ class Design:
     name: str
     source: str = ""
     limits: Mapping[str, float] = field(default_factory=dict)
+    output: OutputSpec = field(default_factory=OutputSpec)
     examined: InitVar[bool] = False
 
     def __post_init__(self, examined: bool) -> None:
