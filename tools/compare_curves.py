@@ -54,7 +54,8 @@ def _apart(one: list[Array], two: list[Array]) -> float:
     sides = np.concatenate(
         [np.stack([c, np.roll(c, -1, axis=0)], axis=1)[: len(c) - 1 or 1] for c in chains]
     )
-    tree = shapely.STRtree(np.atleast_1d(shapely.linestrings(sides)))
+    lines: Any = shapely.linestrings(sides)
+    tree = shapely.STRtree(lines)
     points = shapely.points(np.concatenate([chain for chain in one if len(chain)]))
     return float(np.max(tree.query_nearest(points, return_distance=True, all_matches=False)[1]))
 
