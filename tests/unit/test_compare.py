@@ -115,6 +115,11 @@ def test_round_numbers_may_differ_in_their_last_place() -> None:
     assert places("a.svg", drawn, drawn.replace(b"path", b"part")) == ["a.svg"]
 
 
+def test_lines_of_a_step_file_may_break_elsewhere() -> None:
+    assert places("a.step", b"POINT(1.5,\n  2.5)", b"POINT(1.5,2.5)") == []
+    assert places("a.step", b"POINT(1.5,\n  2.5)", b"POINT(1.5,3.5)") == ["a.step"]
+
+
 def circle_dxf(cuts: list[float], radius: float = 20.0) -> bytes:
     """A circle of arcs that meet at these angles."""
     drawing = ezdxf.new()  # pyright: ignore[reportPrivateImportUsage]
