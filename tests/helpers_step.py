@@ -12,6 +12,7 @@ from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import fit_spline
 from gearcam.parts.body import Part
 from gearcam.parts.shapes import Loop
+from helpers_splines import cubics
 
 KEYED = 10.0, 2.5, 12.8
 """Radius of a bore, half the width of its keyway, and where that ends, mm."""
@@ -91,7 +92,7 @@ def spline_area(contour: Contour, tolerance: float) -> float:
     total = 0.0
     for run in contour.runs:
         for piece in run.pieces:
-            x, y = np.moveaxis(fit_spline(piece, tolerance).cubics, 2, 0)
+            x, y = np.moveaxis(cubics(fit_spline(piece, tolerance)), 2, 0)
             swept = (x @ basis) * (np.diff(y) @ slopes) - (y @ basis) * (np.diff(x) @ slopes)
             total += 0.25 * float((swept @ weight).sum())
     return total
