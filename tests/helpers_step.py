@@ -7,12 +7,12 @@ import re
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.splines import Spline, fit_spline
+from gearcam.numeric.splines import fit_spline
 from gearcam.parts.body import Part
 from gearcam.parts.shapes import Loop
+from helpers_splines import cubics
 
 KEYED = 10.0, 2.5, 12.8
 """Radius of a bore, half the width of its keyway, and where that ends, mm."""
@@ -83,16 +83,6 @@ def pieces(contour: Contour) -> tuple[int, int]:
     return len(straight) - sum(straight), sum(straight)
 
 
-def cubics_of(spline: Spline) -> NDArray[np.float64]:
-    """Bezier points of a spline's cubics, (k, 4, 2), mm."""
-    steps = np.diff(spline.breaks)[:, None]
-    first, second = spline.poles[1:-1:2], spline.poles[2::2]
-    share = steps[:-1] / (steps[:-1] + steps[1:])
-    between = second[:-1] + share * (first[1:] - second[:-1])
-    ends = np.vstack([spline.poles[:1], between, spline.poles[-1:]])
-    return np.stack([ends[:-1], first, second, ends[1:]], axis=1)
-
-
 def spline_area(contour: Contour, tolerance: float) -> float:
     """Area inside the fitted cubics, integrated exactly (degree 5) from their Bezier points."""
     place, weight = np.polynomial.legendre.leggauss(3)
@@ -102,7 +92,7 @@ def spline_area(contour: Contour, tolerance: float) -> float:
     total = 0.0
     for run in contour.runs:
         for piece in run.pieces:
-            x, y = np.moveaxis(cubics_of(fit_spline(piece, tolerance)), 2, 0)
+            x, y = np.moveaxis(cubics(fit_spline(piece, tolerance)), 2, 0)
             swept = (x @ basis) * (np.diff(y) @ slopes) - (y @ basis) * (np.diff(x) @ slopes)
             total += 0.25 * float((swept @ weight).sum())
     return total

@@ -107,11 +107,9 @@ def _(part: Part) -> Mesh:
     import manifold3d
 
     slabs = [_slab(manifold3d, layer, part.tolerance) for layer in part.layers]
-    made = (
-        slabs[0]
-        if len(slabs) == 1
-        else manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
-    )
+    made = slabs[0]
+    if len(slabs) > 1:
+        made = manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
     for mark in part.marks:
         made = made - _cutter(manifold3d, mark, part)
     mesh = _mesh(made)
@@ -122,7 +120,22 @@ def _(part: Part) -> Mesh:
 
 
 def demand_volume(part: Part, volume: float, allowed: float) -> None:
-    """Raise `SolidError` if a solid's `volume` misses its part's by more than `allowed`, mm^3."""
+    """Hold the volume of a solid against that of its part.
+
+    Parameters
+    ----------
+    part : Part
+        What was to be made.
+    volume : float, mm^3
+        Of the solid.
+    allowed : float, mm^3
+        What it may miss.
+
+    Raises
+    ------
+    SolidError
+        If it misses more.
+    """
     missed = abs(volume - part.volume)
     if missed > allowed:
         raise SolidError(

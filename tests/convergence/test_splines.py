@@ -15,7 +15,7 @@ import pytest
 from gearcam.numeric.contour import Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
 from helpers_contour import Curve, arc, as_pairs
-from helpers_step import cubics_of
+from helpers_splines import cubics
 
 FINE = np.linspace(0.0, 1.0, 60001)
 
@@ -126,7 +126,7 @@ def test_knots_are_double_and_tangents_pass_through_them(name: str) -> None:
 def test_its_cubics_are_the_spline(name: str) -> None:
     spline = fit_spline(run_of(CURVES[name]), 1e-4)
     u = np.linspace(0.0, 1.0, 11)
-    for (low, high), bezier in zip(pairwise(spline.breaks), cubics_of(spline), strict=True):
+    for (low, high), bezier in zip(pairwise(spline.breaks), cubics(spline), strict=True):
         a, b, c, d = bezier @ [1, 1j]
         v = 1 - u
         curve = v**3 * a + 3 * u * v**2 * b + 3 * u**2 * v * c + u**3 * d

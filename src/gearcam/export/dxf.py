@@ -171,9 +171,11 @@ def add_shape(space: Modelspace, shape: Shape, attributes: dict[str, Any], style
                 space.add_open_spline(
                     poles.tolist(), degree=DEGREE, knots=knots.tolist(), dxfattribs=attributes
                 )
-        case Contour():
-            vertices, bulges = _outline(shape, style)
+        case Contour() if style.curves == "arcs":
+            vertices, bulges = fit_closed(shape.runs, CURVE_PART * style.tolerance)
             _polyline(space, vertices, bulges, attributes, style)
+        case Contour(vertices=vertices):
+            _polyline(space, vertices, np.zeros(len(vertices)), attributes, style)
         case Loop():
             _polyline(space, shape.vertices, shape.bulges, attributes, style)
         case Path():
@@ -214,13 +216,6 @@ def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]
             raise ValueError(f"runs do not join: a gap of {shown(gap, 3)} mm")
         poles[-1] = following.poles[0]
         yield poles, spline.knots
-
-
-def _outline(contour: Contour, style: DxfStyle) -> tuple[Array, Array]:
-    """Return vertices and bulges of a contour."""
-    if style.curves == "arcs":
-        return fit_closed(contour.runs, CURVE_PART * style.tolerance)
-    return contour.vertices, np.zeros(len(contour.vertices))
 
 
 @contextmanager

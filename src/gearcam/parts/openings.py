@@ -78,7 +78,7 @@ class Workpiece:
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
     def refusal(self, what: str, place: str = "[blank]", **told: Any) -> InfeasibleError:
-        """Return a refusal of `what` at a `place` of the design; numbers are in mm."""
+        """Return a refusal of `what` at a `place` in mm; `told` goes to `InfeasibleError`."""
         return InfeasibleError(what, where=f"{self.name}, {place}", unit="mm", **told)
 
 
@@ -217,11 +217,9 @@ def _no_room(
         inside = solid.contains(center)
         value = shape.diameter - widening
         limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
-        nearest = (
-            "the limit is the room around its middle"
-            if limit
-            else "its middle lies outside the roots"
-        )
+        nearest = "its middle lies outside the roots"
+        if limit:
+            nearest = "the limit is the room around its middle"
     return work.refusal(
         f"the {opening.name} meets {what}",
         value=value,

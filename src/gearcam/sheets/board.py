@@ -74,24 +74,6 @@ def _resampled(points: Array, step: float, closed: bool) -> Array:
     return np.column_stack([np.interp(at, ways, chain[:, k]) for k in (0, 1)])
 
 
-def shape_points(shape: Shape, step: float) -> Array:
-    """Return points on a shape.
-
-    Parameters
-    ----------
-    shape : Contour or Circle or Loop or Path or Cross
-        What is drawn.
-    step : float, mm
-        Largest distance of neighbours.
-
-    Returns
-    -------
-    (n, 2) array, mm
-    """
-    made = (_resampled(points, step, closed) for points, closed in chains(shape, 0.1 * step))
-    return np.vstack(list(made))
-
-
 @dataclass(eq=False, kw_only=True)
 class Board:
     """A sheet while it is drawn.
@@ -132,7 +114,9 @@ class Board:
     def draw(self, layer: str, shape: Shape) -> None:
         """Draw a `shape` on a `layer`."""
         self.features.append(Feature(layer=layer, shape=shape))
-        self._ink(shape_points(shape, 0.8 * CELL * self.unit))
+        step = 0.8 * CELL * self.unit
+        for points, closed in chains(shape, 0.1 * step):
+            self._ink(_resampled(points, step, closed))
 
     def line(self, layer: str, start: tuple[float, float], end: tuple[float, float]) -> None:
         """Draw a straight line on a `layer` from `start` to `end`, mm of the part."""
@@ -241,16 +225,13 @@ class Board:
         words: dict[str, Any] = {"diameter": diameter, "prefix": prefix, "suffix": suffix}
         made = RoundDimension(center=center, radius=radius, **words)
         within = 2.0 * radius * self.scale - text_width(made.label)
-        if diameter and angles is None and within > TIGHT and self._free(made):
-            self._measure(made)
-            return True
-        tried = AROUND if angles is None else angles
-        reaches = _REACHES if diameter else np.concatenate([_REACHES, -_REACHES])
-        found = self._search(made, tried, reaches)
-        if found is None:
-            return False
-        self._measure(found)
-        return True
+        found: RoundDimension | None = made
+        if not (diameter and angles is None and within > TIGHT and self._free(made)):
+            reaches = _REACHES if diameter else np.concatenate([_REACHES, -_REACHES])
+            found = self._search(made, AROUND if angles is None else angles, reaches)
+        if found is not None:
+            self._measure(found)
+        return found is not None
 
     def label(self, point: Array, text: str) -> bool:
         """Write a text with a leader.
