@@ -100,6 +100,17 @@ def test_repeated_points_do_no_harm() -> None:
     assert (fit_arcs(doubled, TOLERANCE)[0] == fit_arcs(run, TOLERANCE)[0]).all()
 
 
+def test_a_run_that_comes_back_by_rounding_does_no_harm() -> None:
+    """A corner's points: forth, back to the start by a last digit, and on."""
+    run = spiral()
+    points, tangents = np.array(run.points) + 1e5, np.array(run.tangents)
+    there = np.nextafter(points[40], np.inf)
+    points = np.insert(points, 41, [points[40] + 1e-11 * tangents[40], there, points[40]], axis=0)
+    tangents = np.insert(tangents, 41, np.repeat(tangents[40:41], 3, 0), axis=0)
+    vertices, bulges = fit_arcs(Run(points=points, tangents=tangents), TOLERANCE)
+    assert distances(points, vertices, bulges, closed=False).max() < 1.1 * TOLERANCE
+
+
 def test_a_mirrored_run_mirrors_the_bulges() -> None:
     run, flip = wave(), np.array([1.0, -1.0])
     _, bulges = fit_arcs(run, TOLERANCE)

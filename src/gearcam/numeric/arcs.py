@@ -35,6 +35,9 @@ STRAIGHT = 1e-6
 """A piece counts as straight where its rise is below this part of the tolerance: far above
 rounding, far below anything that a machine can follow."""
 
+ROUNDING = 1e-15
+"""Distance of two points, over that from the origin, that is nothing but rounding."""
+
 SAME_ARC = 1e-6
 """Difference of the two end angles, rad, below which a biarc is written as one arc."""
 
@@ -215,8 +218,10 @@ def _piece(curve: _Curve, start: int, end: int, tolerance: float) -> tuple[float
     p, q = complex(curve.points[start]), complex(curve.points[end])
     t, u = complex(curve.tangents[start]), complex(curve.tangents[end])
     chord = q - p
-    first, second = cmath.phase(chord / t), cmath.phase(u / chord)
     inner = curve.checks[curve.place[start] + 1 : curve.place[end]]
+    if abs(chord) <= ROUNDING * abs(q):
+        return float(np.abs(inner - p).max(initial=0.0)), [(q, 0.0)]
+    first, second = cmath.phase(chord / t), cmath.phase(u / chord)
     if abs(first - second) < SAME_ARC and abs(first) < 1:
         half = 0.5 * (first + second)
         return _largest(_to_arc(inner, p, t, q)), [(q, _bulge(half, chord, tolerance))]
