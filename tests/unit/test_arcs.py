@@ -101,14 +101,16 @@ def test_repeated_points_do_no_harm() -> None:
 
 
 def test_a_run_that_comes_back_by_rounding_does_no_harm() -> None:
-    """A corner's points: forth, back to the start by a last digit, and on."""
-    run = spiral()
-    points, tangents = np.array(run.points) + 1e5, np.array(run.tangents)
-    there = np.nextafter(points[40], np.inf)
-    points = np.insert(points, 41, [points[40] + 1e-11 * tangents[40], there, points[40]], axis=0)
-    tangents = np.insert(tangents, 41, np.repeat(tangents[40:41], 3, 0), axis=0)
-    vertices, bulges = fit_arcs(Run(points=points, tangents=tangents), TOLERANCE)
-    assert distances(points, vertices, bulges, closed=False).max() < 1.1 * TOLERANCE
+    """At a knee far from the origin: forth by a last digit, back to the very point, and on."""
+    bend = spiral()
+    points, tangents = np.array(bend.points) + 1e5, np.array(bend.tangents)
+    forth = points[0] + 3e-11 * tangents[0]
+    points = np.insert(points, 0, [points[0], forth], axis=0)
+    tangents = np.insert(tangents, 0, np.repeat(tangents[:1], 2, 0), axis=0)
+    for count in (3, 4, 5, 8, 20, len(points)):
+        run = Run(points=points[:count], tangents=tangents[:count])
+        vertices, bulges = fit_arcs(run, TOLERANCE)
+        assert distances(run.points, vertices, bulges, closed=False).max() < 1.1 * TOLERANCE
 
 
 def test_a_mirrored_run_mirrors_the_bulges() -> None:
