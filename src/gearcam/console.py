@@ -31,9 +31,6 @@ DEBUG: Final = "GEARCAM_DEBUG"
 
 _WIDTH: Final = 96
 
-_ROUNDING: Final = 1e-9
-"""What is smaller, mm, is rounding of a study."""
-
 
 def fact_lines(facts: Facts) -> Iterator[str]:
     """Yield what is known: the headline, then the quantities that are always shown, lined up."""

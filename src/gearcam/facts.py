@@ -52,6 +52,8 @@ class Fact:
         Where the name does not say it.
     shown : bool
         Whether it is one of the few that are always shown.
+    noise : float
+        What is smaller is rounding: people are shown 0.
     """
 
     value: Any
@@ -61,6 +63,7 @@ class Fact:
     place: str = ""
     unit: str | None = None
     shown: bool = False
+    noise: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,8 @@ class NamedFact:
         The limit that the value is held against, in words.
     place : str
         Where.
+    noise : float
+        What is smaller is rounding.
     """
 
     name: str
@@ -87,17 +92,18 @@ class NamedFact:
     meaning: str
     limit: str
     place: str
+    noise: float
 
     @property
     def text(self) -> str:
         """The value with its unit: ``0.4 to 1.6``, ``36 : 36``, ``4.92299 mm``."""
-        return f"{text_of(self.value)} {self.unit}".rstrip()
+        return f"{text_of(self.value, self.noise)} {self.unit}".rstrip()
 
 
-def text_of(value: Any) -> str:
-    """Return a `value` as people read it, numbers in few digits."""
+def text_of(value: Any, noise: float = 0.0) -> str:
+    """Return a `value` as people read it, numbers in few digits; what is below `noise` is 0."""
     if isinstance(value, Mapping):
-        low, high = map(text_of, value.values())
+        low, high = (text_of(end, noise) for end in value.values())
         if low == high:
             return low
         return f"{low} to {high}" if "max" in value else f"{low}, mean {high}"
@@ -105,7 +111,7 @@ def text_of(value: Any) -> str:
         return " : ".join(map(text_of, value))
     if isinstance(value, bool | str):
         return str(value)
-    return shown(value)
+    return shown(0.0 if abs(value) < noise else value)
 
 
 class Facts(Mapping[str, Any]):
@@ -193,7 +199,7 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
-    return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place)
+    return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place, fact.noise)
 
 
 def _bare(value: Any) -> Any:

@@ -181,6 +181,9 @@ def _rim(result: GearPairResult, limit: float) -> Fact | None:
     return Fact(rim, "thinnest rim", at_least=limit, place=f"wheel {wheel}", shown=True)
 
 
+_ROUNDING = 1e-9
+"""What is smaller, mm, is rounding of a study."""
+
 _STUDIED: Mapping[str, str] = {
     "center_distance_mm": "centre distance as mounted",
     "overclosure_deg": "overclosure of the driver",
@@ -197,13 +200,14 @@ _STUDIED: Mapping[str, str] = {
 
 def _meshing(numbers: Mapping[str, Any]) -> Tree:
     """Return what a study found."""
-    tree = dict(numbers)
+    first = {name: numbers[name] for name in ("steps_done", *_STUDIED) if name in numbers}
+    tree: Tree = {**first, **numbers}
     done, asked = numbers["steps_done"], numbers["steps"]
     place = "" if numbers["complete"] else f"of {asked}"
     tree["steps_done"] = Fact(done, "phases studied", place=place, shown=True)
     for name, meaning in _STUDIED.items():
         if name in numbers:
-            tree[name] = Fact(numbers[name], meaning, shown=True)
+            tree[name] = Fact(numbers[name], meaning, shown=True, noise=_ROUNDING)
     error = numbers.get("transmission_error")
     if error is not None:
         peak = Fact(error["peak_to_peak"], "transmission error, peak to peak", shown=True)

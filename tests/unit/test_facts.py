@@ -1,0 +1,80 @@
+"""Facts: one tree, told by name, in words and as JSON."""
+
+from __future__ import annotations
+
+import pytest
+
+import gearcam
+from gearcam.designs import KINDS
+from gearcam.facts import Fact, Facts, extent
+
+TREE = {
+    "pair": {
+        "module_mm": Fact(2.0, "module", at_least=1.5, place="wheel 1"),
+        "teeth": [20, 40],
+        "missing": None,
+    },
+    "ratio": Fact(extent(0.5, 2.0), "ratio i21", shown=True),
+    "contact_ratio": Fact({"least": 1.5, "mean": 1.75}, "least contact ratio", at_most=3.0),
+    "lag_mm": Fact(extent(-1e-14, 2e-14), noise=1e-9),
+    "gears": [{"area_mm2": 3.0}, {"area_mm2": Fact(4.0, unit="square mm")}],
+}
+FACTS = Facts(TREE, headline=("pair.module_mm", "pair.teeth"), title="a pair")
+
+
+def test_json_holds_values_without_words() -> None:
+    assert FACTS.document == {
+        "pair": {"module_mm": 2.0, "teeth": [20, 40]},
+        "ratio": {"min": 0.5, "max": 2.0},
+        "contact_ratio": {"least": 1.5, "mean": 1.75},
+        "lag_mm": {"min": -1e-14, "max": 2e-14},
+        "gears": [{"area_mm2": 3.0}, {"area_mm2": 4.0}],
+    }
+
+
+def test_values_are_found_by_their_names() -> None:
+    assert FACTS["pair.teeth"] == [20, 40]
+    assert FACTS["gears.1.area_mm2"] == 4.0
+    assert list(FACTS)[:3] == ["pair.module_mm", "pair.teeth", "ratio"]
+    assert len(FACTS) == 7
+    with pytest.raises(KeyError):
+        FACTS["pair.missing"]
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("pair.module_mm", ("module", "2 mm", "at least 1.5", "wheel 1")),
+        ("pair.teeth", ("teeth", "20 : 40", "", "")),
+        ("ratio", ("ratio i21", "0.5 to 2", "", "")),
+        ("contact_ratio", ("least contact ratio", "1.5, mean 1.75", "at most 3", "")),
+        ("lag_mm", ("lag", "0 mm", "", "")),
+        ("gears.0.area_mm2", ("area", "3 mm2", "", "")),
+        ("gears.1.area_mm2", ("area", "4 square mm", "", "")),
+    ],
+)
+def test_each_is_told_with_unit_meaning_limit_and_place(name: str, told: tuple[str, ...]) -> None:
+    one = FACTS.quantity(name)
+    assert (one.meaning, one.text, one.limit, one.place) == told
+
+
+def test_the_headline_and_what_is_always_shown() -> None:
+    assert FACTS.headline == ("a pair", "module 2 mm", "teeth 20 : 40")
+    assert [one.name for one in FACTS.shown()] == ["ratio"]
+
+
+@pytest.mark.parametrize("name", ["nail_machine_two_phase", "feeder", "ellipse", "undercut_cam"])
+def test_a_good_design_shows_ten_lines_at_most(name: str) -> None:
+    facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
+    lines = list(facts.shown())
+    assert 5 <= len(lines) <= 10
+    assert all(one.meaning and one.text for one in lines)
+
+
+@pytest.mark.parametrize("kind", list(KINDS))
+def test_rows_of_drawings_are_facts(kind: str) -> None:
+    """A name that no result has would leave its row out, unsaid."""
+    profile = {"gear-pair": "stepped_ellipse", "cam": "plate_cam_offset_roller"}[kind]
+    facts = gearcam.build(gearcam.load(f"profiles/{profile}.toml")).facts
+    assert set(facts.headline)
+    assert all(one.unit or not one.name.endswith(("_mm", "_deg")) for one in facts.quantities())
