@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 import gearcam
-from gearcam.designs import KINDS
 from gearcam.facts import Fact, Facts, extent
 
 TREE = {
@@ -71,10 +70,7 @@ def test_a_good_design_shows_ten_lines_at_most(name: str) -> None:
     assert all(one.meaning and one.text for one in lines)
 
 
-@pytest.mark.parametrize("kind", list(KINDS))
-def test_rows_of_drawings_are_facts(kind: str) -> None:
-    """A name that no result has would leave its row out, unsaid."""
-    profile = {"gear-pair": "stepped_ellipse", "cam": "plate_cam_offset_roller"}[kind]
-    facts = gearcam.build(gearcam.load(f"profiles/{profile}.toml")).facts
-    assert set(facts.headline)
-    assert all(one.unit or not one.name.endswith(("_mm", "_deg")) for one in facts.quantities())
+@pytest.mark.parametrize("name", ["stepped_ellipse", "plate_cam_offset_roller"])
+def test_names_say_their_units(name: str) -> None:
+    facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
+    assert all(one.unit for one in facts.quantities() if one.name.endswith(("_mm", "_deg")))
