@@ -86,6 +86,43 @@ def test_the_old_word_for_overclosure_is_refused_with_the_new_one() -> None:
     assert found.hint == "the command migrate writes it so"
 
 
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (
+            "# three\n[helix]\nsteps = 3  # even\noffset_mm = 1.5\n",
+            "# three\n[steps]\ncount = 3  # even\noffset_mm = 1.5\n",
+        ),
+        ("[helix] # of it\nsteps = 3\n", "[steps] # of it\ncount = 3\n"),
+        ("[helix]\nsteps = 3\n\n[steps]\noffset_mm = 2\n", None),
+    ],
+)
+def test_a_table_with_another_name_is_moved_with_its_comments(
+    before: str, after: str | None, tmp_path: Path
+) -> None:
+    file = tmp_path / "old.toml"
+    file.write_text(HEAD + before, encoding="utf-8")
+    assert {problem.key.partition(".")[0] for problem in problems(HEAD + before)} == {"helix"}
+    if after is None:  # both names: what stands under the old one is added to the new one
+        with pytest.raises(DesignError):
+            migrate(str(file))
+        return
+    content, changes = migrate(str(file))
+    assert content.decode() == HEAD + after
+    assert changes[0] == "helix.steps -> count = 3 under [steps]"
+    assert loads(content.decode()).steps.count == 3  # pyright: ignore
+
+
+def test_a_table_in_braces_with_another_name_is_written_anew(tmp_path: Path) -> None:
+    file = tmp_path / "old.toml"
+    text = HEAD.replace("[law]", "helix = { steps = 3 }  # three\n[law]", 1)
+    file.write_text(text, encoding="utf-8")
+    made = migrate(str(file))[0].decode()
+    assert "helix" not in made
+    assert "# three" in made
+    assert made.endswith("[steps]\ncount = 3\n")
+
+
 def test_offsets_of_other_tables_are_what_they_were() -> None:
     design = loads(ROLLER)
     assert isinstance(design, CamDesign)

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import codecs
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from gearcam.designs.faults import dotted
 from gearcam.designs.lines import Span, spans_of
 from gearcam.designs.reader import content_of, decoded, document_in, loads, problems_of
-from gearcam.designs.retired import Found, assigned, without_retired
+from gearcam.designs.retired import Found, Instead, assigned, without_retired
 from gearcam.errors import DesignError, Problem
 
 
@@ -47,9 +48,13 @@ def migrate(file: str) -> tuple[bytes, tuple[str, ...]]:
     stuck = [one.fault for one in found if one.instead.by_hand]
     if stuck:
         raise DesignError(problems_of(stuck, text, file))
-    made = text
-    for one in found:
+    made, left = _retitled(text, document, found)
+    for one in left:
         made = _rewritten(made, one)
+    for title in {one.path[0] for one in left}:
+        span = spans_of(made).pairs.get((title,))
+        if span is not None and not document_in(made, file)[title]:  # braces that are empty now
+            made = _without_line(made, span)
     try:
         loads(made, file=file)
     except DesignError as error:
@@ -67,6 +72,33 @@ def _others(text: str, file: str, found: list[Found]) -> list[Problem]:
     except DesignError as error:
         return [problem for problem in error.problems if problem.key not in known]
     return []
+
+
+def _retitled(
+    text: str, document: Mapping[str, Any], found: list[Found]
+) -> tuple[str, list[Found]]:
+    """Give heads of tables, all of whose keys go to one new table, its name; what is left."""
+    left = list(found)
+    for (title, *more), end in spans_of(text).heads.items():
+        moved = [one for one in found if one.path[0] == title and one.instead.there]
+        homes = {home for one in moved for home, _ in one.instead.there}
+        if (
+            more
+            or len(moved) != len(document[str(title)])
+            or len(homes) != 1
+            or homes & {*document}
+        ):
+            continue
+        (home,) = homes
+        start = _line_start(text, end)
+        head = text[start:end].replace(str(title), home, 1)
+        text = text[:start] + head + text[end:]
+        for one in moved:
+            here = {key: value for (_, key), value in one.instead.there.items()}
+            place = left.index(one)
+            left[place] = replace(one, path=(home, one.path[1]), instead=Instead(here=here))
+        break  # places have moved, and no second table has gone
+    return text, left
 
 
 def _rewritten(text: str, found: Found) -> str:

@@ -102,7 +102,7 @@ def without_retired(document: Mapping[str, Any]) -> tuple[list[Found], Mapping[s
     found : list of Found
         Those that it has.
     rest : mapping
-        The document without them, with the keys of the same tables that stand for them.
+        The document without them, with the keys that stand for them.
     """
     found, rest = [], dict(document)
     for entry in RETIRED:
@@ -115,6 +115,11 @@ def without_retired(document: Mapping[str, Any]) -> tuple[list[Found], Mapping[s
             found.append(_found(entry, table[entry.key], document))
             kept = {key: value for key, value in table.items() if key != entry.key}
             rest[entry.title] = kept | found[-1].instead.here
+            for (title, key), value in found[-1].instead.there.items():
+                there = rest.get(title, {})
+                rest[title] = {key: value, **there} if isinstance(there, Mapping) else there
+            if found[-1].instead.there and not rest[entry.title]:
+                del rest[entry.title]
     return found, rest
 
 
