@@ -10,7 +10,6 @@ from dataclasses import InitVar, dataclass, field
 from typing import Any, ClassVar, Final
 
 from gearcam.designs.examine import examine
-from gearcam.designs.faults import MISSING, Fault, dotted
 from gearcam.designs.kind import KINDS
 from gearcam.designs.outputs import OutputSpec
 from gearcam.errors import DesignError, InfeasibleError, Problem
@@ -61,7 +60,7 @@ class Design:
             _demand_types(self)
             faults = examine(document_of(self)).faults
             if faults:
-                raise _refusal(faults, self)
+                raise DesignError(fault.problem(self.source) for fault in faults)
 
     def _settle(self) -> None:
         """Bring what is given into one form."""
@@ -95,20 +94,6 @@ def demand_kind(design: Design, kind: str) -> Any:
         message = f"this command is for designs of kind {kind}"
         raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
     return design
-
-
-def _refusal(faults: Iterable[Fault], design: Design) -> DesignError:
-    return DesignError(
-        Problem(
-            message=fault.message,
-            file=design.source,
-            key=dotted(fault.path),
-            value=None if fault.value is MISSING else fault.value,
-            allowed=fault.allowed,
-            hint=fault.hint,
-        )
-        for fault in faults
-    )
 
 
 def _demand_types(design: Design) -> None:
@@ -241,7 +226,7 @@ def changed(design: Any, changes: Mapping[str, object]) -> Any:
         place[last] = value
     found = examine(document)
     if found.faults:
-        raise _refusal(found.faults, design)
+        raise DesignError(fault.problem(design.source) for fault in found.faults)
     return type(design)(source=design.source, examined=True, **found.parts)
 
 

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Key
+from gearcam.errors import Problem
 from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH
 
@@ -46,6 +47,11 @@ class Fault:
     value: Any = MISSING
     allowed: str = ""
     hint: str = ""
+
+    def problem(self, file: str, line: int | None = None) -> Problem:
+        """Return it as it is told of a `file`, at a `line` of it where that is known."""
+        value = None if self.value is MISSING else self.value
+        return Problem(self.message, file, line, dotted(self.path), value, self.allowed, self.hint)
 
 
 def dotted(path: Path) -> str:

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearcam.designs.faults import dotted
+from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Span, spans_of
 from gearcam.designs.reader import content_of, decoded, document_in, loads, problems_of
 from gearcam.designs.retired import Found, Instead, assigned, without_retired
@@ -52,9 +53,10 @@ def migrate(file: str) -> tuple[bytes, tuple[str, ...]]:
     for one in left:
         made = _rewritten(made, one)
     for title in {one.path[0] for one in left}:
-        span = spans_of(made).pairs.get((title,))
-        if span is not None and not document_in(made, file)[title]:  # braces that are empty now
-            made = _without_line(made, span)
+        if not document_in(made, file).get(title, True):
+            made = _without_table(
+                made, title, known=any(title in kind.titles for kind in KINDS.values())
+            )
     try:
         loads(made, file=file)
     except DesignError as error:
@@ -150,6 +152,19 @@ def _without_line(text: str, span: Span) -> str:
     rest = text[span.end : end].lstrip(" \t")
     kept = text[start : span.start] + rest if rest.strip() else ""
     return text[:start] + kept + text[end:]
+
+
+def _without_table(text: str, title: str, *, known: bool) -> str:
+    """Take an empty table out: in braces, or the head of one that is not `known` any more."""
+    spans = spans_of(text)
+    span = spans.pairs.get((title,))
+    if span is None:
+        if known:
+            return text
+        end = spans.heads[title,]
+        start = _line_start(text, end)
+        span = Span(start, start, end, end)
+    return _without_line(text, span)
 
 
 def _line_after(text: str, at: int, item: str) -> str:

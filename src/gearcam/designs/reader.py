@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from gearcam.designs.design import Design
 from gearcam.designs.examine import examine
-from gearcam.designs.faults import MISSING, Fault, dotted
+from gearcam.designs.faults import Fault
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import line_at, lines_of
 from gearcam.errors import DesignError, Problem
@@ -146,18 +146,7 @@ def _find_tables(value: Any, folder: Path) -> None:
 def problems_of(faults: Iterable[Fault], text: str, file: str) -> list[Problem]:
     """Return what is wrong in the `text` of a `file`, from its `faults`, with lines."""
     lines = lines_of(text)
-    placed = [
-        Problem(
-            message=fault.message,
-            file=file,
-            line=line_at(lines, fault.path),
-            key=dotted(fault.path),
-            value=None if fault.value is MISSING else fault.value,
-            allowed=fault.allowed,
-            hint=fault.hint,
-        )
-        for fault in faults
-    ]
+    placed = [fault.problem(file, line_at(lines, fault.path)) for fault in faults]
     return sorted(placed, key=lambda problem: problem.line or 0)
 
 
