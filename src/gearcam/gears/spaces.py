@@ -44,45 +44,27 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         Row ``6*j + k`` is curve k of the space after the tooth formed as number j; k = 5 is the
         tip of the tooth after it.
     """
-    cutter, z, places = toothing.cutter, len(toothing.numbers), toothing.tooth_places
-    half = toothing.half_tooth
-    # Flank and tip ends are known for all teeth; a closed wheel's last space ends at its first
-    # tooth, one turn on, an open one's at its last tooth.
-    following, count = np.append(np.arange(1, z), 0), z
-    wrap, around = np.zeros(z), np.zeros(z)
-    if toothing.closed:
-        wrap[-1] = toothing.track.around
-        around[-1] = toothing.length
-    else:
-        following, wrap, around, count = following[:-1], wrap[:-1], around[:-1], z - 1
-    plus = places[:count] + half
-    minus = places[following] + around - half
+    cutter, half, z = toothing.cutter, toothing.half_tooth, len(toothing.numbers)
+    # A closed wheel's last space ends at its first tooth, one turn on; an open one has none there.
+    count = z if toothing.closed else z - 1
+    turn, following = np.divmod(np.arange(1, count + 1), z)
+    wrap = turn * toothing.track.around
+    plus = toothing.tooth_places[:count] + half
+    minus = toothing.tooth_places[following] + turn * toothing.length - half
     forms = toothing.track.angle(
         np.stack(
             [plus + cutter.reach, plus + cutter.offset, minus - cutter.offset, minus - cutter.reach]
         )
     )
-    top_plus = tips.phi[:count]
-    top_minus = tips.phi[z + following] + wrap
-    tip_start, tip_end = tips.foot[z + following] + wrap, tips.foot[following] + wrap
-    zero, one = np.zeros(count), np.ones(count)
-    land = np.full(count, -cutter.dedendum)
-    number = np.array(toothing.numbers)
+    land, number = -cutter.dedendum, np.array(toothing.numbers)
     table = {
         "kind": [Curve.FLANK, Curve.FILLET, Curve.LAND, Curve.FILLET, Curve.FLANK, Curve.TIP],
-        "sf": [plus, plus, zero, minus, minus, zero],
-        "sigma": [one, one, zero, -one, -one, zero],
-        "start": [
-            top_plus,
-            forms[0],
-            forms[1],
-            forms[2],
-            forms[3],
-            tip_start,
-        ],
-        "end": [forms[0], forms[1], forms[2], forms[3], top_minus, tip_end],
-        "low": [zero, zero, land, zero, zero, tips.height[z + following]],
-        "high": [zero, zero, land, zero, zero, tips.height[following]],
+        "sf": [plus, plus, 0.0, minus, minus, 0.0],
+        "sigma": [1.0, 1.0, 0.0, -1.0, -1.0, 0.0],
+        "start": [tips.phi[:count], *forms, tips.foot[z + following] + wrap],
+        "end": [*forms, tips.phi[z + following] + wrap, tips.foot[following] + wrap],
+        "low": [0.0, 0.0, land, 0.0, 0.0, tips.height[z + following]],
+        "high": [0.0, 0.0, land, 0.0, 0.0, tips.height[following]],
         "corner": [True, False, False, False, False, True],
         "tooth": [*[number[:count]] * 3, *[number[following]] * 3],
     }
