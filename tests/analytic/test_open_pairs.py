@@ -44,7 +44,9 @@ def test_the_furnace_door_has_the_printed_lengths(
     unit = made.pair.rolling.tracks[0].length / made.pair.center_distance
     assert unit == pytest.approx(length, abs=1e-12)
     bend = 2 + 0.5 * (math.pi / math.radians(second - 10)) ** 2
-    assert made.gear2.convex_radius == pytest.approx(made.pair.center_distance / bend, rel=1e-12)
+    assert made.gear2.toothing.track.convex.radius == pytest.approx(
+        made.pair.center_distance / bend, rel=1e-12
+    )
 
 
 def test_a_spiral_goes_on_as_a_spiral_beyond_its_ends() -> None:

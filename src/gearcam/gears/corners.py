@@ -8,6 +8,7 @@ small pinion, are followed against its outline. Most wheels have none.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -28,8 +29,9 @@ _HALVINGS = 14
 _CAUTION = 0.4
 """Share of the clearance within which a corner is followed."""
 
-_TIGHT = 2.0 * np.pi / 24.0
-"""Curvature of a cutter times the pitch from which all corners are followed: 24 teeth; tips crowd."""
+_FEW = 24.0
+"""Teeth of a pinion cutter below which all corners are followed: it leaves much in the corners of a
+root, and in so tight a place tips crowd."""
 
 
 def highest_corners(
@@ -62,12 +64,11 @@ def highest_corners(
         `highest` where it does no harm.
     """
     result = highest.copy()
-    kappa = toothing.track.curvature_extremes[1]
-    if kappa.min() >= 0.0 and mate.cutter.kc == 0.0:
+    if toothing.track.concave.radius == math.inf and mate.cutter.kc == 0.0:
         return result
     sf, sigma = flanks
     near = _deep(toothing, mate.cutter, flanks, highest)
-    tight = max(toothing.cutter.kc, mate.cutter.kc) * toothing.pitch > _TIGHT
+    tight = min(toothing.cutter.teeth, mate.cutter.teeth) < _FEW
     at = np.flatnonzero(near | tight)
     if at.size == 0:
         return result

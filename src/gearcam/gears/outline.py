@@ -326,8 +326,8 @@ def _demand_simple(outline: Outline) -> None:
     if LinearRing(outline.points).is_simple and not repeats:
         return
     toothing = outline.toothing
-    kappa = float(toothing.track.curvature_extremes[1].max())
-    largest = np.sin(toothing.cutter.alpha) ** 2 / kappa if kappa > 0.0 else 0.0
+    radius = toothing.track.convex.radius
+    largest = np.sin(toothing.cutter.alpha) ** 2 * radius if np.isfinite(radius) else 0.0
     raise InfeasibleError(
         f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
         where=is_valid_reason(Polygon(outline.points)),

@@ -96,8 +96,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Ints:
     undercut = np.isfinite(cusps.dedendum)
     loops = undercut[:z] | np.roll(undercut[z:], -1)
     loops = loops if toothing.closed else loops[:-1]
-    kappa = toothing.track.curvature_extremes[1]
-    if kappa.max() * toothing.cutter.dedendum >= _SHARP:
+    if toothing.cutter.dedendum >= _SHARP * toothing.track.convex.radius:
         start, end = rows.start[1::ROWS_PER_TOOTH], rows.end[3::ROWS_PER_TOOTH]
         steps = start + (end - start) * np.linspace(0.0, 1.0, 65)[:, None]
         sharp = toothing.frames(steps).kappa * toothing.cutter.dedendum >= _SHARP
