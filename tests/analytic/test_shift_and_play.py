@@ -113,7 +113,7 @@ def test_so_much_play_that_no_teeth_are_left_is_refused() -> None:
 
 def pitch_force(made: GearPairResult, pitches: float, torque: float) -> float:
     """Force along the line of action at the pitch point at a roll, N: M1/(r1*cos(alpha))."""
-    phi = made.pair.rolling.angle(np.array([pitches * made.gear1.toothing.pitch]))
+    phi = made.pair.rolling.arc.angle(np.array([pitches * made.gear1.toothing.pitch]))
     r1 = float(abs(made.pair.rolling.tracks[0].frames(phi).p[0]))
     return torque / (r1 * math.cos(ALPHA))
 
