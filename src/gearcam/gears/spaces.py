@@ -10,7 +10,6 @@ on the true curves and takes the loop out.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -104,7 +103,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Ints:
     return np.flatnonzero(loops)
 
 
-def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[tuple[Rows, list[CurvePoint]]]:
+def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
     """Take the loops out of spaces.
 
     Parameters
@@ -118,9 +117,8 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[tuple[Rows, l
 
     Returns
     -------
-    list of (Rows, list of CurvePoint)
-        For each space the curves that are left, with the tip behind them, and the rows and driver
-        angles, rad, at which loops begin and end; none where there is no loop.
+    list of Rows
+        For each space the curves that are left, with the tip behind them.
     """
     curves = WheelCurves(toothing=toothing, rows=rows)
     made = []
@@ -129,9 +127,7 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[tuple[Rows, l
         (*inner, last), *_ = (ring.branches for ring in rings)
         branches = [*inner, Branch(last.begin, CurvePoint(tip, float(rows.end[tip])))]
         index, start, end, corner = rows_between(curves, branches)
-        left = replace(select(rows, index), start=start, end=end, corner=corner)
-        places = [place for one, two in pairwise(branches) for place in (one.end, two.begin)]
-        made.append((left, places))
+        made.append(replace(select(rows, index), start=start, end=end, corner=corner))
     return made
 
 

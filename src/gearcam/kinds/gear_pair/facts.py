@@ -249,7 +249,7 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
         "outline": {
             "vertices": len(gear.outline),
             "least_vertices": gear.profile.sampler.least,
-            "area_mm2": gear.profile.area,
+            "area_mm2": gear.profile.contour.area,
             "chord_error_mm": gear.profile.chord_error,
         },
         **_part(result, gear),
