@@ -201,11 +201,8 @@ def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
 def _curvature(wheel: Wheel, radii: Sequence[Any], speed: Any) -> Any:
     """Return the curvature of a centrode from w*i, r1, r1' and r1'': arrays or jets."""
     wi, r, dr, ddr = radii
-    if wheel == 1:
-        top = r * r + 2.0 * (dr * dr) - r * ddr
-    else:
-        top = wi * (r * r) + r * ddr + (wi - 1.0) * (dr * dr)
-    return top / (speed * speed * speed)
+    kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
+    return kappa if wheel == 1 else (1.0 + wi) / speed - kappa  # after Euler and Savary
 
 
 def roll(
