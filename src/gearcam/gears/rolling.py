@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.guide import Guide, Shaft, Slideway
-from gearcam.gears.track import WHEELS, ArcLength, Frames, Track, Wheel
+from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.chebyshev import expand
@@ -103,11 +103,11 @@ class Rolling:
 
         def curvatures(phi: Array) -> tuple[Array, Array]:
             ratios = self.law.ratio.derivatives(phi, 3)
-            radii = _radii([Jet(both) for both in pairwise(ratios)], self.mate)
-            _, r, dr, _ = radii
+            wi, r, dr, ddr = _radii([Jet(both) for both in pairwise(ratios)], self.mate)
             speed = sqrt(r * r + dr * dr)
-            jets = [_curvature(wheel, radii, speed).derivatives() for wheel in WHEELS]
-            return np.stack([kappa for kappa, _ in jets]), np.stack([slope for _, slope in jets])
+            kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
+            both = [k.derivatives() for k in (kappa, (1.0 + wi) / speed - kappa)]
+            return np.stack([k[0] for k in both]), np.stack([k[1] for k in both])
 
         found = extremes(curvatures, self._tooth_knots)
         first, second = ((x, kappa / self.center_distance) for x, kappa in found)
@@ -154,8 +154,9 @@ class Centrode(Track):
         phi = np.asarray(phi, dtype=float)
         law, size = self.rolling.law, self.arc.size
         turns, x = self.arc.within(phi)
-        wi, *unit = _radii(law.ratio.derivatives(x, 2 if curved else 1), self.rolling.mate)
-        r, dr, *_ = radii = [size * value for value in unit]
+        ratios = law.ratio.derivatives(x, 2 if curved else 1)
+        wi, *unit = _radii(ratios, self.rolling.mate)
+        r, dr, *more = (size * value for value in unit)
         speed = np.sqrt(r * r + dr * dr)
         moved = phi if self.wheel == 1 else law.driven(x) + turns * law.lobes.advance
         if self.slides:
@@ -165,7 +166,14 @@ class Centrode(Track):
             pole = _complex(np.cos(turned), np.sin(turned))
             point = (r if self.wheel == 1 else r - size) * pole
         tangent = _complex(dr / speed, r / speed) * pole
-        kappa = _curvature(self.wheel, [wi, *radii], speed) if curved else np.empty(0)
+        kappa = np.empty(0)
+        if curved:
+            (ddr,) = more
+            if self.wheel == 1:
+                top = r * r + 2.0 * dr * dr - r * ddr
+            else:
+                top = wi * r * r + r * ddr + (wi - 1.0) * dr * dr
+            kappa = top / (speed * speed * speed)
         return Frames(point, tangent, kappa, speed, self.arc.at(turns, x))
 
     def rotation(self, phi: Array) -> Array:
@@ -196,13 +204,6 @@ def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
     a = 1.0 / (1.0 + wi)
     square = a * a
     return [wi, i * a, square * di, *(square * (ddi - 2.0 * mate * (a * di * di)) for ddi in more)]
-
-
-def _curvature(wheel: Wheel, radii: Sequence[Any], speed: Any) -> Any:
-    """Return the curvature of a centrode from w*i, r1, r1' and r1'': arrays or jets."""
-    wi, r, dr, ddr = radii
-    kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
-    return kappa if wheel == 1 else (1.0 + wi) / speed - kappa  # after Euler and Savary
 
 
 def roll(
