@@ -44,7 +44,9 @@ def test_the_furnace_door_has_the_printed_lengths(
     unit = made.pair.rolling.tracks[0].length / made.pair.center_distance
     assert unit == pytest.approx(length, abs=1e-12)
     bend = 2 + 0.5 * (math.pi / math.radians(second - 10)) ** 2
-    assert made.gear2.convex_radius == pytest.approx(made.pair.center_distance / bend, rel=1e-12)
+    assert made.gear2.toothing.track.convex.radius == pytest.approx(
+        made.pair.center_distance / bend, rel=1e-12
+    )
 
 
 def test_a_spiral_goes_on_as_a_spiral_beyond_its_ends() -> None:
@@ -83,7 +85,7 @@ def test_a_blank_ends_half_a_pitch_beyond_its_centrode() -> None:
     for gear, count in ((made.gear1, 30), (made.gear2, 31)):
         way = made.law.lobes.period
         places = np.array([-0.5, gear.toothing.teeth + 0.5]) * gear.toothing.pitch
-        start, end = made.pair.rolling.angle(places).tolist()
+        start, end = made.pair.rolling.arc.angle(places).tolist()
         assert start < 0.0 < way < end
         assert whole_teeth(gear.outline, gear.centrode(np.linspace(start, end, 4001))) == count
 
@@ -95,7 +97,7 @@ def test_an_open_pair_drives_from_end_to_end(name: str) -> None:
     for side in (DRIVE, COAST):
         pairs = flank_pairs(made.gears, side)
         assert pairs.stretches[2].min() >= 1
-        start, end = (made.pair.rolling.arc_length(edge) for edge in pairs.arcs)
+        start, end = (made.pair.rolling.tracks[0].arc_length(edge) for edge in pairs.arcs)
         carried = pairs.contact_ratios > 0.0
         assert start[carried].min() < 0.0
         assert end[carried].max() > length
@@ -137,7 +139,7 @@ def test_a_circular_wheel_drives_a_straight_rack() -> None:
     toothing, flanks = made.gear2.toothing, made.gear2.profile.flanks
     for sigma in (1.0, -1.0):
         sf = flanks.sf[flanks.sigma == sigma][4:5]
-        phi = made.pair.rolling.angle(sf + np.linspace(-3.0, 3.0, 7))
+        phi = made.pair.rolling.arc.angle(sf + np.linspace(-3.0, 3.0, 7))
         points = toothing.flank_points(toothing.frames(phi), sf, np.array([sigma]))
         assert np.angle(np.diff(points)) % math.pi == pytest.approx(
             (sigma * math.radians(20)) % math.pi, abs=1e-9

@@ -84,7 +84,7 @@ def test_the_curves_close(rolling: Rolling) -> None:
 
 def test_arc_length_both_ways(rolling: Rolling) -> None:
     s = np.linspace(-1.3, 2.7, 4001) * rolling.arc.length
-    back = rolling.arc_length(rolling.angle(s))
+    back = rolling.tracks[0].arc_length(rolling.arc.angle(s))
     assert np.abs(back - s).max() < 2e-12 * rolling.tracks[0].length
 
 

@@ -27,7 +27,7 @@ ALPHA = math.radians(20)
 def thickness(made: GearPairResult, wheel: int) -> float:
     """Thickness of tooth 1 (wheel 1) on a circular wheel, along the pitch circle, mm."""
     gear = made.gears[wheel - 1]
-    radius = gear.convex_radius
+    radius = gear.toothing.track.convex.radius
     circle = shapely.Point(0.0, 0.0).buffer(radius, quad_segs=20000).exterior
     inside = shapely.intersection(circle, shapely.Polygon(gear.outline))
     arcs = shapely.length(shapely.get_parts(shapely.line_merge(inside)))
@@ -46,7 +46,7 @@ def test_the_rounded_square_has_the_printed_module() -> None:
     law = RoundedPolygon(corners=4, corner_radius=25 / 150)
     made = job(law, (32, 32), distance=150.0)
     assert made.pair.module == pytest.approx(4.91, rel=5e-3)
-    assert made.gear1.convex_radius == pytest.approx(25.0, abs=1e-9)
+    assert made.gear1.toothing.track.convex.radius == pytest.approx(25.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("backlash", [0.05, 0.3])
@@ -113,7 +113,7 @@ def test_so_much_play_that_no_teeth_are_left_is_refused() -> None:
 
 def pitch_force(made: GearPairResult, pitches: float, torque: float) -> float:
     """Force along the line of action at the pitch point at a roll, N: M1/(r1*cos(alpha))."""
-    phi = made.pair.rolling.angle(np.array([pitches * made.gear1.toothing.pitch]))
+    phi = made.pair.rolling.arc.angle(np.array([pitches * made.gear1.toothing.pitch]))
     r1 = float(abs(made.pair.rolling.tracks[0].frames(phi).p[0]))
     return torque / (r1 * math.cos(ALPHA))
 

@@ -93,7 +93,7 @@ def test_the_cusps_found_are_those_of_a_fine_scan(
         flanks, toothing = gear.profile.flanks, gear.toothing
         w = np.linspace(-toothing.cutter.reach, 0.0, 4001)
         s = flanks.sf[:, None] - flanks.sigma[:, None] * w
-        frames = toothing.frames(made.pair.rolling.angle(s))
+        frames = toothing.frames(made.pair.rolling.arc.angle(s))
         regular = toothing.regularity(frames, flanks.sf[:, None], flanks.sigma[:, None]) > 0
         np.testing.assert_array_equal(np.isfinite(flanks.cusps.dedendum), ~regular.all(axis=1))
         for k in np.flatnonzero(~regular.all(axis=1)):

@@ -170,7 +170,8 @@ def _function_faults(node: Function, name: str, *, method: bool, brief: bool) ->
     doc = ast.get_docstring(node)
     if not doc:
         return [f"{name} has no docstring"]
-    registered = any(".command(" in mark or mark.startswith("check(") for mark in marks)
+    checks = ("check(", "pair_check(")
+    registered = any(".command(" in mark or mark.startswith(checks) for mark in marks)
     if brief or registered or any(mark.endswith("property") for mark in marks):
         return []
     static = any(mark.endswith("staticmethod") for mark in marks)

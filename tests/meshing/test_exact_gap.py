@@ -45,7 +45,7 @@ def first_touch(made: GearPairResult, side: int, phi: float, distance: float) ->
     """The driven wheel's turn at first touch: all flanks near the pitch point, dense points."""
     gears, law = made.gears, made.law
     z = made.pair.teeth[0]
-    near = round(float(made.pair.rolling.arc_length(phi)) / gears[0].toothing.pitch)
+    near = round(float(made.pair.rolling.tracks[0].arc_length(phi)) / gears[0].toothing.pitch)
     ahead = []
     for j in range(near - 2, near + 3):
         one = dense(gears[0], j % z + 1, side, 6001) * np.exp(-1j * phi) - distance
@@ -90,7 +90,7 @@ def shifted(pairs: FlankPairs, tooth: int, by: float) -> FlankPairs:
 def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(side: int) -> None:
     made = profile("nail_machine_two_phase")
     pairs = flank_pairs(made.gears, side)
-    phi = made.pair.rolling.angle(pairs.toothings[0].tooth_places[9:10])
+    phi = made.pair.rolling.arc.angle(pairs.toothings[0].tooth_places[9:10])
     moved = touches(shifted(pairs, 10, side * 0.02), phi)
     exact = contacts(pairs, phi)
     lever = exact.lever[1][exact.pair == 9]
@@ -145,5 +145,5 @@ def test_counts_arcs_and_contacts_agree(made: GearPairResult, side: int) -> None
     place = np.searchsorted(start, phases, side="right") - 1
     assert np.array_equal(number, carrying[place])
     rolling = made.pair.rolling
-    weighted = (rolling.arc_length(end) - rolling.arc_length(start)) @ carrying
+    weighted = (rolling.tracks[0].arc_length(end) - rolling.tracks[0].arc_length(start)) @ carrying
     assert weighted == pytest.approx(pairs.contact_ratios.sum() * pairs.pitch, rel=1e-9)

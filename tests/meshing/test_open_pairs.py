@@ -66,7 +66,7 @@ def turning(name: str, shift: float = 0.0) -> Turning:
 def stop(name: str) -> float:
     """Driver angle at the last stop."""
     pair = made(name).pair
-    return float(pair.rolling.angle(pair.toothings[1].length))
+    return float(pair.rolling.arc.angle(pair.toothings[1].length))
 
 
 def lead_of(name: str, way: float) -> float:
@@ -293,7 +293,7 @@ def test_the_command_studies_the_travel_with_both_stops(name: str, tmp_path: Pat
         tmp_path / name / "meshing.csv", delimiter=",", names=True, encoding="ascii"
     )
     door = profile(name).pair
-    last = math.degrees(float(door.rolling.angle(door.toothings[1].length)))
+    last = math.degrees(float(door.rolling.arc.angle(door.toothings[1].length)))
     steps = np.unique(rows["phi1_deg"])
     assert steps == pytest.approx(np.linspace(0.0, last, 25), rel=1e-12)
     assert set(rows["facing"]) == {1.0}
@@ -329,5 +329,7 @@ def test_teeth_choose_phases_of_every_turn_of_a_pinion() -> None:
     chosen = phases(setup.spec, setup.pairs[setup.side])
     turns = np.unique(np.floor((np.degrees(chosen) + 90.0) / 360.0))
     assert turns.tolist() == [0.0, 1.0]
-    off = np.degrees(np.angle(np.exp(1j * (chosen - setup.turning.rolling.angle(2.0 * math.pi)))))
+    off = np.degrees(
+        np.angle(np.exp(1j * (chosen - setup.turning.rolling.arc.angle(2.0 * math.pi))))
+    )
     assert np.abs(off).max() < 20.0

@@ -42,7 +42,7 @@ def swing(smallest: float) -> GearPairResult:
 def bending(radius_in_modules: float) -> GearPairResult:
     """An ellipse's smallest radius is a(1 - e^2); the module follows from the perimeter."""
     made = job(Ellipse(eccentricity=0.8), (30, 30))
-    current = made.gear1.convex_radius / made.pair.module
+    current = made.gear1.toothing.track.convex.radius / made.pair.module
     return job(
         Ellipse(eccentricity=0.8),
         (30, 30),

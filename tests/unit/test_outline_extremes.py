@@ -92,7 +92,9 @@ def built(law: Any, teeth: tuple[int, int], **given: Any) -> GearPairResult:
 def test_a_very_long_ellipse() -> None:
     made = built(Ellipse(eccentricity=0.95), (200, 200))
     e, distance = 0.95, made.pair.center_distance
-    assert made.gear1.convex_radius == pytest.approx(0.5 * distance * (1 - e * e), rel=1e-9)
+    assert made.gear1.toothing.track.convex.radius == pytest.approx(
+        0.5 * distance * (1 - e * e), rel=1e-9
+    )
     assert Assembly(made).overlap(0.3) < 1e-3
 
 
@@ -107,7 +109,7 @@ def test_hardly_any_teeth(z: int, law: Any) -> None:
 @pytest.mark.parametrize("teeth", [(3, 9), (9, 3), (3, 100), (7, 5), (17, 60), (3, 4)])
 def test_circles_of_unequal_size(teeth: tuple[int, int]) -> None:
     made = built(Constant(), teeth)
-    ratio = made.gear1.convex_radius / made.gear2.convex_radius
+    ratio = made.gear1.toothing.track.convex.radius / made.gear2.toothing.track.convex.radius
     assert ratio == pytest.approx(teeth[0] / teeth[1], rel=1e-12)
 
 

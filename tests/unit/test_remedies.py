@@ -19,6 +19,7 @@ from gearcam.console import remedy_lines
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.gears.bound import contact_bound
 from gearcam.gears.checks import Subject, largest_module
+from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
 from helpers_documents import followed, job_of, written
 from helpers_pairs import job
@@ -125,9 +126,9 @@ def test_tooth_counts_of_warnings_keep_the_lobes_and_are_true(name: str, folder:
 
 def test_concave_parts_count_in_the_largest_module_without_undercut() -> None:
     gear = job(Constant(), (20, 30)).gear1
-    hollow = SimpleNamespace(
-        convex_radius=math.inf, concave_radius=9.0, wheel=1, toothing=gear.toothing, pair=gear.pair
-    )
+    track = SimpleNamespace(convex=LeastRadius(0.0, math.inf), concave=LeastRadius(0.0, 9.0))
+    toothing = SimpleNamespace(track=track, cutter=gear.toothing.cutter)
+    hollow = SimpleNamespace(wheel=1, toothing=toothing, pair=gear.pair)
     # the mate's straight flank is one module deep
     assert largest_module(hollow) == pytest.approx(9 * math.sin(math.radians(20)) ** 2)  # type: ignore[arg-type]
 

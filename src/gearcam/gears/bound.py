@@ -60,7 +60,7 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
         cutter = toothing.cutter
         if cutter.fits:
             continue
-        radius = -1.0 / float(toothing.track.curvature_extremes[1].min())
+        radius = toothing.track.concave.radius
         least, bound = cutter.least_concave_radius, contact_bound(first, second)
         drives = bound >= 1.0
         raise InfeasibleError(

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import Remark, check
-from gearcam.gears.subject import KIND, ROUNDING, Subject
+from gearcam.findings import Remark
+from gearcam.gears.subject import ROUNDING, Subject, pair_check
 from gearcam.laws.ratio.span import angle_text
 from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
@@ -20,10 +20,8 @@ _ANY_RADIUS = 1e6
 """Default of the concave radius: every concave part is reported, mm."""
 
 
-@check(
-    "closure",
-    kind=KIND,
-    limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE),
+@pair_check(
+    "closure", limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE)
 )
 def closure(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn if the law closes only roughly: ratios typed with too few digits.
@@ -39,10 +37,8 @@ def closure(subject: Subject, limit: float) -> Iterator[Remark]:
         )
 
 
-@check(
-    "ratio-positive",
-    kind=KIND,
-    limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0),
+@pair_check(
+    "ratio-positive", limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0)
 )
 def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large.
@@ -63,9 +59,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
             )
 
 
-@check(
+@pair_check(
     "ratio-continuity",
-    kind=KIND,
     limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
 )
 def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
@@ -84,9 +79,8 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
             )
 
 
-@check(
+@pair_check(
     "concave",
-    kind=KIND,
     limit=(
         "concave_radius",
         Param(LENGTH, gt=0, doc="concave radii below this are reported"),
@@ -100,22 +94,19 @@ def concave(subject: Subject, limit: float) -> Iterator[Remark]:
     Looks at: concave parts of the centrodes.
     """
     for gear in subject.gears:
-        cutter, radius = gear.toothing.cutter, gear.concave_radius
+        cutter, (place, radius) = gear.toothing.cutter, gear.toothing.track.concave
         if cutter.kind == "pinion" and radius < limit:
-            place = float(gear.curvature_places[np.argmin(gear.curvatures)])
-            count = 2.0 / (cutter.kc * subject.pair.module)
             yield Remark(
                 "The centrode is concave here: no rack or hob can cut this wheel; its "
-                f"fillets are those of a pinion cutter with up to {shown(count, 3)} teeth.",
+                f"fillets are those of a pinion cutter with up to {shown(cutter.teeth, 3)} teeth.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 radius,
                 limit=limit if limit < _ANY_RADIUS else math.inf,
             )
 
 
-@check(
+@pair_check(
     "sharp",
-    kind=KIND,
     limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
     unit="modules",
 )
@@ -125,20 +116,19 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
     Looks at: smallest convex radius of the centrodes.
     """
     for gear in subject.gears:
-        radius = gear.convex_radius / subject.pair.module
-        if radius < limit * (1.0 - ROUNDING):
-            place = float(gear.curvature_places[np.argmax(gear.curvatures)])
+        place, radius = gear.toothing.track.convex
+        modules = radius / subject.pair.module
+        if modules < limit * (1.0 - ROUNDING):
             yield Remark(
-                f"The centrode bends with a radius of {shown(gear.convex_radius)} mm here. "
-                f"{subject.with_teeth(limit / radius)} the limit is kept.",
+                f"The centrode bends with a radius of {shown(radius)} mm here. "
+                f"{subject.with_teeth(limit / modules)} the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
-                radius,
+                modules,
             )
 
 
-@check(
+@pair_check(
     "concave-teeth",
-    kind=KIND,
     limit=("cutter_teeth", Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"), 12.0),
     unit="teeth",
 )
@@ -148,24 +138,18 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
     Looks at: teeth of the largest pinion cutter that fits into the concave parts.
     """
     for gear in subject.gears:
-        cutter = gear.toothing.cutter
-        if cutter.kind != "pinion":
-            continue
-        count = 2.0 / (cutter.kc * subject.pair.module)
+        count, (place, radius) = gear.toothing.cutter.teeth, gear.toothing.track.concave
         if count < limit:
-            place = float(gear.curvature_places[np.argmin(gear.curvatures)])
             yield Remark(
                 "The teeth are wide for this concave part, whose radius is "
-                f"{shown(gear.concave_radius)} mm. {subject.with_teeth(limit / count)} the "
-                "limit is kept.",
+                f"{shown(radius)} mm. {subject.with_teeth(limit / count)} the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 count,
             )
 
 
-@check(
+@pair_check(
     "pressure-angle",
-    kind=KIND,
     limit=(
         "pressure_angle",
         Param(ANGLE, gt=0, le=90, doc="largest pressure angle of the tooth force"),
@@ -189,9 +173,8 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
         )
 
 
-@check(
+@pair_check(
     "self-crossing",
-    kind=KIND,
     limit=(
         "end_gap",
         Param(ANGLE, ge=0, le=360, doc="least angle between the ends"),
@@ -219,9 +202,8 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
             )
 
 
-@check(
+@pair_check(
     "acceleration",
-    kind=KIND,
     limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
 )
 def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
@@ -241,7 +223,7 @@ def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
         )
 
 
-@check("remote-cutter", kind=KIND, unit="mm")
+@pair_check("remote-cutter", unit="mm")
 def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if the pinion cutter would cut a tooth far from the space it is in.
 

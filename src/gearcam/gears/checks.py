@@ -11,11 +11,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import Remark, Severity, check
+from gearcam.findings import Remark, Severity
 from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
-from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject
+from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject, pair_check
 from gearcam.numerals import rounded_down, shown
 from gearcam.quantities import LENGTH, NUMBER, Param
 
@@ -53,13 +53,10 @@ def largest_module(gear: Gear) -> float:
     float
         For the same centre distance and other tooth counts.
     """
-    radii = (gear.convex_radius, gear.concave_radius)
-    own, mate = gear.toothing.cutter, gear.pair.toothings[2 - gear.wheel].cutter
-    square = math.sin(own.alpha) ** 2
-    return min(
-        radius * square / _straight_depth(cutter)
-        for radius, cutter in zip(radii, (own, mate), strict=True)
-    )
+    track, own = gear.toothing.track, gear.toothing.cutter
+    mate = gear.pair.toothings[2 - gear.wheel].cutter
+    convex = track.convex.radius / _straight_depth(own)
+    return math.sin(own.alpha) ** 2 * min(convex, track.concave.radius / _straight_depth(mate))
 
 
 def _straight_depth(cutter: Cutter) -> float:
@@ -68,7 +65,7 @@ def _straight_depth(cutter: Cutter) -> float:
     return math.ceil(depth * math.pi / cutter.pitch * 1e4 - 0.5) / 1e4
 
 
-@check("undercut", kind=KIND, limit=CONTACT_RATIO, unit="teeth")
+@pair_check("undercut", limit=CONTACT_RATIO, unit="teeth")
 def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of undercut teeth; an error where they no longer drive well enough.
 
@@ -105,9 +102,8 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
         )
 
 
-@check(
+@pair_check(
     "thin-tip",
-    kind=KIND,
     limit=("tip_thickness", Param(NUMBER, ge=0, doc="least tip thickness, in modules"), 0.2),
     unit="modules",
 )
@@ -128,9 +124,8 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
             )
 
 
-@check(
+@pair_check(
     "short-flank",
-    kind=KIND,
     limit=("tip_height", Param(NUMBER, ge=0, le=1, doc="least tip height, in addenda"), 0.9),
     severity="note",
     unit="addenda",
@@ -152,9 +147,8 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
             )
 
 
-@check(
+@pair_check(
     "thin-rim",
-    kind=KIND,
     limit=("rim_thickness", Param(NUMBER, ge=0, doc="least rim, in modules"), 2.7),
     unit="modules",
 )
@@ -181,9 +175,8 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
             )
 
 
-@check(
+@pair_check(
     "no-backlash",
-    kind=KIND,
     limit=("backlash", Param(LENGTH, ge=0, doc="least backlash that is not reported"), 0.01),
     severity="note",
 )

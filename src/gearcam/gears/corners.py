@@ -8,6 +8,7 @@ small pinion, are followed against its outline. Most wheels have none.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -16,10 +17,8 @@ from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
-_WINDOW = 1.25
-_WIDE = 4.0
-"""Pitches of roll, before and behind a flank, over which its corner is followed: in a tight concave
-part tips can meet far from the pitch point."""
+_WINDOW, _WIDE = 1.25, 4.0
+"""Pitches of roll on either side of a flank over which its corner is followed; in tight parts."""
 
 _ROLLS = 48
 """Rolls in a pitch."""
@@ -30,9 +29,9 @@ _HALVINGS = 14
 _CAUTION = 0.4
 """Share of the clearance within which a corner is followed."""
 
-_TIGHT = 2.0 * np.pi / 24.0
-"""Curvature of a cutter times the pitch from which all corners are followed: a pinion with fewer
-than 24 teeth leaves much in the corners of a root, and in so tight a place tips crowd."""
+_FEW = 24.0
+"""Teeth of a pinion cutter below which all corners are followed: it leaves much in the corners of a
+root, and in so tight a place tips crowd."""
 
 
 def highest_corners(
@@ -65,12 +64,11 @@ def highest_corners(
         `highest` where it does no harm.
     """
     result = highest.copy()
-    kappa = toothing.track.curvature_extremes[1]
-    if kappa.min() >= 0.0 and mate.cutter.kc == 0.0:
+    if toothing.track.concave.radius == math.inf and mate.cutter.kc == 0.0:
         return result
     sf, sigma = flanks
     near = _deep(toothing, mate.cutter, flanks, highest)
-    tight = max(toothing.cutter.kc, mate.cutter.kc) * toothing.pitch > _TIGHT
+    tight = min(toothing.cutter.teeth, mate.cutter.teeth) < _FEW
     at = np.flatnonzero(near | tight)
     if at.size == 0:
         return result
@@ -81,7 +79,10 @@ def highest_corners(
 
     def hits(some: Ints, reach: Array) -> Mask:
         window = _WIDE if tight else _WINDOW
-        path = _in_mate(toothing, mate, (sf[some], sigma[some]), reach, window)
+        phi, along = _paths(toothing, (sf[some], sigma[some]), reach, window)
+        other = mate.frames(phi, curved=False)
+        # both tangents are one, and the outward normals opposite
+        path = other.p + other.t * along
         return np.any(shapely.contains_xy(body, path.real, path.imag), axis=1)
 
     at = at[hits(at, highest[at])]
@@ -105,16 +106,6 @@ def _paths(
     phi = toothing.track.angle(sf[:, None] + toothing.pitch * steps)
     own = toothing.frames(phi, curved=False)
     return phi, np.conj(own.t) * (corner[:, None] - own.p)
-
-
-def _in_mate(
-    toothing: Toothing, mate: Toothing, flanks: tuple[Array, Array], reach: Array, window: float
-) -> Plane:
-    """Return the paths of corners in the mate's frame, (n, rolls)."""
-    phi, along = _paths(toothing, flanks, reach, window)
-    other = mate.frames(phi, curved=False)
-    # both tangents are one, and the outward normals opposite
-    return other.p + other.t * along
 
 
 def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:

@@ -62,6 +62,11 @@ class Cutter:
         return "pinion" if self.kc > 0.0 else "rack"
 
     @property
+    def teeth(self) -> float:
+        """How many teeth the pinion would have all around; infinite for the rack."""
+        return 2.0 * math.pi / (self.kc * self.pitch) if self.kc > 0.0 else math.inf
+
+    @property
     def depth(self) -> float:
         """Distance of the tip arc's centre below the pitch curve, mm."""
         return self.dedendum - self.tip_radius

@@ -10,8 +10,7 @@ from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
 from gearcam.numerals import shown
 
 _TIP_PART = 0.95
-"""Largest tip radius over the dedendum: with its centre on the pitch line a tip arc would cut the
-whole fillet at one instant."""
+"""Largest tip radius over the dedendum: at 1 the arc's centre is on the pitch line: no fillet."""
 
 _LEAST_ADDENDUM = 0.1
 """Smallest addendum that a profile shift may leave, in modules."""

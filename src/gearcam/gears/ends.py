@@ -8,6 +8,7 @@ then straight to a hub around the shaft.
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 from dataclasses import replace
 from itertools import pairwise
 
@@ -80,16 +81,16 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
 
     Where a space has lost its land its fillets meet instead, and nothing is cut.
     """
-    begin, finish = rows.start.copy(), rows.end.copy()
-    low, high, corner = rows.low.copy(), rows.high.copy(), rows.corner.copy()
-    corner[0] = True
-    for row, place, cut, height in ((0, start, begin, low), (-1, end, finish, high)):
+    made = deepcopy(rows)
+    made.corner[0] = True
+    ends = (0, start, made.start, made.low), (-1, end, made.end, made.high)
+    for row, place, cut, height in ends:
         span = rows.end[row] - rows.start[row]
         if rows.kind[row] >= Curve.LAND and span > 0.0:
             share = min(max((place - rows.start[row]) / span, 0.0), 1.0)
             cut[row] = rows.start[row] + share * span
             height[row] = rows.low[row] + share * (rows.high[row] - rows.low[row])
-    return replace(rows, start=begin, end=finish, low=low, high=high, corner=corner)
+    return made
 
 
 def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) -> tuple[Run, ...]:

@@ -12,8 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.track import Frames, Track, Wheel
@@ -119,9 +121,11 @@ class Toothing:
     @property
     def whole_flanks(self) -> Mask:
         """Which of the flanks belong to whole teeth."""
-        whole = np.zeros(len(self.numbers), dtype=bool)
-        whole[self.whole] = True
-        return np.tile(whole, 2)
+        return np.tile(np.isin(self.numbers, self.numbers[self.whole]), 2)
+
+    def of_teeth(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return what is told of all `flanks` for both sides of the whole teeth, (2, n)."""
+        return values.reshape(2, -1)[:, self.whole]
 
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
         """Return the frames of its track at driver angles, rad (see `Track.frames`)."""
@@ -239,12 +243,10 @@ def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plan
     if parallel.size:
         frames, row = toothing.frames(phi[parallel]), index[parallel]
         span = rows.end[row] - rows.start[row]
-        width = np.where(span == 0.0, 1.0, span)
-        rise = rows.high[row] - rows.low[row]
-        height = rows.low[row] + (phi[parallel] - rows.start[row]) / width * rise
+        slope = (rows.high[row] - rows.low[row]) / np.where(span == 0.0, np.inf, span)
+        height = rows.low[row] + (phi[parallel] - rows.start[row]) * slope
         points[parallel] = frames.p + height * w * frames.t
-        slope = np.where(span == 0.0, 0.0, rise / width) / frames.speed
-        direction = frames.t * (1.0 + frames.kappa * height + slope * w)
+        direction = frames.t * (1.0 + frames.kappa * height + slope / frames.speed * w)
         tangents[parallel] = direction / np.abs(direction)
     return points, tangents
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,8 +19,7 @@ from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
-from gearcam.numeric.contour import Contour, Run, polygon_area
-from gearcam.numeric.crossings import CurvePoint
+from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.sampling import Sampler
 from gearcam.tolerances import Tolerances
 
@@ -92,16 +92,11 @@ class Outline:
             closed=self.toothing.closed,
         )
 
-    @property
-    def _reversed(self) -> bool:
-        """Whether rising s runs clockwise."""
-        return self.toothing.track.clockwise
-
     @cached_property
     def toothed(self) -> Array:
         """Vertices of the teeth, (n, 2), mm, counter-clockwise."""
         points = as_pairs(self.sampler.chords[1])
-        return points[::-1] if self._reversed else points
+        return points[::-1] if self.toothing.track.clockwise else points
 
     @cached_property
     def body(self) -> tuple[Run, ...]:
@@ -118,11 +113,6 @@ class Outline:
         sparse = [run.points[: -1 : self.oversampling] for run in self.body]
         return np.vstack([self.toothed[:-1], *sparse])
 
-    @cached_property
-    def area(self) -> float:
-        """Area of the polygon, mm^2."""
-        return polygon_area(self.points)
-
     @property
     def chord_error(self) -> float:
         """Largest measured distance of the curve from its chords, mm."""
@@ -131,8 +121,9 @@ class Outline:
     @cached_property
     def contour(self) -> Contour:
         """The outline with dense points and tangents, for arcs, and its polygon."""
+        back = self.toothing.track.clockwise
         return Contour(
-            dense=lambda: self.sampler.runs(self.oversampling, reverse=self._reversed) + self.body,
+            dense=lambda: self.sampler.runs(self.oversampling, reverse=back) + self.body,
             vertices=self.points,
             tolerance=self.tolerance,
             chord_error=self.chord_error,
@@ -141,10 +132,9 @@ class Outline:
     @cached_property
     def tip_thickness(self) -> Array:
         """Distance between the upper ends of each whole tooth's flanks, (z,), mm."""
-        z = len(self.toothing.numbers)
         frames = self.toothing.frames(self.flanks.tips.phi)
         ends = self.toothing.flank_points(frames, self.flanks.sf, self.flanks.sigma)
-        return np.abs(ends[:z] - ends[z:])[self.toothing.whole]
+        return np.abs(np.subtract(*self.toothing.of_teeth(ends)))
 
     def flank_places(self, reach: Array) -> tuple[Plane, Plane]:
         """Return points and outward unit normals of all flanks at some reaches.
@@ -167,16 +157,13 @@ class Outline:
     @property
     def tip_height(self) -> Array:
         """Distance of each whole tooth's lower flank end from the centrode, (z,), mm."""
-        z, height = len(self.toothing.numbers), self.flanks.tips.height
-        return np.minimum(height[:z], height[z:])[self.toothing.whole]
+        return self.toothing.of_teeth(self.flanks.tips.height).min(axis=0)
 
     @cached_property
     def undercut_teeth(self) -> tuple[int, ...]:
         """Numbers of the teeth with an undercut flank on either side."""
-        z = len(self.toothing.numbers)
-        either = self.flanks.undercut[:z] | self.flanks.undercut[z:]
-        numbers = np.array(self.toothing.numbers)[self.toothing.whole]
-        return tuple(numbers[either[self.toothing.whole]].tolist())
+        either = self.toothing.of_teeth(self.flanks.undercut).any(axis=0)
+        return tuple(np.array(self.toothing.numbers)[self.toothing.whole][either].tolist())
 
 
 def build_outline(
@@ -236,28 +223,30 @@ def _find_flanks(
     sf, sigma = toothing.flanks
     mate_reach = _NO_MATE * toothing.pitch if mate is None else mate.cutter.reach
     cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
-    tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, mate_reach))
+    limit = np.minimum(cusps.addendum, mate_reach)
+    tips = find_tips(toothing, sf, sigma, limit)
     if mate is not None and tolerance is not None:
         reach = sigma * (sf - toothing.track.arc_length(tips.phi))
-
-        def mate_outline() -> Array:
-            return build_outline(mate, toothing, tolerance, tolerances, follow=False).points
-
-        allowed = highest_corners(toothing, mate, mate_outline, tolerance, (sf, sigma), reach)
+        allowed = highest_corners(
+            toothing,
+            mate,
+            lambda: build_outline(mate, toothing, tolerance, tolerances, follow=False).points,
+            tolerance,
+            (sf, sigma),
+            reach,
+        )
         if (allowed < reach).any():
-            limit = np.where(allowed < reach, allowed, np.minimum(cusps.addendum, mate_reach))
-            tips = find_tips(toothing, sf, sigma, limit)
+            tips = find_tips(toothing, sf, sigma, np.where(allowed < reach, allowed, limit))
     tips = _sharpen(toothing, tips)
     highest = sigma * (sf - toothing.track.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
     addendum = np.where(cusps.addendum <= highest * (1.0 + _AT_TIP), cusps.addendum, np.inf)
-    lowest = np.full(sf.shape, -toothing.cutter.reach)
     return Flanks(
         sf=sf,
         sigma=sigma,
         cusps=Undercut(dedendum=cusps.dedendum, addendum=addendum),
         tips=tips,
-        lowest=lowest,
+        lowest=np.full(sf.shape, -toothing.cutter.reach),
         highest=highest,
     )
 
@@ -268,54 +257,51 @@ def _sharpen(toothing: Toothing, tips: TipEnds) -> TipEnds:
     pointed = np.flatnonzero(tips.foot[:z] <= tips.foot[z:])
     if pointed.size == 0:
         return tips
-    phi, foot, height = tips.phi.copy(), tips.foot.copy(), tips.height.copy()
-    full, base = tips.full.copy(), toothing.track.angle(sf)
-    both = np.stack([pointed, z + pointed])
-    crossing, met = flank_crossings(toothing, sf[both], sigma[both], phi[both])
-    met &= np.all((crossing - base[both]) * (phi[both] - crossing) >= 0.0, axis=0)
-    phi[both[:, met]], full[both[:, met]] = crossing[:, met], False
-    frames = toothing.frames(phi[pointed])
+    made, both = deepcopy(tips), np.stack([pointed, z + pointed])
+    high, low = base = toothing.track.angle(sf[both])
+    crossing, met = flank_crossings(toothing, sf[both], sigma[both], tips.phi[both])
+    met &= np.all((crossing - base) * (tips.phi[both] - crossing) >= 0.0, axis=0)
+    made.phi[both[:, met]], made.full[both[:, met]] = crossing[:, met], False
+    frames = toothing.frames(made.phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
-    low, high = base[z + pointed], base[pointed]
     middle = feet(toothing, points, low, high, 0.5 * (low + high))
-    under = toothing.frames(middle)
-    for side in (pointed, z + pointed):
-        foot[side], height[side] = middle, np.abs(points - under.p)
-    return replace(tips, phi=phi, foot=foot, height=height, full=full)
+    made.foot[both], made.height[both] = middle, np.abs(points - toothing.frames(middle).p)
+    return made
 
 
 def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> tuple[Rows, Flanks]:
     """Replace entangled spaces by untangled ones and shorten the flanks they trim."""
-    lowest = flanks.lowest.copy()
     parts, done = [], 0
-    for space, (part, places) in zip(spaces, untangle(toothing, rows, spaces), strict=True):
+    for space, part in zip(spaces, untangle(toothing, rows, spaces), strict=True):
         first = ROWS_PER_TOOTH * int(space)
         parts += [select(rows, np.arange(done, first)), part]
         done = first + ROWS_PER_TOOTH
-        _trim(toothing, rows, lowest, places)
-    parts.append(select(rows, np.arange(done, len(rows.kind))))
-    joined = join(parts)
+    joined = join([*parts, select(rows, np.arange(done, len(rows.kind)))])
+    lowest = _lowest(toothing, joined)
     if not toothing.closed:
         joined = cut_ends(toothing, joined, flanks.tips)
     pointed = (joined.kind == Curve.TIP) & (joined.start == joined.end)
     joined = select(joined, np.flatnonzero(~pointed))
-    flanks = replace(flanks, lowest=lowest)
-    if not toothing.rounding:
-        return joined, flanks
-    joined, highest = round_tips(toothing, joined, flanks.tips)
-    return joined, replace(flanks, highest=np.where(np.isfinite(highest), highest, flanks.highest))
+    highest = flanks.highest
+    if toothing.rounding:
+        joined, reach = round_tips(toothing, joined, flanks.tips)
+        highest = np.where(np.isfinite(reach), reach, highest)
+    return joined, replace(flanks, lowest=lowest, highest=highest)
 
 
-def _trim(toothing: Toothing, rows: Rows, lowest: Array, places: list[CurvePoint]) -> None:
-    """Write down how far the flanks of an untangled space still reach."""
-    z, first = len(toothing.numbers), toothing.numbers[0]
-    for number, phi in places:
-        if rows.kind[number] == Curve.FLANK:
-            sf, sigma = rows.sf[number], rows.sigma[number]
-            flank = int(rows.tooth[number]) - first + (0 if sigma > 0 else z)
-            reach = sigma * (sf - float(toothing.track.arc_length(phi)))
-            # A flank that crosses itself counts down to its first loop only.
-            lowest[flank] = max(lowest[flank], reach)
+def _lowest(toothing: Toothing, rows: Rows) -> Array:
+    """Reach of the lower ends of all flanks formed, (2z,), mm."""
+    z, at = len(toothing.numbers), np.flatnonzero(rows.kind == Curve.FLANK)
+    sigma = rows.sigma[at]
+    low = np.where(sigma > 0.0, rows.end[at], rows.start[at])
+    lowest = np.full(2 * z, -toothing.cutter.reach)
+    # A flank that crosses itself counts down to its first loop only.
+    np.maximum.at(
+        lowest,
+        rows.tooth[at] - toothing.numbers[0] + np.where(sigma > 0.0, 0, z),
+        sigma * (rows.sf[at] - toothing.track.arc_length(low)),
+    )
+    return lowest
 
 
 def _demand_simple(outline: Outline) -> None:
@@ -326,8 +312,8 @@ def _demand_simple(outline: Outline) -> None:
     if LinearRing(outline.points).is_simple and not repeats:
         return
     toothing = outline.toothing
-    kappa = float(toothing.track.curvature_extremes[1].max())
-    largest = np.sin(toothing.cutter.alpha) ** 2 / kappa if kappa > 0.0 else 0.0
+    radius = toothing.track.convex.radius
+    largest = np.sin(toothing.cutter.alpha) ** 2 * radius if np.isfinite(radius) else 0.0
     raise InfeasibleError(
         f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
         where=is_valid_reason(Polygon(outline.points)),
@@ -347,8 +333,8 @@ def _demand_shaft(outline: Outline) -> None:
     if abs(float(np.angle(points[1:] * np.conj(points[:-1])).sum())) > np.pi:
         return
     toothing = outline.toothing
-    turn = toothing.track.around
-    radius = float(np.abs(toothing.frames(np.linspace(0.0, turn, 1441)).p).min())
+    around = np.linspace(0.0, toothing.track.around, 1441)
+    radius = float(np.abs(toothing.frames(around).p).min())
     module = toothing.pitch / np.pi
     largest = module * radius / toothing.cutter.dedendum
     raise InfeasibleError(

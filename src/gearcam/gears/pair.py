@@ -151,33 +151,6 @@ class Gear:
         x, y = self.outline.T
         return float(np.hypot(x, y).min())
 
-    @property
-    def convex_radius(self) -> float:
-        """Smallest convex radius of the centrode, mm; infinite where it has no convex part."""
-        largest = float(self.curvatures.max())
-        return 1.0 / largest if largest > 0.0 else math.inf
-
-    @property
-    def concave_curvature(self) -> float:
-        """Largest concave curvature of the centrode, 1/mm; 0 for a convex one."""
-        return max(0.0, -float(self.curvatures.min()))
-
-    @property
-    def concave_radius(self) -> float:
-        """Smallest concave radius of the centrode, mm; infinite where it has no concave part."""
-        curvature = self.concave_curvature
-        return 1.0 / curvature if curvature > 0.0 else math.inf
-
-    @property
-    def curvatures(self) -> Array:
-        """All extremes of the centrode's curvature, 1/mm."""
-        return self.toothing.track.curvature_extremes[1]
-
-    @property
-    def curvature_places(self) -> Array:
-        """Driver angles of `curvatures`, rad."""
-        return self.toothing.track.curvature_extremes[0]
-
     def centrode(self, phi: Array) -> Array:
         """Return points of the centrode at driver angles, rad: (n, 2), mm, in the wheel's frame."""
         return as_pairs(self.toothing.frames(phi).p)
@@ -237,11 +210,10 @@ def make_pair(
 
     def toothing(wheel: Wheel) -> Toothing:
         track = rolling.tracks[wheel - 1]
-        concave = -float(track.curvature_extremes[1].min())
         cutter = choose_cutter(
             rack,
             module,
-            concave,
+            1.0 / track.concave.radius,
             shift=spec.x if wheel == 1 else -spec.x,
             backlash=spec.backlash,
             clearance=finish[wheel - 1].clearance,

@@ -9,9 +9,11 @@ shaft is infinitely far, the driver's radius is ``r1 = A*i/(1 + w*i)`` and the c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
+from itertools import pairwise
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -86,14 +88,6 @@ class Rolling:
             return Slideway(law=self.law, place=0.0, scale=size)
         return Shaft(law=self.law, place=size, scale=1.0)
 
-    def arc_length(self, phi: ArrayLike) -> Array:
-        """Return s, mm, at driver angles, rad."""
-        return self.tracks[0].arc_length(phi)
-
-    def angle(self, s: ArrayLike) -> Array:
-        """Return the driver angles, rad, at arc lengths, mm."""
-        return self.arc.angle(s)
-
     @property
     def mean_radius(self) -> float:
         """What the law's ratios are told in: 1, of a rack the mean radius for unit size."""
@@ -101,22 +95,18 @@ class Rolling:
 
     def radii(self, phi: Array, order: int) -> list[Array]:
         """Return r1 for unit size with `order` derivatives at `phi` in the first lobe, rad."""
-        return _radii(self.law, self.mate, phi, order)[1:]
+        return _radii(self.law.ratio.derivatives(phi, order), self.mate)[1:]
 
     @cached_property
     def curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Both centrodes' extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
 
         def curvatures(phi: Array) -> tuple[Array, Array]:
-            i, di, ddi, dddi = self.law.ratio.derivatives(phi, 3)
-            i0, i1, i2 = Jet([i, di]), Jet([di, ddi]), Jet([ddi, dddi])
-            a = 1.0 / (1.0 + self.mate * i0)
-            square = a * a
-            r, dr = i0 * a, square * i1
-            ddr = square * (i2 - 2.0 * self.mate * (a * i1 * i1))
+            ratios = self.law.ratio.derivatives(phi, 3)
+            wi, r, dr, ddr = _radii([Jet(both) for both in pairwise(ratios)], self.mate)
             speed = sqrt(r * r + dr * dr)
             kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
-            both = [k.derivatives() for k in (kappa, (1.0 + self.mate * i0) / speed - kappa)]
+            both = [k.derivatives() for k in (kappa, (1.0 + wi) / speed - kappa)]
             return np.stack([k[0] for k in both]), np.stack([k[1] for k in both])
 
         found = extremes(curvatures, self._tooth_knots)
@@ -162,10 +152,11 @@ class Centrode(Track):
         that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
-        law, w, size = self.rolling.law, self.rolling.mate, self.arc.size
+        law, size = self.rolling.law, self.arc.size
         turns, x = self.arc.within(phi)
-        i, *radius = _radii(law, w, x, 2 if curved else 1)
-        r, dr, *more = (size * v for v in radius)
+        ratios = law.ratio.derivatives(x, 2 if curved else 1)
+        wi, *unit = _radii(ratios, self.rolling.mate)
+        r, dr, *more = (size * value for value in unit)
         speed = np.sqrt(r * r + dr * dr)
         moved = phi if self.wheel == 1 else law.driven(x) + turns * law.lobes.advance
         if self.slides:
@@ -181,7 +172,7 @@ class Centrode(Track):
             if self.wheel == 1:
                 top = r * r + 2.0 * dr * dr - r * ddr
             else:
-                top = i * r * r + r * ddr + (i - 1.0) * dr * dr
+                top = wi * r * r + r * ddr + (wi - 1.0) * dr * dr
             kappa = top / (speed * speed * speed)
         return Frames(point, tangent, kappa, speed, self.arc.at(turns, x))
 
@@ -206,13 +197,13 @@ def _complex(real: Array, imag: Array) -> Plane:
     return result
 
 
-def _radii(law: RatioLaw, mate: int, x: Array, order: int) -> list[Array]:
-    """Return w*i and r1 for unit size with `order` derivatives."""
-    i, di, *more = law.ratio.derivatives(x, order)
+def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
+    """Return w*i, and r1 for unit size with its derivatives, of a ratio's: arrays or jets."""
+    i, di, *more = ratios
     wi = mate * i
     a = 1.0 / (1.0 + wi)
     square = a * a
-    return [wi, i * a, square * di, *(square * (ddi - 2.0 * mate * a * di * di) for ddi in more)]
+    return [wi, i * a, square * di, *(square * (ddi - 2.0 * mate * (a * di * di)) for ddi in more)]
 
 
 def roll(
@@ -249,7 +240,7 @@ def roll(
     mate = RACK if law.of_rack else WHEEL
 
     def unit_speed(phi: Array) -> Array:
-        _, r, dr = _radii(law, mate, phi, 1)
+        _, r, dr = _radii(law.ratio.derivatives(phi, 1), mate)
         return np.sqrt(r * r + dr * dr)
 
     unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()

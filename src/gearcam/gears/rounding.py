@@ -10,7 +10,7 @@ Refused: radii for which an arc would leave nothing of a flank above the pitch c
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from copy import deepcopy
 from functools import partial
 from typing import NamedTuple
 
@@ -178,18 +178,16 @@ def _moved_tip(toothing: Toothing, tops: _Tops, radius: float, foot: Array) -> t
 
 def _put_in(rows: Rows, tops: _Tops, sigma: Array, phi: Array, foot: Array, both: Ints) -> Rows:
     """Return the rows with flanks and tips that end at arcs."""
-    start, end, low, high, corner = (
-        getattr(rows, name).copy() for name in ("start", "end", "low", "high", "corner")
-    )
-    whole = tops.row >= 0
+    made, whole = deepcopy(rows), tops.row >= 0
     tips = whole & (tops.tip >= 0)
     tips[both] = False
-    for side, own, edge, height in ((-1, end, start, low), (1, start, end, high)):
+    ends = (-1, made.end, made.start, made.low), (1, made.start, made.end, made.high)
+    for side, own, edge, height in ends:
         at = np.flatnonzero(whole & (sigma == side))
         own[tops.row[at]] = phi[at] + tops.row_turn[at]
         at = np.flatnonzero(tips & (sigma == side))
         edge[tops.tip[at]] = foot[at] + tops.tip_turn[at]
         height[tops.tip[at]] = tops.height[at] + (foot[at] - tops.start[at]) * tops.slope[at]
-        corner[tops.tip[at]] = False
-    corner[tops.row[whole & (sigma > 0.0)]] = False
-    return replace(rows, start=start, end=end, low=low, high=high, corner=corner)
+        made.corner[tops.tip[at]] = False
+    made.corner[tops.row[whole & (sigma > 0.0)]] = False
+    return made

@@ -10,7 +10,6 @@ on the true curves and takes the loop out.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -44,45 +43,27 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         Row ``6*j + k`` is curve k of the space after the tooth formed as number j; k = 5 is the
         tip of the tooth after it.
     """
-    cutter, z, places = toothing.cutter, len(toothing.numbers), toothing.tooth_places
-    half = toothing.half_tooth
-    # Flank and tip ends are known for all teeth; a closed wheel's last space ends at its first
-    # tooth, one turn on, an open one's at its last tooth.
-    following, count = np.append(np.arange(1, z), 0), z
-    wrap, around = np.zeros(z), np.zeros(z)
-    if toothing.closed:
-        wrap[-1] = toothing.track.around
-        around[-1] = toothing.length
-    else:
-        following, wrap, around, count = following[:-1], wrap[:-1], around[:-1], z - 1
-    plus = places[:count] + half
-    minus = places[following] + around - half
+    cutter, half, z = toothing.cutter, toothing.half_tooth, len(toothing.numbers)
+    # A closed wheel's last space ends at its first tooth, one turn on; an open one has none there.
+    count = z if toothing.closed else z - 1
+    turn, following = np.divmod(np.arange(1, count + 1), z)
+    wrap = turn * toothing.track.around
+    plus = toothing.tooth_places[:count] + half
+    minus = toothing.tooth_places[following] + turn * toothing.length - half
     forms = toothing.track.angle(
         np.stack(
             [plus + cutter.reach, plus + cutter.offset, minus - cutter.offset, minus - cutter.reach]
         )
     )
-    top_plus = tips.phi[:count]
-    top_minus = tips.phi[z + following] + wrap
-    tip_start, tip_end = tips.foot[z + following] + wrap, tips.foot[following] + wrap
-    zero, one = np.zeros(count), np.ones(count)
-    land = np.full(count, -cutter.dedendum)
-    number = np.array(toothing.numbers)
+    land, number = -cutter.dedendum, np.array(toothing.numbers)
     table = {
         "kind": [Curve.FLANK, Curve.FILLET, Curve.LAND, Curve.FILLET, Curve.FLANK, Curve.TIP],
-        "sf": [plus, plus, zero, minus, minus, zero],
-        "sigma": [one, one, zero, -one, -one, zero],
-        "start": [
-            top_plus,
-            forms[0],
-            forms[1],
-            forms[2],
-            forms[3],
-            tip_start,
-        ],
-        "end": [forms[0], forms[1], forms[2], forms[3], top_minus, tip_end],
-        "low": [zero, zero, land, zero, zero, tips.height[z + following]],
-        "high": [zero, zero, land, zero, zero, tips.height[following]],
+        "sf": [plus, plus, 0.0, minus, minus, 0.0],
+        "sigma": [1.0, 1.0, 0.0, -1.0, -1.0, 0.0],
+        "start": [tips.phi[:count], *forms, tips.foot[z + following] + wrap],
+        "end": [*forms, tips.phi[z + following] + wrap, tips.foot[following] + wrap],
+        "low": [0.0, 0.0, land, 0.0, 0.0, tips.height[z + following]],
+        "high": [0.0, 0.0, land, 0.0, 0.0, tips.height[following]],
         "corner": [True, False, False, False, False, True],
         "tooth": [*[number[:count]] * 3, *[number[following]] * 3],
     }
@@ -114,8 +95,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Ints:
     undercut = np.isfinite(cusps.dedendum)
     loops = undercut[:z] | np.roll(undercut[z:], -1)
     loops = loops if toothing.closed else loops[:-1]
-    kappa = toothing.track.curvature_extremes[1]
-    if kappa.max() * toothing.cutter.dedendum >= _SHARP:
+    if toothing.cutter.dedendum >= _SHARP * toothing.track.convex.radius:
         start, end = rows.start[1::ROWS_PER_TOOTH], rows.end[3::ROWS_PER_TOOTH]
         steps = start + (end - start) * np.linspace(0.0, 1.0, 65)[:, None]
         sharp = toothing.frames(steps).kappa * toothing.cutter.dedendum >= _SHARP
@@ -123,7 +103,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Ints:
     return np.flatnonzero(loops)
 
 
-def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[tuple[Rows, list[CurvePoint]]]:
+def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
     """Take the loops out of spaces.
 
     Parameters
@@ -137,9 +117,8 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[tuple[Rows, l
 
     Returns
     -------
-    list of (Rows, list of CurvePoint)
-        For each space the curves that are left, with the tip behind them, and the rows and driver
-        angles, rad, at which loops begin and end; none where there is no loop.
+    list of Rows
+        For each space the curves that are left, with the tip behind them.
     """
     curves = WheelCurves(toothing=toothing, rows=rows)
     made = []
@@ -148,9 +127,7 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[tuple[Rows, l
         (*inner, last), *_ = (ring.branches for ring in rings)
         branches = [*inner, Branch(last.begin, CurvePoint(tip, float(rows.end[tip])))]
         index, start, end, corner = rows_between(curves, branches)
-        left = replace(select(rows, index), start=start, end=end, corner=corner)
-        places = [place for one, two in pairwise(branches) for place in (one.end, two.begin)]
-        made.append((left, places))
+        made.append(replace(select(rows, index), start=start, end=end, corner=corner))
     return made
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
+from gearcam.findings import check
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear, GearPair
 from gearcam.numeric.arrays import Array
@@ -16,6 +17,9 @@ from gearcam.quantities import NUMBER, Param
 
 KIND = "teeth"
 """The checks of a pair's teeth and centrodes."""
+
+pair_check = partial(check, kind=KIND)
+"""Makes a function one of them (see `gearcam.findings.check`)."""
 
 CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 """Limit of the contact ratio, for all checks that ask for it."""

@@ -17,6 +17,7 @@ Refused: nothing. Depends on numeric.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -64,6 +65,21 @@ class Frames(NamedTuple):
     kappa: Array
     speed: Array
     s: Array
+
+
+class LeastRadius(NamedTuple):
+    """Where a track bends most to one side.
+
+    Parameters
+    ----------
+    phi : float, rad
+        Parameter.
+    radius : float, mm
+        Radius of curvature there; infinite where nothing bends to that side.
+    """
+
+    phi: float
+    radius: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -217,3 +233,19 @@ class Track(ABC):
     @abstractmethod
     def curvature_extremes(self) -> tuple[Array, Array]:
         """Extremes of kappa over a period: parameters, rad, and 1/mm."""
+
+    @property
+    def convex(self) -> LeastRadius:
+        """The least convex radius."""
+        return self._least_radius(1.0)
+
+    @property
+    def concave(self) -> LeastRadius:
+        """The least concave radius."""
+        return self._least_radius(-1.0)
+
+    def _least_radius(self, sign: float) -> LeastRadius:
+        phi, kappa = self.curvature_extremes
+        k = int(np.argmax(sign * kappa))
+        most = sign * float(kappa[k])
+        return LeastRadius(float(phi[k]), 1.0 / most if most > 0.0 else math.inf)

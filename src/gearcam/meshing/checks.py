@@ -169,7 +169,7 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
         (turning.driven, turning.driver, pairs.toothings[1]),
     ):
         places = toothing.tooth_places[toothing.whole]
-        phi1 = turning.rolling.angle(places)
+        phi1 = turning.rolling.arc.angle(places)
         passed = phi1 <= pairs.travel * (1.0 + _PASSED)
         phi1 = phi1[passed]
         turn, shift = turning.pose(phi1, 0.0)

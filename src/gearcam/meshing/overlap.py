@@ -158,7 +158,7 @@ class Turning:
         -------
         (n,) bool array
         """
-        driver, at = self.driver, self.rolling.arc_length(phi1) - self.moved
+        driver, at = self.driver, self.rolling.tracks[0].arc_length(phi1) - self.moved
         count = one
         if driver.closed:  # counted on over the turns, to the half nearest the pitch point
             past = 2.0 * at / driver.pitch
@@ -183,7 +183,7 @@ class Turning:
             0 where they overlap; infinite where none face each other.
         """
         turn, shift = self.pose(phi1, overclosure, lead)
-        s, pitch = self.rolling.arc_length(phi1), self.driver.pitch
+        s, pitch = self.rolling.tracks[0].arc_length(phi1), self.driver.pitch
         pair = np.rint(s / pitch - 0.25 * side).astype(np.int64)
         least = np.full(len(phi1), np.inf)
         for j in (pair - 1, pair, pair + 1):

@@ -211,7 +211,7 @@ class GearPairResult(Result):
         """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
         lobes = self.law.lobes
         if self.pair.on_rack:
-            end = self.pair.rolling.angle(np.array(self.gear2.toothing.length))
+            end = self.pair.rolling.arc.angle(np.array(self.gear2.toothing.length))
             return np.linspace(0.0, float(end), CENTRODE_POINTS + 1)
         if not lobes.closed:
             return np.linspace(0.0, lobes.period, CENTRODE_POINTS + 1)

@@ -224,7 +224,7 @@ def _meshing(numbers: Mapping[str, Any]) -> Tree:
 
 
 def _gear(result: GearPairResult, gear: Gear) -> Tree:
-    cutter, radius = gear.toothing.cutter, gear.convex_radius
+    cutter, track = gear.toothing.cutter, gear.toothing.track
     blank, pinion = result.design.blank.wheel(gear.wheel), cutter.kind == "pinion"
     shift = result.design.pair.x if gear.wheel == 1 else -result.design.pair.x
     return {
@@ -233,8 +233,8 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
         "profile_shift": Fact(shift, unit="modules") if shift else None,
         "centrode": {
             "length_mm": Fact(gear.toothing.length, "centrode length"),
-            "min_convex_radius_mm": radius if math.isfinite(radius) else None,
-            "max_concave_curvature_per_mm": gear.concave_curvature,
+            "min_convex_radius_mm": track.convex.radius if track.convex.radius < math.inf else None,
+            "max_concave_curvature_per_mm": 1.0 / track.concave.radius,
             "closed": gear.toothing.closed,
         },
         "cutter": cutter.kind,
@@ -249,7 +249,7 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
         "outline": {
             "vertices": len(gear.outline),
             "least_vertices": gear.profile.sampler.least,
-            "area_mm2": gear.profile.area,
+            "area_mm2": gear.profile.contour.area,
             "chord_error_mm": gear.profile.chord_error,
         },
         **_part(result, gear),
