@@ -18,13 +18,13 @@ from gearcam.laws.ratio.span import (
     Lobes,
     Span,
     angle_text,
+    demand_smooth,
     open_travel,
-    rough,
     span_of,
     travel_problems,
 )
 from gearcam.numerals import shown
-from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import TEXT, param
@@ -76,10 +76,12 @@ class Formula:
         _demand_repeats(function, name, span)
         if self.ratio is None:
             return law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
-        try:
-            return _from_ratio(function, span, tolerances)
-        except NotSmoothError as error:
-            raise rough(name, error) from error
+        with demand_smooth(name):
+            total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
+        factor = span.advance / total.antiderivative().last
+        piece = Piece(lambda x: factor * function(x))
+        solved = {"ratio_factor": factor}
+        return make_law(span, [0.0, span.period], [piece], tolerances, solved)
 
 
 def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
@@ -144,19 +146,9 @@ def from_phi2(
             limit=0.0,
             nearest="this is the ratio there, which must be positive",
         )
-    try:
+    with demand_smooth("phi2"):
         expand(values_of(ratio), [0.0, lobes.period], tolerances.expansion)
-    except NotSmoothError as error:
-        raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
     return make_law(lobes, [0.0, lobes.period], [Piece(ratio, phi2)], tolerances, solved)
-
-
-def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances) -> RatioLaw:
-    """Make a law from a ratio up to a factor, which closure decides."""
-    total = expand(values_of(shape), [0.0, lobes.period], tolerances.expansion).antiderivative()
-    factor = lobes.advance / total.last
-    piece = Piece(lambda x: factor * shape(x))
-    return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})
 
 
 LAWS.register(

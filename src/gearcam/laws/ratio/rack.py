@@ -12,8 +12,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import compiled, derivative, formula_problems, values_of
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.span import PLACES, Lobes, RackTravel, angle_text, rough
-from gearcam.numeric.chebyshev import NotSmoothError
+from gearcam.laws.ratio.span import PLACES, Lobes, RackTravel, angle_text, demand_smooth
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
@@ -57,10 +56,8 @@ class RackLaw:
         values = values_of(piece.function)(places)
         for bad in np.flatnonzero(~np.isfinite(values))[:1]:
             raise InfeasibleError("r1 is not finite", where=angle_text(float(places[bad])))
-        try:
+        with demand_smooth("r1"):
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
-        except NotSmoothError as error:
-            raise rough("r1", error) from error
         return make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
 
 

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.span import Lobes, Travel, demand_equal
-from gearcam.numeric.jets import Jet, exp, log
-from gearcam.numeric.piecewise import Piece
+from gearcam.laws.ratio.span import Lobes, Travel, demand_equal, spiral
 from gearcam.quantities import ANGLE, NUMBER, param
 from gearcam.tolerances import Tolerances
 
@@ -48,15 +46,9 @@ class LogSpiral:
         growth = math.log((1.0 + end) / (1.0 + start)) / self.driven_travel
         travel = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
 
-        def share(x: Jet) -> Jet:
-            return first * exp(growth * x)
-
-        piece = Piece(
-            lambda x: share(x) / (1.0 - share(x)), lambda x: (-1.0 / growth) * log(1.0 - share(x))
-        )
         solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
         span = Travel(travel, self.driven_travel)
-        return make_law(span, [0.0, travel], [piece], tolerances, solved)
+        return make_law(span, [0.0, travel], [spiral(first, growth)], tolerances, solved)
 
 
 LAWS.register(
