@@ -278,9 +278,12 @@ class _Placed:
     law: Callable[..., Jet]
 
     def __call__(
-        self, x: Jet, origin: Value, width: Value, base: Value, scale: Value, *parameters: Value
+        self, x: Jet, origin: Value, per_width: Value, base: Value, scale: Value, *parameters: Value
     ) -> Jet:
-        return scale * self.law((x - origin) / width, *parameters) + base
+        share = Jet.variable((x.c[0] - origin) * per_width, x.order)
+        value, *slopes = self.law(share, *parameters).c
+        rates = (scale * per_width**k * slope for k, slope in enumerate(slopes, 1))
+        return Jet([base + scale * value, *rates])
 
 
 @dataclass(frozen=True)
@@ -308,7 +311,7 @@ class _Place:
         inner = np.sort(origin + width * rise.function.knots[1:-1]).tolist()
         parts = rise.function.pieces[:: 1 if width > 0.0 else -1]
         for end, part in zip([*inner, self.end], parts, strict=True):
-            parameters = (origin, width, base, scale, *part.parameters)
+            parameters = (origin, 1.0 / width, base, scale, *part.parameters)
             yield end, Piece(_Placed(part.function), parameters=parameters)
 
     def cuts(self, rise: Rise) -> Array:
@@ -318,11 +321,16 @@ class _Place:
 
     def end_state(self, rise: Rise) -> tuple[float, float]:
         """Return velocity and acceleration of a law at the end."""
-        *_, (end, last) = self.pieces(rise)
-        _, velocity, acceleration = last(Jet.variable([end], 2)).derivatives()
-        return float(velocity[0]), float(acceleration[0])
+        _, width, _, scale = self.law(rise)
+        ends = (len(rise.function.pieces), -1) if width > 0.0 else (0, 1)
+        _, velocity, acceleration = rise.function.side(*ends, 2)
+        return scale * velocity / width, scale * acceleration / width**2
 
     def quintic(self, start: tuple[float, float], end: tuple[float, float]) -> Piece:
         """Return the quintic with given velocities and accelerations at both ends."""
-        ends = np.transpose([(self.start, self.base, *start), (self.end, self.top, *end)])
-        return Piece(polynomial, parameters=(self.start, *hermite_quintics(*ends)[0].tolist()))
+        width = self.end - self.start
+        rates = np.array([start, end]) * [width, width**2]
+        ends = np.array([(0.0, 0.0, *rates[0]), (1.0, self.rise, *rates[1])])
+        powers = hermite_quintics(*ends.T)[0].tolist()
+        parameters = (self.start, 1.0 / width, self.base, 1.0, 0.0, *powers)
+        return Piece(_Placed(polynomial), parameters=parameters)

@@ -95,7 +95,7 @@ class Jet:
 
     def __truediv__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
-            return Jet([value if _is_zero(value) else value / other for value in self.c])
+            return Jet([value / other for value in self.c])
         quotient: list[Value] = []
         for k, value in enumerate(self.c):
             rest = value

@@ -49,11 +49,14 @@ def _cosine_integral(x: Jet, mean: Value, half: Value, speed: Value, low: Value)
 def _curve(*powers: float) -> Callable[[float, float, float, float], Piece]:
     """Return the arcs of a polynomial that rises from 0 to 1 over the unit interval."""
 
-    def piece(start: float, end: float, low: float, width: float) -> Piece:
-        constant, *rising = ((end - start) * power / width**k for k, power in enumerate(powers))
-        return Piece(polynomial, primitive, (low, start + constant, *rising))
+    def ratio(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
+        return rise * polynomial((x - low) / width, 0.0, *powers) + start
 
-    return piece
+    def integral(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
+        t = (x - low) / width
+        return width * (start * t + rise * primitive(t, 0.0, *powers))
+
+    return lambda start, end, low, width: Piece(ratio, integral, (start, end - start, low, width))
 
 
 _CUBIC: Final = (0.0, 0.0, 3.0, -2.0)
