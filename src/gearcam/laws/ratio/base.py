@@ -143,13 +143,11 @@ _HOMES: Final = {
     "composite": ("three-phase-polynomial", "multispeed", "fourier"),
     "constant": ("constant",),
     "ellipse": ("ellipse",),
-    "centrodes": ("eccentric-circle", "limacon", "lobed"),
+    "centrodes": ("eccentric-circle", "limacon", "lobed", "log-spiral"),
     "shapes": ("bspline", "rounded-polygon"),
-    "spiral": ("log-spiral",),
-    "formula": ("formula",),
+    "formula": ("formula", "rack"),
     "table": ("table",),
     "position": ("motion",),
-    "rack": ("rack",),
 }
 
 LAWS: Final[Registry[LawEntry]] = Registry(

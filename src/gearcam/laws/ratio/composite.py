@@ -58,7 +58,7 @@ class Multispeed:
         InfeasibleError
             If angles and transitions span neither a turn nor a lobe, or no ratio closes it.
         """
-        steps: list[tuple[float, float | Solve]] = [
+        steps = [
             (width, ratio)
             for angle, ratio in zip(self.angles, self.ratios, strict=True)
             for width in (self.transition, angle)
@@ -67,7 +67,8 @@ class Multispeed:
         steps[0] = (0.0, self.ratios[0])  # to which no transition leads
         if self.driven_travel is None:
             steps.append((self.transition, self.ratios[0]))
-        knots, values = np.cumsum([width for width, _ in steps]), [ratio for _, ratio in steps]
+        knots = np.cumsum([width for width, _ in steps])
+        values: list[float | Solve] = [ratio for _, ratio in steps]
         arc = ARCS[self.shape]
         name = f"ratios[{self.ratios.index('solve')}]" if "solve" in self.ratios else ""
         if self.driven_travel is not None:

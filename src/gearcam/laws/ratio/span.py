@@ -181,6 +181,10 @@ def demand_smooth(name: str) -> Iterator[None]:
     name : str
         What it is.
 
+    Yields
+    ------
+    None
+
     Raises
     ------
     InfeasibleError

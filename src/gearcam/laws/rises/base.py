@@ -14,7 +14,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Protocol
 
 from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
@@ -47,6 +47,14 @@ class Rise:
     cuts: Sequence[float] = ()
 
 
+class RiseParameters(Protocol):
+    """What the parameters of a rise can do."""
+
+    def build(self, tolerances: Tolerances) -> Rise:
+        """Return the rise, to `tolerances`, or raise `InfeasibleError`."""
+        ...
+
+
 class ClosedForm(ABC):
     """Parameters of a rise in closed form: they say its function, and need no tolerance."""
 
@@ -62,13 +70,16 @@ class ClosedForm(ABC):
 
 
 _HOMES: Final = {
-    "simple": ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal"),
-    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
-    "trapezoids": (
+    "simple": (
+        "constant-velocity",
+        "constant-acceleration",
+        "harmonic",
+        "cycloidal",
         "trapezoidal-velocity",
         "sine-trapezoidal-velocity",
         "trapezoidal-acceleration",
     ),
+    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
     "scca": ("modified-trapezoid", "modified-sine", "scca"),
     "points": ("b-spline", "table"),
     "formula": ("formula",),
