@@ -137,6 +137,9 @@ Operand = int | float
 Function = Callable[..., Any] | str
 """An operator, or the name of a function."""
 
+Step = tuple[Function, tuple[Operand, ...]]
+"""What is done, and with which operands."""
+
 
 @dataclass(frozen=True, eq=False)
 class Expression:
@@ -146,14 +149,14 @@ class Expression:
     ----------
     text : str
         The formula as written.
-    steps : tuple of (function, operands)
+    steps : tuple of Step
         Each makes a value.
     result : int or float
         The formula's value.
     """
 
     text: str
-    steps: tuple[tuple[Function, tuple[Operand, ...]], ...]
+    steps: tuple[Step, ...]
     result: Operand
 
     @property
@@ -314,14 +317,12 @@ def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
         raise FormulaError("nothing stands between these parentheses", column=column - 1)
 
 
-def _steps(
-    root: ast.expr, names: Mapping[str, Operand]
-) -> tuple[tuple[tuple[Function, tuple[Operand, ...]], ...], Operand]:
+def _steps(root: ast.expr, names: Mapping[str, Operand]) -> tuple[tuple[Step, ...], Operand]:
     """Return the steps of a syntax tree and its result: what is written twice is one step.
 
     It is done without recursion: a tree may be as deep as the text is long.
     """
-    steps: dict[tuple[Function, str], tuple[int, Function, tuple[Operand, ...]]] = {}
+    steps: dict[tuple[Function, str], tuple[int, Step]] = {}
     values: list[Operand] = []
     todo: list[ast.expr | tuple[Function, ast.expr, Sequence[ast.expr]]] = [root]
     while todo:
@@ -336,7 +337,7 @@ def _steps(
                 values.append(_constant(function, operands, node.col_offset))
             else:
                 key = function, repr(operands)  # by its text: 0.0 and -0.0 are two constants
-                values.append(steps.setdefault(key, (len(steps) + 1, function, operands))[0])
+                values.append(steps.setdefault(key, (len(steps) + 1, (function, operands)))[0])
             continue
         match item:
             case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
@@ -351,7 +352,7 @@ def _steps(
                 todo += [(name, item, (part,)), part]
             case _:
                 raise FormulaError("this is not allowed", column=item.col_offset, allowed=ALLOWED)
-    return tuple((function, operands) for _, function, operands in steps.values()), values[0]
+    return tuple(step for _, step in steps.values()), values[0]
 
 
 def _constant(function: Function, operands: Sequence[Operand], column: int) -> float:

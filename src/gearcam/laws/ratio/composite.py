@@ -58,7 +58,7 @@ class Multispeed:
         InfeasibleError
             If angles and transitions span neither a turn nor a lobe, or no ratio closes it.
         """
-        steps = [
+        steps: list[tuple[float, float | Solve]] = [
             (width, ratio)
             for angle, ratio in zip(self.angles, self.ratios, strict=True)
             for width in (self.transition, angle)
