@@ -10,10 +10,10 @@ import shapely
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
+from gearcam.laws.ratio.centrodes import LogSpiral
+from gearcam.laws.ratio.formula import RackLaw
 from gearcam.laws.ratio.phases import Phases
-from gearcam.laws.ratio.rack import RackLaw
 from gearcam.laws.ratio.span import ONE_LOBE, Travel
-from gearcam.laws.ratio.spiral import LogSpiral
 from gearcam.tolerances import DEFAULT
 from helpers_pairs import job, profile
 

@@ -211,7 +211,6 @@ LAWS = {
                 "entry",
                 "program",
                 "phases_of_lift",
-                "placed",
                 "rises.pieces",
                 "rises.simple",
                 "rises.base",

@@ -23,7 +23,7 @@ BANNED = {
 
 ELSEWHERE = {
     "strokes?": ("lettering.py", "nest.py", "svg.py", "cut_svg.py", "sheet_svg.py", "slider.py"),
-    "feeds?": ("simple.py", "trapezoids.py"),
+    "feeds?": ("simple.py",),
 }
 """Files in which a word is the field's own: strokes of a pen or a slide, machine feeds."""
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 from claims.claim import LawClaim
-from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed
+from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
 from gearcam.laws.ratio.ellipse import Ellipse
-from gearcam.laws.ratio.rack import RackLaw
+from gearcam.laws.ratio.formula import RackLaw
 from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
 from gearcam.laws.ratio.span import Lobes
-from gearcam.laws.ratio.spiral import LogSpiral
 
 
 def eccentric_circle() -> tuple[LawClaim, ...]:

@@ -9,8 +9,11 @@ from claims.of_polynomials import POLYNOMIALS
 from gearcam.laws.rises.formula import FormulaRise
 from gearcam.laws.rises.points import BSplineRise, TableRise
 from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
-from gearcam.laws.rises.simple import ConstantAcceleration, ConstantVelocity, Cycloidal, Harmonic
-from gearcam.laws.rises.trapezoids import (
+from gearcam.laws.rises.simple import (
+    ConstantAcceleration,
+    ConstantVelocity,
+    Cycloidal,
+    Harmonic,
     SineTrapezoidalVelocity,
     TrapezoidalAcceleration,
     TrapezoidalVelocity,

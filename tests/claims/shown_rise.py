@@ -22,6 +22,16 @@ JUMP = 1e-9
 class ShownRise(Rise):
     """A rise that is asked for its peaks."""
 
+    @property
+    def start(self) -> tuple[float, ...]:
+        """Velocity, acceleration and jerk at the start of the rise."""
+        return tuple(self.function.side(0, 1, 3)[1:])
+
+    @property
+    def end(self) -> tuple[float, ...]:
+        """Velocity, acceleration and jerk at the end of the rise."""
+        return tuple(self.function.side(len(self.function.knots) - 1, -1, 3)[1:])
+
     @cached_property
     def _sides(self) -> tuple[list[list[float]], list[list[float]]]:
         """S to S''' before and after every knot, with dwells beyond the ends."""
@@ -38,7 +48,7 @@ class ShownRise(Rise):
             found = np.array(self.function.derivatives(phi, 4))
             return found[1:4], found[2:5]
 
-        inside = extremes(values, self.function.knots if self.cuts is None else self.cuts)
+        inside = extremes(values, np.union1d(self.function.knots, self.cuts))
         before, after = self._sides
         at_knots = np.abs(before[1:] + after[:-1]).max(axis=0)[1:]
         return tuple(

@@ -19,8 +19,8 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.ratio.rack import RackLaw
-from gearcam.laws.ratio.spiral import LogSpiral
+from gearcam.laws.ratio.centrodes import LogSpiral
+from gearcam.laws.ratio.formula import RackLaw
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.gap import touches
 from gearcam.meshing.halves import Halves, halve

@@ -22,16 +22,14 @@ import gearcam
 from gearcam.designs.design import changed
 from gearcam.errors import InfeasibleError
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed
+from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
-from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.position import MotionLaw
-from gearcam.laws.ratio.rack import RackLaw
 from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
-from gearcam.laws.ratio.spiral import LogSpiral
 from gearcam.laws.ratio.table import TableLaw
 from gearcam.meshing.halves import halve
 from gearcam.meshing.overlap import Turning

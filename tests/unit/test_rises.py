@@ -30,8 +30,10 @@ from gearcam.laws.rises.polynomials import (
     of_least_degree,
 )
 from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
-from gearcam.laws.rises.simple import ConstantAcceleration, Cycloidal, Harmonic
-from gearcam.laws.rises.trapezoids import (
+from gearcam.laws.rises.simple import (
+    ConstantAcceleration,
+    Cycloidal,
+    Harmonic,
     SineTrapezoidalVelocity,
     TrapezoidalAcceleration,
     TrapezoidalVelocity,

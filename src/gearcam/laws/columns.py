@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -22,9 +22,6 @@ _HINT: Final = "; use a decimal point"
 
 class ColumnsError(ValueError):
     """A file that does not hold the columns; the message says where and why."""
-
-
-Names = Sequence[str] | Callable[[list[str]], Sequence[str]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,14 +42,13 @@ class CsvRows:
     cells: tuple[list[str], ...]
     note: str = ""
 
-    def columns(self, names: Names) -> tuple[Array, list[int]]:
+    def columns(self, names: Sequence[str]) -> tuple[Array, list[int]]:
         """Return columns of numbers by their names.
 
         Parameters
         ----------
-        names : sequence of k str, or callable
-            The columns; or what chooses them from all that the file has, and gives none if these
-            are not enough. Other columns are left aside.
+        names : sequence of k str
+            The columns; others are left aside.
 
         Returns
         -------
@@ -67,7 +63,6 @@ class CsvRows:
             With the line that is wrong.
         """
         head, *rows = self.cells
-        names = names(head) if callable(names) else names
         if not names or any(head.count(name) != 1 for name in names):
             raise ColumnsError(f"line {self.lines[0]}: the columns are {', '.join(head)}")
         places = [head.index(name) for name in names]

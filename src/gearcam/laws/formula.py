@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-import numpy as np
-
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
@@ -26,13 +24,7 @@ def formula_problems(
 def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
     """Return a formula as a function of jets (see `parse`)."""
     expression = parse(text, variable)
-
-    def function(x: Jet) -> Jet:
-        with np.errstate(all="ignore"):
-            value = expression.evaluate(x, FUNCTIONS)
-            return value if isinstance(value, Jet) else 0.0 * x + value
-
-    return function
+    return lambda x: expression.evaluate(x, FUNCTIONS)
 
 
 def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:

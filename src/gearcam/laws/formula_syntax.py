@@ -21,7 +21,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -62,14 +62,15 @@ NUMPY: Final[dict[str, Callable[[Any], Any]]] = {
 ALLOWED: Final = f"{VARIABLE}, pi, numbers, + - * / ** ( ), {', '.join(NUMPY)}"
 """What a formula may be made of, for messages."""
 
-_BINARY: Final[dict[type, Callable[[Any, Any], Any]]] = {
+_OPERATORS: Final[dict[type, Callable[..., Any]]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
     ast.Pow: operator.pow,
+    ast.USub: operator.neg,
+    ast.UAdd: operator.pos,
 }
-_UNARY: Final[dict[type, Callable[[Any], Any]]] = {ast.USub: operator.neg, ast.UAdd: operator.pos}
 
 _TOKEN = re.compile(
     r"(?P<space>[ \t\r\n]+)"
@@ -126,18 +127,18 @@ class FormulaError(GearcamError, ValueError):
     ) -> None:
         self.what, self.column, self.allowed, self.hint = what, column, allowed, hint
         place = f"column {column}: {what}" if column is not None else what
-        tail = [f"allowed: {allowed}"] if allowed else []
-        super().__init__("; ".join([place, *tail, *([hint] if hint else [])]))
+        parts = (place, allowed and f"allowed: {allowed}", hint)
+        super().__init__("; ".join(part for part in parts if part))
 
 
-@dataclass(frozen=True)
-class _Step:
-    """One step of a program: a constant, the variable, or an operation on values of others."""
+Operand = int | float
+"""A constant, or the number of a value: 0 is the variable, k the result of the k-th step."""
 
-    kind: str  # "constant", "variable", "call", "unary", "binary"
-    column: int
-    payload: Any = None
-    operands: tuple[int, ...] = ()
+Function = Callable[..., Any] | str
+"""An operator, or the name of a function."""
+
+Step = tuple[Function, tuple[Operand, ...]]
+"""What is done, and with which operands."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,17 +149,20 @@ class Expression:
     ----------
     text : str
         The formula as written.
-    program : tuple of steps
-        Each makes a value; the last one is the formula's.
+    steps : tuple of Step
+        Each makes a value.
+    result : int or float
+        The formula's value.
     """
 
     text: str
-    program: tuple[_Step, ...]
+    steps: tuple[Step, ...]
+    result: Operand
 
     @property
     def is_constant(self) -> bool:
         """Whether the formula leaves the angle out."""
-        return len(self.program) == 1 and self.program[0].kind == "constant"
+        return isinstance(self.result, float)
 
     def evaluate(self, x: Any, functions: Mapping[str, Callable[[Any], Any]] = NUMPY) -> Any:
         """Compute the formula.
@@ -176,17 +180,12 @@ class Expression:
             Also for a constant formula. Outside a function's domain the values are nan or inf,
             without a warning, for the caller to find and to name by their angle.
         """
-        values: list[Any] = []
+        values = [x]
         with np.errstate(all="ignore"):
-            if self.is_constant:
-                return x * 0.0 + self.program[0].payload
-            for step in self.program:
-                if step.operands:
-                    function = functions[step.payload] if step.kind == "call" else step.payload
-                    values.append(function(*(values[k] for k in step.operands)))
-                else:
-                    values.append(step.payload if step.kind == "constant" else x)
-        return values[-1]
+            for function, operands in self.steps:
+                call = functions[function] if isinstance(function, str) else function
+                values.append(call(*(values[k] if isinstance(k, int) else k for k in operands)))
+            return x * 0.0 + self.result if self.is_constant else values[int(self.result)]
 
 
 def parse(text: str, variable: str = VARIABLE) -> Expression:
@@ -218,14 +217,14 @@ def parse(text: str, variable: str = VARIABLE) -> Expression:
         )
     _check_words(text, variable)
     # Only the words above are left, all in ASCII, and blanks of any kind become spaces (the grammar
-    # gives line ends a meaning); so columns of the tree are columns of the text.
-    flat = re.sub(r"\s", " ", text)
-    lead = len(flat) - len(flat.lstrip())
+    # gives line ends a meaning); so with a parenthesis before it columns of the tree, which count
+    # from 0, are columns of the text.
     try:
-        tree = ast.parse(flat.lstrip(), mode="eval")
+        tree = ast.parse("(" + re.sub(r"\s", " ", text) + ")", mode="eval")
     except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
         raise FormulaError("this cannot be read as a formula", allowed=ALLOWED) from error
-    return Expression(text, _shared(_program(tree.body, lead, variable)))
+    steps, result = _steps(tree.body, {variable: 0} | CONSTANTS)
+    return Expression(text, steps, result)
 
 
 def _check_words(text: str, variable: str) -> None:
@@ -259,13 +258,9 @@ def _words(text: str, variable: str) -> Iterator[tuple[str, str, int]]:
         column = position + 1
         if match is None:
             sign = text[position]
-            shown = repr(sign) if sign.isprintable() else f"U+{ord(sign):04X}"
-            raise FormulaError(
-                f"unexpected sign {shown}",
-                column=column,
-                allowed=ALLOWED,
-                hint=_HINTS.get(sign, ""),
-            )
+            name = repr(sign) if sign.isprintable() else f"U+{ord(sign):04X}"
+            hint = _HINTS.get(sign, "")
+            raise FormulaError(f"unexpected sign {name}", column=column, allowed=ALLOWED, hint=hint)
         kind, word = str(match.lastgroup), match.group()
         position = match.end()
         if kind == "name":
@@ -282,16 +277,13 @@ def _check_name(word: str, column: int, variable: str) -> None:
     known = (variable, *CONSTANTS, *NUMPY)
     if word in known:
         return
-    near = _ALIASES.get(word) or _ALIASES.get(word.lower())
-    near = variable if near == VARIABLE else near
-    if near is None:
-        close = difflib.get_close_matches(word.lower(), known, n=1)
-        near = close[0] if close else None
+    alias = _ALIASES.get(word, _ALIASES.get(word.lower()))
+    close = [alias] if alias else difflib.get_close_matches(word.lower(), known, n=1)
     raise FormulaError(
         f"unknown name {word!r}",
         column=column,
         allowed=ALLOWED.replace(VARIABLE, variable),
-        hint=f"did you mean {near}?" if near else "",
+        hint="".join(f"did you mean {name}?" for name in close).replace(VARIABLE, variable),
     )
 
 
@@ -325,74 +317,62 @@ def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
         raise FormulaError("nothing stands between these parentheses", column=column - 1)
 
 
-def _program(root: ast.expr, lead: int, variable: str) -> list[_Step]:
-    """Turn a syntax tree into steps, without recursion; constant parts are computed here."""
-    program: list[_Step] = []
-    todo: list[ast.expr | _Step] = [root]
+def _steps(root: ast.expr, names: Mapping[str, Operand]) -> tuple[tuple[Step, ...], Operand]:
+    """Return the steps of a syntax tree and its result: what is written twice is one step.
+
+    It is done without recursion: a tree may be as deep as the text is long.
+    """
+    steps: dict[tuple[Function, str], tuple[int, Step]] = {}
+    values: list[Operand] = []
+    todo: list[ast.expr | tuple[Function, ast.expr, Sequence[ast.expr]]] = [root]
     while todo:
         item = todo.pop()
-        if isinstance(item, _Step):
-            _append(program, item)
+        if isinstance(item, tuple):
+            function, node, parts = item
+            operands = tuple(values[-len(parts) :])
+            del values[-len(parts) :]
+            if function is operator.pow:
+                _check_exponent(operands[1], parts[1].col_offset)
+            if all(isinstance(value, float) for value in operands):
+                values.append(_constant(function, operands, node.col_offset))
+            else:
+                key = function, repr(operands)  # by its text: 0.0 and -0.0 are two constants
+                values.append(steps.setdefault(key, (len(steps) + 1, (function, operands)))[0])
             continue
-        column = item.col_offset + lead + 1
         match item:
             case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
-                program.append(_Step("constant", column, float(value)))
-            case ast.Name(id=name) if name == variable:
-                program.append(_Step("variable", column))
-            case ast.Name(id=name) if name in CONSTANTS:
-                program.append(_Step("constant", column, CONSTANTS[name]))
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
-                todo += [_Step("binary", column, _BINARY[type(op)]), right, left]
-            case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
-                todo += [_Step("unary", column, _UNARY[type(op)]), operand]
-            case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in NUMPY:
-                todo += [_Step("call", column, name), argument]
+                values.append(float(value))
+            case ast.Name(id=name) if name in names:
+                values.append(names[name])
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
+                todo += [(_OPERATORS[type(op)], item, (left, right)), right, left]
+            case ast.UnaryOp(op=op, operand=part) if type(op) in _OPERATORS:
+                todo += [(_OPERATORS[type(op)], item, (part,)), part]
+            case ast.Call(func=ast.Name(id=name), args=[part], keywords=[]) if name in NUMPY:
+                todo += [(name, item, (part,)), part]
             case _:
-                raise FormulaError("this is not allowed", column=column, allowed=ALLOWED)
-    return program
+                raise FormulaError("this is not allowed", column=item.col_offset, allowed=ALLOWED)
+    return tuple(step for _, step in steps.values()), values[0]
 
 
-def _append(program: list[_Step], step: _Step) -> None:
-    """Add an operation; where its operands are constants, replace all by the result."""
-    if step.kind == "binary" and step.payload is operator.pow:
-        _check_exponent(program[-1])
-    count = 2 if step.kind == "binary" else 1
-    operands = program[-count:]
-    if any(operand.kind != "constant" for operand in operands):
-        program.append(step)
-        return
-    function = getattr(math, step.payload) if step.kind == "call" else step.payload
+def _constant(function: Function, operands: Sequence[Operand], column: int) -> float:
+    """Compute a part without the variable."""
+    call = getattr(math, function) if isinstance(function, str) else function
     try:
-        result = function(*(operand.payload for operand in operands))
+        result = call(*operands)
     except (ArithmeticError, ValueError):
         result = math.nan
     if isinstance(result, complex) or not math.isfinite(result):
         raise FormulaError(
-            "this part has no finite real value", column=step.column, allowed="finite real numbers"
+            "this part has no finite real value", column=column, allowed="finite real numbers"
         )
-    program[-count:] = [_Step("constant", step.column, float(result))]
+    return float(result)
 
 
-def _check_exponent(step: _Step) -> None:
-    if step.kind == "constant" and abs(step.payload) > MAX_EXPONENT:
+def _check_exponent(value: Operand, column: int) -> None:
+    if isinstance(value, float) and abs(value) > MAX_EXPONENT:
         raise FormulaError(
-            f"exponent {shown(step.payload)} is too large",
-            column=step.column,
+            f"exponent {shown(value)} is too large",
+            column=column,
             allowed=f"exponents from {shown(-MAX_EXPONENT)} to {shown(MAX_EXPONENT)}",
         )
-
-
-def _shared(program: Sequence[_Step]) -> tuple[_Step, ...]:
-    """Let every step say which values it takes, by their numbers; like steps become one."""
-    steps: list[_Step] = []
-    known: dict[tuple[Any, ...], int] = {}
-    stack: list[int] = []
-    for step in program:
-        rest = len(stack) - {"binary": 2, "unary": 1, "call": 1}.get(step.kind, 0)
-        operands = tuple(stack[rest:])
-        # by its text: 0.0 and -0.0 are two constants
-        stack[rest:] = [known.setdefault((repr(step.payload), operands), len(steps))]
-        if stack[-1] == len(steps):
-            steps.append(replace(step, operands=operands))
-    return tuple(steps)

@@ -182,10 +182,10 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
             clean = False
             yield number, asked, "is missing", f"a lift in {unit.lstrip('_')}"
     if clean:
-        yield from _closure_problems(phases)
+        yield from _closure_problems(phases, right[0])
 
 
-def _closure_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
+def _closure_problems(phases: Sequence[Phase], lift: str) -> Iterator[Problem]:
     total = sum(phase.angle for phase in phases)
     if abs(total - 2.0 * math.pi) > TURN_MISS:
         last = math.degrees(2.0 * math.pi - total + phases[-1].angle)
@@ -195,14 +195,11 @@ def _closure_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
-            name = "length" if phase.swing is None else "swing"
-            yield number, name, "there is no lift to return from", "a rise before it, or a lift"
+            yield number, lift, "there is no lift to return from", "a rise before it, or a lift"
     largest = max(map(abs, found))
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"
     elif abs(found[-1]) > _LIFT_MISS * largest:
-        named = [getattr(phase, name, None) for phase in phases for name in ("swing", "to_swing")]
-        angular = any(value is not None for value in named)
-        end, unit = (math.degrees(found[-1]), "deg") if angular else (found[-1], "mm")
+        end, unit = (found[-1], "mm") if lift == "length" else (math.degrees(found[-1]), "deg")
         rule = "the lift at the end of the turn is that at its beginning, 0"
         yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule

@@ -10,9 +10,10 @@ Source: 000 section 3.3, eqs. (3.3)-(3.5).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -27,11 +28,10 @@ from gearcam.laws.phases_of_lift import (
     levels,
     program_problems,
 )
-from gearcam.laws.placed import PlacedLaws, PlacedPiece, placed
-from gearcam.laws.rises.base import Rise, RiseParameters
+from gearcam.laws.rises.base import Rise
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
-from gearcam.numeric.jets import polynomial
+from gearcam.numeric.jets import Jet, Value, polynomial
 from gearcam.numeric.piecewise import (
     Piece,
     Piecewise,
@@ -85,7 +85,7 @@ class Program(Displacement):
 
     Parameters
     ----------
-    lift : PlacedLaws
+    lift : Piecewise
         s over ``[0, 2*pi]``, mm or rad.
     stretches : tuple of PlacedPhase
         Its phases; a segment counts as a rise or return by its direction.
@@ -93,7 +93,7 @@ class Program(Displacement):
         The knots, and more places where a law bends sharply: between them extremes are sought.
     """
 
-    lift: PlacedLaws
+    lift: Piecewise
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
 
@@ -119,8 +119,8 @@ class Program(Displacement):
         -------
         (n,) array, rad
         """
-        cuts = np.concatenate([self.cuts, self.cuts + _TURN])
-        return np.array(sorted({low, *cuts[(cuts > low) & (cuts < high)].tolist(), high}))
+        cuts = np.append(self.cuts, self.cuts + _TURN)
+        return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
 
     def phases(self, kind: str) -> list[tuple[float, float]]:
         """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
@@ -229,106 +229,108 @@ def make_program(
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
     share = _TURN / sum(phase.angle for phase in phases)
-    angles = np.concatenate([[0.0], np.cumsum([phase.angle * share for phase in phases])])
+    angles = np.cumsum([0.0, *(phase.angle * share for phase in phases)])
     angles[-1] = _TURN
     heights = levels(phases)
     heights[-1] = 0.0
     shapes = [phase.shape for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
-    frame = _Frame(phases=phases, angles=angles, heights=heights, rises=rises)
-    places: list[PlacedPiece] = []
+    places = [
+        _Place(*ends, *lifts)
+        for ends, lifts in zip(pairwise(angles.tolist()), pairwise(heights), strict=True)
+    ]
+
+    def end_state(number: int) -> tuple[float, float]:
+        """Velocity and acceleration at the end of a phase: its law fixes them by itself."""
+        match phases[number]:
+            case SegmentPhase() as phase:
+                return phase.end[1:]
+            case RisePhase() as phase:
+                return places[number].end_state(rises[phase.shape])
+            case DwellPhase():
+                return 0.0, 0.0
+
+    pieces: list[tuple[float, Piece]] = []
     stretches: list[PlacedPhase] = []
-    cuts: list[float] = []
-    for number, phase in enumerate(phases):
+    cuts = np.array([])
+    for number, (phase, place) in enumerate(zip(phases, places, strict=True)):
         match phase:
             case DwellPhase():
                 kind = "dwell"
-                places.append(frame.whole(number, None, 0.0))
+                pieces.append((place.end, Piece(polynomial, parameters=(place.start, place.base))))
             case SegmentPhase():
-                kind = "rise" if frame.rise(number) >= 0.0 else "return"
-                places.append(frame.whole(number, frame.segment(number), 1.0))
+                kind = "rise" if place.rise >= 0.0 else "return"
+                pieces.append((place.end, place.quintic(end_state(number - 1), phase.end[1:])))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
-                places += frame.law(number, rises[phase.shape])
-                cuts += _cuts(places[-1], rises[phase.shape])
-        start, end = float(angles[number]), float(angles[number + 1])
-        stretches.append(PlacedPhase(kind=kind, start=start, end=end))
-    lift = placed(places)
-    sharp = np.array(sorted({*lift.knots.tolist(), *cuts}))
-    return Program(lift=lift, stretches=tuple(stretches), cuts=sharp)
+                pieces += place.pieces(rises[phase.shape])
+                cuts = np.append(cuts, place.cuts(rises[phase.shape]))
+        stretches.append(PlacedPhase(kind=kind, start=place.start, end=place.end))
+    knots, parts = zip(*pieces, strict=True)
+    lift = piecewise([0.0, *knots], list(parts))
+    return Program(lift=lift, stretches=tuple(stretches), cuts=np.union1d(lift.knots, cuts))
 
 
-def _cuts(place: PlacedPiece, rise: Rise) -> list[float]:
-    """Return where a law bends sharply in its place."""
-    cuts = np.array([]) if rise.cuts is None else rise.cuts
-    return (place.origin + place.width * cuts[(cuts > 0.0) & (cuts < 1.0)]).tolist()
+@dataclass(frozen=True)
+class _Placed:
+    """A law's function in a place, ``base + scale*S((theta - origin)/width)``; phases share it."""
+
+    law: Callable[..., Jet]
+
+    def __call__(
+        self, x: Jet, origin: Value, per_width: Value, base: Value, scale: Value, *parameters: Value
+    ) -> Jet:
+        share = Jet.variable((x.c[0] - origin) * per_width, x.order)
+        value, *slopes = self.law(share, *parameters).c
+        rates = (scale * per_width**k * slope for k, slope in enumerate(slopes, 1))
+        return Jet([base + scale * value, *rates])
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _Frame:
-    """Phases with their places: ends of the `angles`, rad, `heights` there, laws by their shape."""
+@dataclass(frozen=True)
+class _Place:
+    """Where a phase stands: from `start` to `end`, rad, and from the lift `base` to `top`."""
 
-    phases: Sequence[Phase]
-    angles: Array
-    heights: list[float]
-    rises: Mapping[RiseParameters, Rise]
+    start: float
+    end: float
+    base: float
+    top: float
 
-    def width(self, number: int) -> float:
-        return float(self.angles[number + 1] - self.angles[number])
+    @property
+    def rise(self) -> float:
+        return self.top - self.base
 
-    def rise(self, number: int) -> float:
-        return self.heights[number + 1] - self.heights[number]
+    def law(self, rise: Rise) -> tuple[float, float, float, float]:
+        """Return origin, width, base and scale of a law (see `_Placed`)."""
+        if rise.mirrored and self.rise < 0.0:  # it comes down by running backwards
+            return self.end, self.start - self.end, self.top, -self.rise
+        return self.start, self.end - self.start, self.base, self.rise
 
-    def backwards(self, number: int, rise: Rise) -> bool:
-        """Whether a law comes down by running backwards."""
-        return rise.mirrored and self.rise(number) < 0.0
+    def pieces(self, rise: Rise) -> Iterator[tuple[float, Piece]]:
+        """Yield the pieces of a law, each with the angle at which it ends."""
+        origin, width, base, scale = self.law(rise)
+        inner = np.sort(origin + width * rise.function.knots[1:-1]).tolist()
+        parts = rise.function.pieces[:: 1 if width > 0.0 else -1]
+        for end, part in zip([*inner, self.end], parts, strict=True):
+            parameters = (origin, 1.0 / width, base, scale, *part.parameters)
+            yield end, Piece(_Placed(part.function), parameters=parameters)
 
-    def whole(self, number: int, law: Piecewise | None, scale: float) -> PlacedPiece:
-        """Return a law without knots that begins where a phase does."""
-        start, end = self.angles[number : number + 2].tolist()
-        base, width = self.heights[number], self.width(number)
-        return PlacedPiece(
-            law=law, part=0, end=end, origin=start, width=width, base=base, scale=scale
-        )
+    def cuts(self, rise: Rise) -> Array:
+        """Return where a law bends sharply."""
+        origin, width, *_ = self.law(rise)
+        return origin + width * np.array(rise.cuts)
 
-    def law(self, number: int, rise: Rise) -> list[PlacedPiece]:
-        """Return the pieces of a law in the place of a phase."""
-        place = self.whole(number, rise.function, self.rise(number))
-        parts = range(len(rise.function.pieces))
-        if self.backwards(number, rise):
-            parts = parts[::-1]
-            place = replace(
-                place,
-                origin=place.end,
-                width=-place.width,
-                base=self.heights[number + 1],
-                scale=-place.scale,
-            )
-        inner = np.sort(place.origin + place.width * rise.function.knots[1:-1]).tolist()
-        return [
-            replace(place, part=part, end=end)
-            for part, end in zip(parts, [*inner, place.end], strict=True)
-        ]
+    def end_state(self, rise: Rise) -> tuple[float, float]:
+        """Return velocity and acceleration of a law at the end."""
+        _, width, _, scale = self.law(rise)
+        ends = (len(rise.function.pieces), -1) if width > 0.0 else (0, 1)
+        _, velocity, acceleration = rise.function.side(*ends, 2)
+        return scale * velocity / width, scale * acceleration / width**2
 
-    def segment(self, number: int) -> Piecewise:
-        """Return the quintic from the state before to the state at the end of a phase."""
-        width, rise = self.width(number), self.rise(number)
-        start, end = self.end_state((number - 1) % len(self.phases)), self.end_state(number)
-        v0, a0, v1, a1 = start[0] * width, start[1] * width**2, end[0] * width, end[1] * width**2
-        ends = np.array([[0.0, 1.0], [0.0, rise], [v0, v1], [a0, a1]])
-        powers = hermite_quintics(*ends)[0].tolist()
-        return piecewise([0.0, 1.0], [Piece(polynomial, parameters=(0.0, *powers))])
-
-    def end_state(self, number: int) -> tuple[float, float]:
-        """Return velocity and acceleration at the end of a phase: its law fixes them by itself."""
-        phase = self.phases[number]
-        if isinstance(phase, SegmentPhase):
-            return phase.end[1:]
-        if not isinstance(phase, RisePhase):
-            return 0.0, 0.0
-        law, rise, width = self.rises[phase.shape], self.rise(number), self.width(number)
-        if self.backwards(number, law):
-            velocity, acceleration, _ = law.start
-            return rise * velocity / width, -rise * acceleration / width**2
-        velocity, acceleration, _ = law.end
-        return rise * velocity / width, rise * acceleration / width**2
+    def quintic(self, start: tuple[float, float], end: tuple[float, float]) -> Piece:
+        """Return the quintic with given velocities and accelerations at both ends."""
+        width = self.end - self.start
+        rates = np.array([start, end]) * [width, width**2]
+        ends = np.array([(0.0, 0.0, *rates[0]), (1.0, self.rise, *rates[1])])
+        powers = hermite_quintics(*ends.T)[0].tolist()
+        parameters = (self.start, 1.0 / width, self.base, 1.0, 0.0, *powers)
+        return Piece(_Placed(polynomial), parameters=parameters)

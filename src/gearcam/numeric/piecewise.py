@@ -8,8 +8,7 @@ which is the first to do so.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -56,24 +55,50 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Pieces(ABC):
-    """A function of one variable, smooth between knots.
+class Piecewise:
+    """A function of one variable made of pieces that are written for jets, smooth between knots.
 
     Parameters
     ----------
     knots : (n + 1,) array
         Rising.
+    pieces : tuple of n Piece
+        Between the knots; their integrals are not used.
+    offsets : (n,) array
+        Added to the pieces: integration constants.
     """
 
     knots: Array
+    pieces: tuple[Piece, ...]
+    offsets: Array
+
+    @cached_property
+    def _families(self) -> tuple[Ints, list[tuple[Callable[..., Jet], Array]]]:
+        """Number of each piece's function; and the functions, with a column a piece of parameters.
+
+        The columns of other functions' pieces are never read.
+        """
+        owners: dict[tuple[Callable[..., Jet], int], list[int]] = {}
+        for k, piece in enumerate(self.pieces):
+            owners.setdefault((piece.function, len(piece.parameters)), []).append(k)
+        numbers, functions = np.zeros(len(self.pieces), dtype=np.int64), []
+        for number, ((function, count), own) in enumerate(owners.items()):
+            numbers[own] = number
+            columns = np.zeros((count, len(self.pieces)))
+            columns[:, own] = np.transpose([self.pieces[k].parameters for k in own])
+            functions.append((function, columns))
+        return numbers, functions
 
     def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
         x = np.asarray(x, dtype=float)
-        index = np.searchsorted(self.knots[1:-1], x.ravel(), side="right")
-        return list(self.on_pieces(index, x.ravel(), order).reshape(order + 1, *x.shape))
+        if len(self.pieces) != 1:
+            index = np.searchsorted(self.knots[1:-1], x.ravel(), side="right")
+            return list(self.on_pieces(index, x.ravel(), order).reshape(order + 1, *x.shape))
+        (piece,) = self.pieces
+        jet = piece(Jet.variable(x.ravel(), order)) + self.offsets[0]
+        return [values.reshape(x.shape) for values in jet.derivatives()]
 
-    @abstractmethod
     def on_pieces(self, index: Ints, x: Array, order: int) -> Array:
         """Return function and derivatives by given pieces, right at knots too.
 
@@ -90,59 +115,15 @@ class Pieces(ABC):
         -------
         (order + 1, n) array
         """
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Piecewise(Pieces):
-    """A function made of pieces that are written for jets (see `Pieces`).
-
-    Parameters
-    ----------
-    pieces : tuple of n Piece
-        Between the knots; their integrals are not used.
-    offsets : (n,) array
-        Added to the pieces: integration constants.
-    """
-
-    pieces: tuple[Piece, ...]
-    offsets: Array
-
-    @cached_property
-    def _families(self) -> tuple[Ints, list[tuple[Callable[..., Jet], Array]]]:
-        """Number of each piece's function; and the functions, with a column a piece of parameters.
-
-        The columns of other functions' pieces are never read.
-        """
-        owners: dict[Callable[..., Jet], list[int]] = {}
-        for k, piece in enumerate(self.pieces):
-            owners.setdefault(piece.function, []).append(k)
-        numbers, functions = np.zeros(len(self.pieces), dtype=np.int64), []
-        for number, (function, own) in enumerate(owners.items()):
-            numbers[own] = number
-            columns = np.zeros((len(self.pieces[own[0]].parameters), len(self.pieces)))
-            columns[:, own] = np.transpose([self.pieces[k].parameters for k in own])
-            functions.append((function, columns))
-        return numbers, functions
-
-    def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
-        """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
-        if len(self.pieces) != 1:
-            return super().derivatives(x, order)
-        x = np.asarray(x, dtype=float)
-        (piece,) = self.pieces
-        jet = piece(Jet.variable(x.ravel(), order)) + self.offsets[0]
-        return [values.reshape(x.shape) for values in jet.derivatives()]
-
-    def on_pieces(self, index: Ints, x: Array, order: int) -> Array:
-        """Return function and derivatives by given pieces (see `Pieces.on_pieces`)."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
-        for number, here in members(numbers[index], len(functions)):
-            function, columns = functions[number]
+        for number, (function, columns) in enumerate(functions):
+            here = np.flatnonzero(numbers[index] == number) if len(functions) > 1 else slice(None)
             which = index[here]
-            jet = function(Jet.variable(x[here], order), *columns[:, which]) + self.offsets[which]
-            for k, values in enumerate(jet.derivatives()):
-                result[k, here] = values
+            if which.size:
+                jet = function(Jet.variable(x[here], order), *columns[:, which])
+                for k, values in enumerate((jet + self.offsets[which]).derivatives()):
+                    result[k, here] = values
         return result
 
     def __call__(self, x: ArrayLike) -> Array:
@@ -188,30 +169,6 @@ class Piecewise(Pieces):
         scale = np.fmax(1.0, np.fmax.reduce(np.abs([*before, *after])))
         equal = np.abs(before - after) <= _SAME * scale
         return tuple((np.logical_and.accumulate(equal).sum(axis=0) - 1).tolist())
-
-
-def members(index: Ints, count: int) -> Iterator[tuple[int, Ints | slice]]:
-    """Yield every number that occurs in an index, and where.
-
-    Parameters
-    ----------
-    index : (n,) array of int
-        Numbers from 0 on.
-    count : int
-        How many there may be.
-
-    Yields
-    ------
-    number : int
-        Rising.
-    where : (k,) array of int, or slice
-        Its places in `index`.
-    """
-    if count == 1:
-        yield 0, slice(None)
-        return
-    for number in np.flatnonzero(np.bincount(index)).tolist():
-        yield number, np.flatnonzero(index == number)
 
 
 def piecewise(knots: ArrayLike, pieces: list[Piece]) -> Piecewise:

@@ -59,13 +59,6 @@ def _curve(*powers: float) -> Callable[[float, float, float, float], Piece]:
     return lambda start, end, low, width: Piece(ratio, integral, (start, end - start, low, width))
 
 
-_CUBIC: Final = (0.0, 0.0, 3.0, -2.0)
-"""003 eq. (2.13) with Table 2.3, written on the unit interval."""
-
-_QUINTIC: Final = (0.0, 0.0, 0.0, 10.0, -15.0, 6.0)
-"""Curvature of the ratio zero at both ends too."""
-
-
 def _sine(start: float, end: float, low: float, width: float) -> Piece:
     """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
     return Piece(_sine_ratio, _sine_integral, (start, end - start, 0.5 * math.pi / width, low))
@@ -81,8 +74,10 @@ def _sine_integral(x: Jet, start: Value, rise: Value, speed: Value, low: Value) 
 
 ARCS: Final[dict[str, Arc]] = {
     "cosine": Arc(piece=_cosine),
-    "cubic": Arc(piece=_curve(*_CUBIC)),
-    "quintic": Arc(piece=_curve(*_QUINTIC)),
+    # 003 eq. (2.13) with Table 2.3, written on the unit interval
+    "cubic": Arc(piece=_curve(0.0, 0.0, 3.0, -2.0)),
+    # the curvature of the ratio is zero at both ends too
+    "quintic": Arc(piece=_curve(0.0, 0.0, 0.0, 10.0, -15.0, 6.0)),
     "sine": Arc(piece=_sine, share=2.0 / math.pi),
 }
 """The shapes, by their names in files."""

@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.span import RackTravel, Span, angle_text, continued, rough
+from gearcam.laws.ratio.span import RackTravel, Span, angle_text, continued, demand_smooth
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.chebyshev import Expansion, NotSmoothError
+from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
@@ -129,13 +129,8 @@ class RatioLaw(Displacement):
     def error(self) -> float:
         """Estimated error of phi2, rad: against Gauss-Legendre quadrature of the ratio."""
         nodes, weights = np.polynomial.legendre.leggauss(20)
-        grid = np.concatenate(
-            [
-                np.linspace(low, high, 17)[:-1]
-                for low, high in zip(self.knots[:-1], self.knots[1:], strict=True)
-            ]
-            + [self.knots[-1:]]
-        )
+        parts = np.linspace(self.knots[:-1], self.knots[1:], 17)[:-1]
+        grid = np.append(parts.T, self.knots[-1])
         half = 0.5 * np.diff(grid)
         x = 0.5 * (grid[:-1] + grid[1:]) + half * nodes[:, None]
         second = np.concatenate([[0.0], np.cumsum(half * (weights @ self.ratio(x)))])
@@ -148,13 +143,11 @@ _HOMES: Final = {
     "composite": ("three-phase-polynomial", "multispeed", "fourier"),
     "constant": ("constant",),
     "ellipse": ("ellipse",),
-    "centrodes": ("eccentric-circle", "limacon", "lobed"),
+    "centrodes": ("eccentric-circle", "limacon", "lobed", "log-spiral"),
     "shapes": ("bspline", "rounded-polygon"),
-    "spiral": ("log-spiral",),
-    "formula": ("formula",),
+    "formula": ("formula", "rack"),
     "table": ("table",),
     "position": ("motion",),
-    "rack": ("rack",),
 }
 
 LAWS: Final[Registry[LawEntry]] = Registry(
@@ -195,7 +188,7 @@ def make_law(
     InfeasibleError
         Where the ratio is not finite, smooth, positive or periodic, or where it does not close.
     """
-    try:
+    with demand_smooth("the ratio"):
         driven = integrate(knots, pieces, tolerances.expansion)
         ratio = piecewise(knots, pieces)
         _demand_positive(ratio)
@@ -203,10 +196,8 @@ def make_law(
             longer, more = continued(ratio, pieces)
             ratio, driven = piecewise(longer, more), integrate(longer, more, tolerances.expansion)
             driven = driven.shifted(-float(driven(0.0)))
-    except NotSmoothError as error:
-        raise rough("the ratio", error) from error
     law = RatioLaw(lobes=lobes, ratio=ratio, driven=driven, solved=dict(solved or {}))
-    _demand_smooth(law)
+    _demand_c1(law)
     if abs(law.closure_error) > tolerances.refusal:
         asks = "the tooth counts ask" if lobes.closed else "driven_travel_deg asks"
         raise InfeasibleError(
@@ -233,7 +224,7 @@ def _demand_positive(ratio: Piecewise) -> None:
         )
 
 
-def _demand_smooth(law: RatioLaw) -> None:
+def _demand_c1(law: RatioLaw) -> None:
     for jump in law.jumps:
         if jump.order <= 2:
             name = "ratio" if jump.order == 1 else "slope of the ratio"

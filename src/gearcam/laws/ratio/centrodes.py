@@ -1,4 +1,4 @@
-"""Centrodes given by one formula of the driver's radius: circles off centre, limacons, lobed ones.
+"""Centrodes given by one formula of the driver's radius: circles, limacons, lobed ones, spirals.
 
 The radius is given at any scale; the centre distance over it follows from closure.
 """
@@ -12,10 +12,10 @@ from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import LOBES, demand_lobes, law_of_centrode
-from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.ratio.span import Lobes, Travel, demand_equal, spiral
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
-from gearcam.quantities import COUNT, NUMBER, param
+from gearcam.quantities import ANGLE, COUNT, NUMBER, param
 from gearcam.tolerances import Tolerances
 
 
@@ -109,6 +109,44 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
     return make_law(lobes, [0.0, lobes.period], [piece], tolerances, solved)
 
 
+@dataclass(frozen=True, kw_only=True)
+class LogSpiral:
+    """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k, growing the other way.
+
+    With ``u = r1/A = i/(1 + i)`` at both ends, the driven wheel turns by
+    ``ln((1 - u0)/(1 - u1))/k`` and the driver by ``ln(u1/u0)/k``, so that its travel gives k.
+    """
+
+    ratios: tuple[float, float] = param(NUMBER, gt=0, doc="i21 at the start and at the end")
+    driven_travel: float = param(ANGLE, gt=0, le=360, doc="how far the driven wheel turns")
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        """Return the law for `lobes`, to `tolerances`.
+
+        Raises
+        ------
+        InfeasibleError
+            For unequal tooth counts or equal ratios.
+        """
+        demand_equal(lobes)
+        start, end = self.ratios
+        if start == end:
+            raise InfeasibleError(
+                "a spiral's ratio changes from start to end",
+                where="law.ratios",
+                value=end,
+                limit=start,
+                nearest='other ratios; a constant one is the law "constant"',
+            )
+        first = start / (1.0 + start)
+        growth = math.log((1.0 + end) / (1.0 + start)) / self.driven_travel
+        travel = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
+
+        solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
+        span = Travel(travel, self.driven_travel)
+        return make_law(span, [0.0, travel], [spiral(first, growth)], tolerances, solved)
+
+
 def _demand_one_lobe(lobes: Lobes, name: str) -> None:
     if lobes.n1 != 1:
         raise InfeasibleError(
@@ -141,5 +179,12 @@ LAWS.register(
         doc="r1 = 1 + e*cos(n1*phi1): wheels with any numbers of lobes",
         continuity="analytic",
         source="classical; closure in closed form",
+    ),
+    LawEntry(
+        name="log-spiral",
+        example=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
+        doc="logarithmic spirals on an open pair, from one ratio to another",
+        continuity="analytic",
+        source="003 fig. 1.9; classical",
     ),
 )

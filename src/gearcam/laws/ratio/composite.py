@@ -11,12 +11,13 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import LawEntry
+from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.arcs import ARCS, SMOOTH
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.phases import arcs_law, one_lobe
 from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.numerals import shown
-from gearcam.numeric.jets import Jet, cos, sin
+from gearcam.numeric.jets import Jet, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
@@ -57,24 +58,24 @@ class Multispeed:
         InfeasibleError
             If angles and transitions span neither a turn nor a lobe, or no ratio closes it.
         """
-        knots = [0.0]
-        values: list[float | Solve] = [self.ratios[0]]
-        for number, (angle, ratio) in enumerate(zip(self.angles, self.ratios, strict=True)):
-            if number:
-                knots.append(knots[-1] + self.transition)
-                values.append(ratio)
-            if angle > 0.0:
-                knots.append(knots[-1] + angle)
-                values.append(ratio)
+        steps: list[tuple[float, float | Solve]] = [
+            (width, ratio)
+            for angle, ratio in zip(self.angles, self.ratios, strict=True)
+            for width in (self.transition, angle)
+            if width > 0.0
+        ]
+        steps[0] = (0.0, self.ratios[0])  # to which no transition leads
+        if self.driven_travel is None:
+            steps.append((self.transition, self.ratios[0]))
+        knots = np.cumsum([width for width, _ in steps])
+        values: list[float | Solve] = [ratio for _, ratio in steps]
         arc = ARCS[self.shape]
         name = f"ratios[{self.ratios.index('solve')}]" if "solve" in self.ratios else ""
         if self.driven_travel is not None:
             demand_equal(lobes)
-            span = Travel(knots[-1], self.driven_travel)
-            return arcs_law(arc, np.array(knots), values, span, tolerances, name=name)
-        knots.append(knots[-1] + self.transition)
-        values.append(self.ratios[0])
-        grid, lobe = one_lobe(np.array(knots), values, lobes, "law.angles_deg with transitions")
+            span = Travel(float(knots[-1]), self.driven_travel)
+            return arcs_law(arc, knots, values, span, tolerances, name=name)
+        grid, lobe = one_lobe(knots, values, lobes, "law.angles_deg with transitions")
         return arcs_law(arc, grid, lobe, lobes, tolerances, name=name)
 
 
@@ -119,7 +120,6 @@ class ThreePhasePolynomial:
                 ways=(Way(near={"law.knots_deg[3]": 360.0 / lobes.n1}),),
             )
         first, second, third = (float(width) for width in np.diff(self.knots))
-        k1 = self.knots[1]
         a, mean = self.lowest, lobes.advance / lobes.period
         # integral of (ratio - a)/p: the cubic's mean is half its rise
         rise = 0.5 * (second + third)
@@ -136,15 +136,11 @@ class ThreePhasePolynomial:
             )
         b = a + p * rise
 
-        def up(x: Jet) -> Jet:
-            t = x - k1
-            return (0.5 * p / second) * (t * t) + a
-
-        def down(x: Jet) -> Jet:
-            t = x - lobes.period
-            return (-0.5 * p / third) * (t * t) + b
-
-        pieces = [ARCS["cubic"].piece(b, a, 0.0, first), Piece(up), Piece(down)]
+        pieces = [
+            ARCS["cubic"].piece(b, a, 0.0, first),
+            Piece(polynomial, primitive, (self.knots[1], a, 0.0, 0.5 * p / second)),
+            Piece(polynomial, primitive, (lobes.period, b, 0.0, -0.5 * p / third)),
+        ]
         solved = {"p": p, "ratios[0]": b, "ratios[2]": a + 0.5 * p * second}
         return make_law(lobes, self.knots, pieces, tolerances, solved)
 
@@ -185,14 +181,7 @@ class Fourier:
                 total = total + (a * cos((k * n) * x) + b * sin((k * n) * x))
             return mean * total
 
-        def ratio(x: Jet) -> Jet:
-            total = 0.0 * x + 1.0
-            for k, a, b in waves:
-                kn = float(k * n)
-                total = total + ((b * kn) * cos(kn * x) - (a * kn) * sin(kn * x))
-            return mean * total
-
-        knots, pieces = [0.0, lobes.period], [Piece(ratio, phi2)]
+        knots, pieces = [0.0, lobes.period], [Piece(derivative(phi2), phi2)]
         (place, smallest), _ = piecewise(knots, pieces).extremes
         if not smallest > 0.0:
             share = mean / (mean - smallest)

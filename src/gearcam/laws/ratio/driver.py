@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.ratio.base import RatioLaw, make_law
-from gearcam.laws.ratio.span import PLACES, Lobes, Span, angle_text, rough
+from gearcam.laws.ratio.span import PLACES, Lobes, Span, angle_text, demand_smooth
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
@@ -32,22 +32,19 @@ def law_of_centrode(
     knots: ArrayLike,
     lobes: Span,
     tolerances: Tolerances,
-    solved: Mapping[str, float] | None = None,
 ) -> RatioLaw:
     """Make a law from the driver's centrode: ``i = r/(c - r)``, c the centre distance in its scale.
 
     Parameters
     ----------
     shapes : list of n Piece
-        The radius between the knots, at any scale.
+        The radius between the knots, at any scale; positive.
     knots : (n + 1,) array, rad
         From 0 to the period.
     lobes : Lobes or Travel
         What to close to.
     tolerances : Tolerances
         Accuracy.
-    solved : mapping of str to float, optional
-        What was solved already.
 
     Returns
     -------
@@ -57,7 +54,7 @@ def law_of_centrode(
     Raises
     ------
     InfeasibleError
-        Where the radius is not finite, smooth or positive.
+        Where the radius is not finite or smooth.
 
     Notes
     -----
@@ -65,15 +62,11 @@ def law_of_centrode(
     between the largest r and the c that would close a wheel of that radius all around.
     """
     radius = piecewise(knots, shapes)
-    demand_positive(radius, "r1", lobes)
-    try:
+    with demand_smooth("r1"):
         center = solve_center(radius, knots, lobes, tolerances)
-    except NotSmoothError as error:
-        raise rough("r1", error) from error
     ratios = {shape.function: _ratio(shape.function, center) for shape in shapes}
     pieces = [Piece(ratios[shape.function], parameters=shape.parameters) for shape in shapes]
-    found = {**(solved or {}), "center_distance_over_scale": center}
-    return make_law(lobes, knots, pieces, tolerances, found)
+    return make_law(lobes, knots, pieces, tolerances, {"center_distance_over_scale": center})
 
 
 def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) -> None:

@@ -16,17 +16,18 @@ from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
     PLACES,
     Lobes,
+    RackTravel,
     Span,
     angle_text,
+    demand_smooth,
     open_travel,
-    rough,
     span_of,
     travel_problems,
 )
 from gearcam.numerals import shown
-from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import Piece
+from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
 
@@ -76,10 +77,12 @@ class Formula:
         _demand_repeats(function, name, span)
         if self.ratio is None:
             return law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
-        try:
-            return _from_ratio(function, span, tolerances)
-        except NotSmoothError as error:
-            raise rough(name, error) from error
+        with demand_smooth(name):
+            total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
+        factor = span.advance / total.antiderivative().last
+        piece = Piece(lambda x: factor * function(x))
+        solved = {"ratio_factor": factor}
+        return make_law(span, [0.0, span.period], [piece], tolerances, solved)
 
 
 def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
@@ -144,19 +147,52 @@ def from_phi2(
             limit=0.0,
             nearest="this is the ratio there, which must be positive",
         )
-    try:
+    with demand_smooth("phi2"):
         expand(values_of(ratio), [0.0, lobes.period], tolerances.expansion)
-    except NotSmoothError as error:
-        raise InfeasibleError("phi2 is not smooth", where=angle_text(error.place)) from error
     return make_law(lobes, [0.0, lobes.period], [Piece(ratio, phi2)], tolerances, solved)
 
 
-def _from_ratio(shape: Callable[[Jet], Jet], lobes: Span, tolerances: Tolerances) -> RatioLaw:
-    """Make a law from a ratio up to a factor, which closure decides."""
-    total = expand(values_of(shape), [0.0, lobes.period], tolerances.expansion).antiderivative()
-    factor = lobes.advance / total.last
-    piece = Piece(lambda x: factor * shape(x))
-    return make_law(lobes, [0.0, lobes.period], [piece], tolerances, {"ratio_factor": factor})
+@dataclass(frozen=True, kw_only=True)
+class RackLaw:
+    """The driver's centrode, or the rack's travel over a turn; either at any scale.
+
+    The rack moves by ``dy = r1*dphi1``, so that ``r1 = y'``; its own centrode is the curve ``(r1,
+    y)``, which is straight for a circular wheel only. The law's ratio is r1, its phi2 is y.
+    """
+
+    r1: str | None = param(TEXT, default=None, doc="driver centrode's radius over phi1")
+    travel: str | None = param(TEXT, default=None, doc="travel of the rack over phi1")
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        if (self.r1 is None) == (self.travel is None):
+            state = "neither r1 nor travel is given" if self.r1 is None else "both are given"
+            yield "r1", None, state, "exactly one of r1, travel"
+            return
+        name = "r1" if self.travel is None else "travel"
+        yield from formula_problems(name, getattr(self, name))
+
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:  # noqa: ARG002
+        """Return the law to `tolerances`; the rack may have any number of teeth.
+
+        Raises
+        ------
+        InfeasibleError
+            Where the radius is not finite, smooth, positive or periodic.
+        """
+        turn = 2.0 * math.pi
+        if self.travel is not None:
+            travel = compiled(self.travel)
+            piece = Piece(derivative(travel), travel)
+        else:
+            piece = Piece(compiled(self.r1 or "1"))
+        places = np.linspace(0.0, turn, PLACES)
+        values = values_of(piece.function)(places)
+        for bad in np.flatnonzero(~np.isfinite(values))[:1]:
+            raise InfeasibleError("r1 is not finite", where=angle_text(float(places[bad])))
+        with demand_smooth("r1"):
+            advance = integrate([0.0, turn], [piece], tolerances.expansion).last
+        return make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
 
 
 LAWS.register(
@@ -166,5 +202,12 @@ LAWS.register(
         doc="one formula in phi1: phi2 (closes by itself), ratio (scaled), or r1 (any scale)",
         continuity="analytic where the formula is",
         source="003 Table 1.1, the three hypotheses",
+    ),
+    LawEntry(
+        name="rack",
+        example=RackLaw(r1="1 + 0.2*cos(phi1)"),
+        doc="a wheel that drives a rack, by its centrode or by the rack's travel",
+        continuity="analytic where the formula is",
+        source="003 fig. 1.8; rolling on a translated body",
     ),
 )

@@ -85,19 +85,14 @@ class Phases:
             If the knots span neither a turn nor a lobe, or the law does not close (naming the
             closing value of each ratio), or no positive ratio closes it.
         """
+        arc = ARCS[self.shape]
         if self.driven_travel is None:
-            knots, ratios = one_lobe(_angles(self.knots), self.ratios, lobes)
-            return arcs_law(ARCS[self.shape], knots, ratios, lobes, tolerances)
+            knots, ratios = one_lobe(np.array(self.knots, dtype=float), self.ratios, lobes)
+            return arcs_law(arc, knots, ratios, lobes, tolerances)
         demand_equal(lobes)
-        knots, ratios, solved = _solve_knot(
-            ARCS[self.shape], self.knots, self.ratios, self.driven_travel
-        )
-        span = Travel(knots[-1], self.driven_travel)
-        return arcs_law(ARCS[self.shape], np.array(knots), ratios, span, tolerances, solved)
-
-
-def _angles(knots: tuple[float | Solve, ...]) -> np.ndarray:
-    return np.array([value for value in knots if value != "solve"], dtype=float)
+        knots, solved = _solve_knot(arc, self.knots, self.ratios, self.driven_travel)
+        span = Travel(float(knots[-1]), self.driven_travel)
+        return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
 
 
 def one_lobe(
@@ -128,14 +123,11 @@ def one_lobe(
     """
     for repeats in (1, lobes.n1):
         count = (len(knots) - 1) // repeats
-        if abs(knots[-1] * lobes.n1 / repeats - 2.0 * math.pi) > SAME:
-            continue
-        tiled = (lobes.period * np.arange(repeats)[:, None] + knots[:count]).ravel()
-        same = count * repeats == len(knots) - 1
-        if same and np.allclose(tiled, knots[:-1], rtol=0, atol=SAME):
-            lobe = list(ratios[: count + 1])
-            if lobe[:-1] * repeats == list(ratios[:-1]) and lobe[0] == lobe[-1]:
-                return np.append(knots[:count], lobes.period), lobe
+        tiled = lobes.period * np.arange(repeats)[:, None] + knots[:count]
+        grid, lobe = np.append(tiled, repeats * lobes.period), list(ratios[:count])
+        repeated = len(grid) == len(knots) and lobe * repeats + lobe[:1] == list(ratios)
+        if repeated and np.allclose(grid, knots, rtol=0, atol=SAME):
+            return np.append(knots[:count], lobes.period), lobe + lobe[:1]
     spans = (
         "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {shown(360 / lobes.n1)}"
     )
@@ -155,7 +147,7 @@ def one_lobe(
 def arcs_law(
     arc: Arc,
     knots: np.ndarray,
-    ratios: list[float | Solve],
+    ratios: Sequence[float | Solve],
     lobes: Span,
     tolerances: Tolerances,
     solved: dict[str, float] | None = None,
@@ -169,7 +161,7 @@ def arcs_law(
         Shape between the knots.
     knots : (n,) array, rad
         From 0 to the period.
-    ratios : list of n floats or "solve"
+    ratios : sequence of n floats or "solve"
         i21 at the knots; all that are left open are one and the same.
     lobes : Lobes or Travel
         What to close to.
@@ -202,7 +194,7 @@ def arcs_law(
 
 def _close(
     weights: np.ndarray,
-    ratios: list[float | Solve],
+    ratios: Sequence[float | Solve],
     lobes: Span,
     tolerances: Tolerances,
     name: str,
@@ -264,23 +256,24 @@ def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> tupl
 
 def _solve_knot(
     arc: Arc, knots: Sequence[float | Solve], ratios: Sequence[float | Solve], travel: float
-) -> tuple[list[float], list[float | Solve], dict[str, float]]:
-    """Solve the knot left open by an open pair: the driven angle is linear in it."""
+) -> tuple[np.ndarray, dict[str, float]]:
+    """Return knots, and the one left open by an open pair: the driven angle is linear in it."""
     if "solve" not in knots:
-        return [value for value in knots if value != "solve"], list(ratios), {}
+        return np.array(knots, dtype=float), {}
     index = knots.index("solve")
-    values = [value for value in ratios if value != "solve"]
-    means = [(1.0 - arc.share) * a + arc.share * b for a, b in pairwise(values)]
+
+    def filled(place: float) -> np.ndarray:
+        return np.array([place if value == "solve" else value for value in knots])
 
     def driven(place: float) -> float:
-        filled = [place if value == "solve" else value for value in knots]
-        return sum(m * (b - a) for m, a, b in zip(means, filled[:-1], filled[1:], strict=True))
+        values = np.array(ratios, dtype=float)
+        means = (1.0 - arc.share) * values[:-1] + arc.share * values[1:]
+        return float(means @ np.diff(filled(place)))
 
     slope = driven(1.0) - driven(0.0)
     place = (travel - driven(0.0)) / slope if slope else math.inf
-    filled = [place if value == "solve" else value for value in knots]
-    low = filled[index - 1]
-    high = filled[index + 1] if index + 1 < len(filled) else 2.0 * math.pi
+    ends = [*knots, 2.0 * math.pi]
+    low, high = float(ends[index - 1]), float(ends[index + 1])
     if not low < place <= high or place == high < 2.0 * math.pi:
         ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
         key, nearest = "law.driven_travel_deg", ways[0 if math.degrees(travel) < ways[0] else 1]
@@ -294,7 +287,7 @@ def _solve_knot(
             f"{shown(ways[0], 10)} to {shown(ways[1], 10)} deg, both excluded",
             ways=(Way(near={key: nearest}, far={key: 0.5 * (ways[0] + ways[1])}),),
         )
-    return filled, list(ratios), {f"knots_deg[{index}]": math.degrees(place)}
+    return filled(place), {f"knots_deg[{index}]": math.degrees(place)}
 
 
 LAWS.register(

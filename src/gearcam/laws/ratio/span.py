@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
@@ -81,7 +82,7 @@ class Travel:
 
 
 @dataclass(frozen=True)
-class RackTravel:
+class RackTravel(Travel):
     """A wheel that drives a rack, turning for ever; the rack is as long as its teeth.
 
     Parameters
@@ -92,17 +93,13 @@ class RackTravel:
         The rack's travel in a turn, in the scale of the wheel's radius.
     """
 
-    period: float
-    advance: float
-    n1: ClassVar[int] = 1
-    n2: ClassVar[int] = 1
     closed: ClassVar[bool] = True
 
 
 ONE_LOBE: Final = Lobes(1, 1)
 """Of equal tooth counts."""
 
-Span = Lobes | Travel | RackTravel
+Span = Lobes | Travel
 """Closed, open, or closed on a rack."""
 
 
@@ -175,23 +172,29 @@ def travel_problems(
         yield missing, None, "is missing beside the other travel", rule
 
 
-def rough(name: str, error: NotSmoothError) -> InfeasibleError:
-    """Return the refusal of what is not smooth, or not finite, over the driver angle.
+@contextmanager
+def demand_smooth(name: str) -> Iterator[None]:
+    """Refuse what turns out inside not to be smooth, or not finite, over the driver angle.
 
     Parameters
     ----------
     name : str
         What it is.
-    error : NotSmoothError
-        With the place.
 
-    Returns
-    -------
+    Yields
+    ------
+    None
+
+    Raises
+    ------
     InfeasibleError
-        To be raised.
+        With the place.
     """
-    state = "is not smooth" if error.finite else "is not finite"
-    return InfeasibleError(f"{name} {state}", where=angle_text(error.place))
+    try:
+        yield
+    except NotSmoothError as error:
+        state = "is not smooth" if error.finite else "is not finite"
+        raise InfeasibleError(f"{name} {state}", where=angle_text(error.place)) from error
 
 
 def open_travel(wheel: str) -> Any:
@@ -251,11 +254,34 @@ def _end(place: float, end: list[float], side: float, length: float) -> tuple[fl
     room = (1.0 - radius) if outward > 0.0 else radius
     rise = math.copysign(min(length * abs(outward) / stretch, _ROOM * room), outward)
 
+    reach = side * math.log1p(rise / radius) / outward
+    return place + reach, spiral(radius, growth, place)
+
+
+def spiral(radius: float, growth: float, place: float = 0.0) -> Piece:
+    """Return the ratio of a logarithmic spiral, ``r1/A = radius*exp(growth*(phi1 - place))``.
+
+    Parameters
+    ----------
+    radius : float
+        At the place, over the centre distance A.
+    growth : float, 1/rad
+        Of the radius in a radian, in the radius.
+    place : float, rad
+        Driver angle.
+
+    Returns
+    -------
+    Piece
+        With its integral, unless it grows so little that an expansion is better.
+    """
+
     def share(x: Jet) -> Jet:
         return radius * exp(growth * (x - place))
 
-    piece = Piece(
-        lambda x: share(x) / (1.0 - share(x)),
-        (lambda x: (-1.0 / growth) * log(1.0 - share(x))) if abs(growth) > _CLOSED_FORM else None,
+    def driven(x: Jet) -> Jet:
+        return (-1.0 / growth) * log(1.0 - share(x))
+
+    return Piece(
+        lambda x: share(x) / (1.0 - share(x)), driven if abs(growth) > _CLOSED_FORM else None
     )
-    return place + side * math.log1p(rise / radius) / outward, piece

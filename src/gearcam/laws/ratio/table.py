@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -17,15 +17,16 @@ from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
 from gearcam.laws.ratio.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.jets import polynomial, primitive, slope
+from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
 from gearcam.quantities import ANGLE, NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
 _ANGLE: Final = "phi1_deg"
-_VALUES: Final = ("ratio", "phi2_deg", "r1")
-_INLINE: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
+_VALUES: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
+"""What the values may be, with their columns in a file."""
+
 _FEWEST: Final = 6
 _MOST: Final = 20000
 """Rows of a table: fewer make no curve of quintics, more are a file of something else."""
@@ -59,8 +60,8 @@ class TableLaw(FromFile):
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        inline = [name for name in _INLINE if getattr(self, name) is not None]
-        rule = f"file, or phi1_deg with one of {', '.join(_VALUES)}"
+        inline = [name for name in _VALUES if getattr(self, name) is not None]
+        rule = f"file, or phi1_deg with one of {', '.join(_VALUES.values())}"
         if self.file is not None:
             if inline or self.phi1 is not None:
                 yield "file", None, "the points are given twice", rule
@@ -68,7 +69,9 @@ class TableLaw(FromFile):
             try:
                 _ = self.points
             except ColumnsError as error:
-                columns = f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES)}"
+                columns = (
+                    f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES.values())}"
+                )
                 yield "file", None, str(error), columns
         elif self.phi1 is None or len(inline) != 1:
             state = f"{' and '.join(inline) or 'no values'} {'are' if len(inline) > 1 else 'is'}"
@@ -93,94 +96,54 @@ class TableLaw(FromFile):
             kind, angles, values = self.points
         except ColumnsError as error:
             raise InfeasibleError(str(error), where="law.file") from error
-        return law_of_points(kind, angles, values, lobes, self.driven_travel, tolerances)
+        span = _span(angles, lobes, self.driven_travel)
+        knots = np.array([0.0, *angles[1:-1], span.period])
+        rise = float(values[-1] - values[0])
+        if kind != "phi2":
+            _demand_ratio(kind, angles, values, span)
+            rise = 0.0
+        powers = quintics(knots, values, rise if span.closed else None)
+        if kind == "r1":
+            return law_of_centrode(_pieces(knots, powers), knots, span, tolerances)
+        if kind == "phi2":
+            return make_law(span, knots, _pieces(knots, powers, slope, polynomial), tolerances)
+        factor = span.advance / integrate(knots, _pieces(knots, powers), 0.0).last
+        pieces = _pieces(knots, factor * powers)
+        return make_law(span, knots, pieces, tolerances, {"ratio_factor": factor})
 
     @cached_property
     def points(self) -> tuple[str, Array, Array]:
-        """What the values are (``ratio``, ``phi2_deg`` or ``r1``), angles and values, rad or 1.
+        """What the values are (``ratio``, ``phi2`` or ``r1``), angles and values, rad or 1.
 
         It raises `ColumnsError` with the line of the file that is wrong.
         """
         if self.rows is not None:
             return _points(self.rows)
-        kind = next(name for name in _INLINE if getattr(self, name) is not None)
-        return _INLINE[kind], np.array(self.phi1), np.array(getattr(self, kind))
+        kind = next(name for name in _VALUES if getattr(self, name) is not None)
+        return kind, np.array(self.phi1), np.array(getattr(self, kind))
 
 
 def _points(rows: CsvRows) -> tuple[str, Array, Array]:
-    kinds: list[str] = []
-
-    def choose(head: list[str]) -> list[str]:
-        kinds[:] = [name for name in _VALUES if name in head]
-        return [_ANGLE, *kinds] if len(kinds) == 1 else []
-
-    points, lines = rows.columns(choose)
+    kinds = [kind for kind, column in _VALUES.items() if column in rows.cells[0]]
+    points, lines = rows.columns([_ANGLE, _VALUES[kinds[0]]] if len(kinds) == 1 else [])
     if not _FEWEST <= len(points) <= _MOST:
         raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
     falling = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
     if falling.size:
         raise ColumnsError(f"line {lines[int(falling[0]) + 1]}: {_ANGLE} does not rise")
-    factor = math.pi / 180.0 if kinds[0] == "phi2_deg" else 1.0
+    factor = math.pi / 180.0 if kinds[0] == "phi2" else 1.0
     return kinds[0], np.radians(points[:, 0]), points[:, 1] * factor
 
 
-def law_of_points(
-    kind: str,
-    angles: Array,
-    values: Array,
-    lobes: Lobes,
-    driven_travel: float | None,
-    tolerances: Tolerances,
-) -> RatioLaw:
-    """Make a law from points.
-
-    Parameters
-    ----------
-    kind : {"ratio", "phi2_deg", "r1"}
-        What the values are.
-    angles, values : (n,) arrays, rad and rad or 1
-        Points; angles rise from 0.
-    lobes : Lobes
-        Of the tooth counts.
-    driven_travel : float or None, rad
-        Of an open pair.
-    tolerances : Tolerances
-        Accuracy.
-
-    Returns
-    -------
-    RatioLaw
-
-    Raises
-    ------
-    InfeasibleError
-        If they span no lobe, do not repeat, or no law can be made of them.
-    """
-    span = _span(angles, lobes, driven_travel)
-    knots = angles.copy()
-    knots[0], knots[-1] = 0.0, span.period
-    rise = float(values[-1] - values[0])
-    if kind != "phi2_deg":
-        _demand_repeat(values, span)
-        _demand_positive(kind, angles, values)
-        rise = 0.0
-    powers = quintics(knots, values, rise if span.closed else None)
-    if kind == "r1":
-        return law_of_centrode(_pieces(knots, powers), knots, span, tolerances)
-    if kind == "phi2_deg":
-        pieces = [
-            replace(piece, function=slope, integral=polynomial) for piece in _pieces(knots, powers)
-        ]
-        return make_law(span, knots, pieces, tolerances)
-    factor = span.advance / integrate(knots, _pieces(knots, powers), 0.0).last
-    pieces = _pieces(knots, factor * powers)
-    return make_law(span, knots, pieces, tolerances, {"ratio_factor": factor})
-
-
-def _pieces(knots: Array, powers: Array) -> list[Piece]:
-    """Return the polynomials with rows of `powers` of the distance from the knot before."""
+def _pieces(
+    knots: Array,
+    powers: Array,
+    function: Callable[..., Jet] = polynomial,
+    integral: Callable[..., Jet] = primitive,
+) -> list[Piece]:
+    """Return functions of polynomials, with rows of `powers` about the knot before."""
     rows = np.column_stack([knots[:-1], powers]).tolist()
-    return [Piece(polynomial, primitive, tuple(row)) for row in rows]
+    return [Piece(function, integral, tuple(row)) for row in rows]
 
 
 def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
@@ -207,7 +170,8 @@ def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
     return lobes
 
 
-def _demand_repeat(values: Array, span: Span) -> None:
+def _demand_ratio(kind: str, angles: Array, values: Array, span: Span) -> None:
+    """Refuse values that do not repeat, or are not positive."""
     if span.closed and abs(values[-1] - values[0]) > TYPED * abs(values[0]):
         raise InfeasibleError(
             "the last value of the table is not the first",
@@ -215,9 +179,6 @@ def _demand_repeat(values: Array, span: Span) -> None:
             value=float(values[-1]),
             limit=float(values[0]),
         )
-
-
-def _demand_positive(kind: str, angles: Array, values: Array) -> None:
     if not (values > 0.0).all():
         worst = int(np.argmin(values))
         raise InfeasibleError(

@@ -12,11 +12,11 @@ Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
 from gearcam.laws.entry import LawEntry
-from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
@@ -38,23 +38,13 @@ class Rise:
         S, with knots from 0 to 1.
     mirrored : bool
         Whether the return is the rise run backwards, ``S(1 - phi)``, instead of ``1 - S(phi)``.
-    cuts : (n,) array or None
-        Where the search for peaks cuts the angle, if finer than at the knots.
+    cuts : sequence of float
+        Where else than at the knots the search for peaks cuts the angle: it bends sharply there.
     """
 
     function: Piecewise
     mirrored: bool = False
-    cuts: Array | None = None
-
-    @property
-    def start(self) -> tuple[float, ...]:
-        """Velocity, acceleration and jerk at the start of the rise."""
-        return tuple(self.function.side(0, 1, 3)[1:])
-
-    @property
-    def end(self) -> tuple[float, ...]:
-        """Velocity, acceleration and jerk at the end of the rise."""
-        return tuple(self.function.side(len(self.function.knots) - 1, -1, 3)[1:])
+    cuts: Sequence[float] = ()
 
 
 class RiseParameters(Protocol):
@@ -80,13 +70,16 @@ class ClosedForm(ABC):
 
 
 _HOMES: Final = {
-    "simple": ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal"),
-    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
-    "trapezoids": (
+    "simple": (
+        "constant-velocity",
+        "constant-acceleration",
+        "harmonic",
+        "cycloidal",
         "trapezoidal-velocity",
         "sine-trapezoidal-velocity",
         "trapezoidal-acceleration",
     ),
+    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
     "scca": ("modified-trapezoid", "modified-sine", "scca"),
     "points": ("b-spline", "table"),
     "formula": ("formula",),

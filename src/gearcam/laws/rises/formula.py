@@ -60,7 +60,7 @@ class FormulaRise:
                 )
         scale = 1.0 / (end - start)
         piece = Piece(lambda x: (shape(x) - start) * scale)
-        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts)
+        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts[1:-1].tolist())
 
 
 def _from_corner_to_corner(formula: str, start: float, end: float) -> str:

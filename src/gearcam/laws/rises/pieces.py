@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
-from itertools import zip_longest
 from math import comb, factorial
 from typing import Final
 
@@ -119,20 +118,6 @@ def about(powers: Sequence[Fraction], by: int) -> list[Fraction]:
         sum((powers[j] * comb(j, k) * by ** (j - k) for j in range(k, len(powers))), Fraction(0))
         for k in range(len(powers))
     ]
-
-
-def product(one: Sequence[Fraction], two: Sequence[Fraction]) -> list[Fraction]:
-    """Return the exact product of polynomials `one` and `two`: coefficients of rising powers."""
-    result = [Fraction(0)] * (len(one) + len(two) - 1)
-    for j, a in enumerate(one):
-        for k, b in enumerate(two):
-            result[j + k] += a * b
-    return result
-
-
-def total(one: Sequence[Fraction], two: Sequence[Fraction]) -> list[Fraction]:
-    """Return the exact sum of polynomials `one` and `two`: coefficients of rising powers."""
-    return [a + b for a, b in zip_longest(one, two, fillvalue=Fraction(0))]
 
 
 def from_both_ends(

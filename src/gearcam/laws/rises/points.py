@@ -13,13 +13,8 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, FromFile
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.rises.base import (
-    NARROWEST,
-    RISES,
-    ClosedForm,
-    Rise,
-)
-from gearcam.laws.rises.pieces import about, product, spline, total
+from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm, Rise
+from gearcam.laws.rises.pieces import about, spline
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
@@ -86,14 +81,14 @@ def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
     p = len(control) - 1
     # the p knots before and the p knots after the two, those beyond the ends moved there
     knots = [min(max(number - p + 1 + k, 0), spans) for k in range(2 * p)]
-    rows = [[value] for value in control]
+    rows = np.full((p + 1, p + 1), Fraction(0))
+    rows[:, 0] = control
     for r in range(1, p + 1):
         for i in range(p, r - 1, -1):
             low, high = knots[i - 1], knots[i + p - r]
-            share = [Fraction(number - low, high - low), Fraction(1, high - low)]
-            step = total(rows[i], [-value for value in rows[i - 1]])
-            rows[i] = total(rows[i - 1], product(share, step))
-    return rows[p]
+            step = (rows[i] - rows[i - 1]) / (high - low)
+            rows[i] = rows[i - 1] + (number - low) * step + np.roll(step, 1)
+    return rows[p].tolist()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,11 +10,13 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar, Final
+from typing import Final
+
+import numpy as np
 
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.rises.base import RISES, ClosedForm
-from gearcam.laws.rises.pieces import about, from_both_ends, product, total
+from gearcam.laws.rises.pieces import about, from_both_ends
 from gearcam.numeric.piecewise import Piecewise, piecewise
 from gearcam.quantities import NUMBER, param
 
@@ -41,34 +43,32 @@ def of_least_degree(
         Its exact coefficients of the powers of phi and of ``phi - 1``.
     """
     m, n = len(start), len(end)
-    given = [[Fraction(v) / math.factorial(k) for k, v in enumerate(e)] for e in (start, end)]
-    known = about(given[0], 1)
-    missing = total(given[1], [-value for value in known])[:n]
-    inverse = [Fraction((-1) ** j * math.comb(m + j - 1, j)) for j in range(n)]
-    power = [Fraction(math.comb(m, j)) for j in range(m + 1)]
-    about_end = total(known, product(power, product(missing, inverse)[:n]))
+    first, last = (
+        np.array([Fraction(v) / math.factorial(k) for k, v in enumerate([*e, *[0] * rest])])
+        for e, rest in ((start, n), (end, m))
+    )
+    known = np.array(about(first.tolist(), 1))
+    inverse = np.array([Fraction((-1) ** j * math.comb(m + j - 1, j)) for j in range(n)])
+    power = np.array([Fraction(math.comb(m, j)) for j in range(m + 1)])
+    missing = np.convolve((last - known)[:n], inverse)[:n]
+    about_end = (known + np.convolve(power, missing)).tolist()
     return about(about_end, -1), about_end
 
 
-def two_ended(start: Sequence[float], end: Sequence[float]) -> Piecewise:
-    """Return the polynomial rise of least degree.
+class _TwoEnded(ClosedForm):
+    """The polynomial of least degree with S', S'', ... given at both ends."""
 
-    Parameters
-    ----------
-    start, end : sequences of float
-        S', S'', ... at 0 and at 1.
+    start: tuple[float, ...]
+    end: tuple[float, ...]
 
-    Returns
-    -------
-    Piecewise
-        S over phi, one piece.
-    """
-    left, right = of_least_degree([0.0, *start], [1.0, *end])
-    return piecewise([0.0, 1.0], [from_both_ends(left, right, 0.0, 1.0)])
+    def function(self) -> Piecewise:
+        """S over phi, one piece of degree ``len(start) + len(end) + 1`` at most."""
+        left, right = of_least_degree([0.0, *self.start], [1.0, *self.end])
+        return piecewise([0.0, 1.0], [from_both_ends(left, right, 0.0, 1.0)])
 
 
 @dataclass(frozen=True, kw_only=True)
-class Polynomial(ClosedForm):
+class Polynomial(_TwoEnded):
     """The polynomial of least degree with given derivatives at both ends."""
 
     start: tuple[float, ...] = param(
@@ -93,52 +93,37 @@ class Polynomial(ClosedForm):
             if count > _MOST:
                 yield name, None, f"{count} derivatives are given", f"at most {_MOST} at an end"
 
-    def function(self) -> Piecewise:
-        """S over phi, one piece of degree ``len(start) + len(end) + 1`` at most."""
-        return two_ended(self.start, self.end)
-
-
-class _Textbook(ClosedForm):
-    """A polynomial whose derivatives at the ends are fixed."""
-
-    start: ClassVar[tuple[float, ...]]
-    end: ClassVar[tuple[float, ...]]
-
-    def function(self) -> Piecewise:
-        """S over phi."""
-        return two_ended(self.start, self.end)
-
 
 @dataclass(frozen=True, kw_only=True)
-class Polynomial23(_Textbook):
+class Polynomial23(_TwoEnded):
     """``S = 3*phi^2 - 2*phi^3``."""
 
     start = end = (0.0,)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Polynomial345(_Textbook):
+class Polynomial345(_TwoEnded):
     """``S = 10*phi^3 - 15*phi^4 + 6*phi^5``."""
 
     start = end = (0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Polynomial4567(_Textbook):
+class Polynomial4567(_TwoEnded):
     """``S = 35*phi^4 - 84*phi^5 + 70*phi^6 - 20*phi^7``."""
 
     start = end = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Polynomial56789(_Textbook):
+class Polynomial56789(_TwoEnded):
     """``S = 126*phi^5 - 420*phi^6 + 540*phi^7 - 315*phi^8 + 70*phi^9``."""
 
     start = end = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Polynomial3456(_Textbook):
+class Polynomial3456(_TwoEnded):
     """``S = phi^3*(2 - phi)^3``: the first half of a rise and return in one formula.
 
     At the top the acceleration is -6 and the jerk 0. The return of the same law that follows
