@@ -1,4 +1,4 @@
-"""The exact gap: how far the driven wheel can turn until flanks touch, edges included.
+"""First touch: how far the driven wheel can turn until flanks or their ends, the edges, touch.
 
 Where flanks share a tangent, `gearcam.gears.normals` knows it without a search. This is for the
 phases in which none do, and for wheels whose teeth are not evenly spaced.
@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.track import Wheel
+from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import Contacts
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
@@ -48,7 +48,7 @@ class Facing:
     pairs : FlankPairs
         The side.
     step, pair : (n,) int arrays
-        Ints of the phase; j.
+        Number of the phase; j.
     phi1 : (n,) array, rad
         Phase.
     """
@@ -96,8 +96,8 @@ class Facing:
             direction = toothing.flank_motion(frames, sf, sigma)
         else:
             direction = toothing.turn * toothing.normals(frames, sigma)
-        turn, shift = self._stands[wheel - 1]
-        return point * turn + shift, direction * turn
+        turn, offset = self._stands[wheel - 1]
+        return point * turn + offset, direction * turn
 
     @cached_property
     def _places(self) -> tuple[Array, Array]:
@@ -165,82 +165,50 @@ class Touches:
 
     Parameters
     ----------
-    facing : Facing
-        The pairs.
+    step, pair : (n,) int arrays
+        Number of the phase; j.
     turn : (n,) array, rad, of a rack mm
         The driven wheel's turn from its nominal place at which the pair touches: it must lie above
         on the driving side and below on the other.
-    angle : (n,) array, rad
-        Driver angle that names the touching point of the driver's flank.
     edge : (n,) bool array
         Whether an end of a flank touches first.
-    low, high : (n,) arrays, rad
-        Driver angles of the ends of the common range on the driver's flank, root first.
     """
 
-    facing: Facing
+    step: Ints
+    pair: Ints
     turn: Array
-    angle: Array
     edge: Mask
-    low: Array
-    high: Array
-
-    @property
-    def step(self) -> Ints:
-        """Ints of the phase."""
-        return self.facing.step
-
-    @property
-    def pair(self) -> Ints:
-        """Number j of the pair."""
-        return self.facing.pair
 
 
-def facing(pairs: FlankPairs, phi1: ArrayLike) -> tuple[Facing, Array, Array]:
-    """Return the pairs that share a range of heights.
+def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
+    """Find the pairs that share a range of heights at phases, rad.
 
-    Parameters
-    ----------
-    pairs : FlankPairs
-        The side.
-    phi1 : (n,) array, rad
-        Phases.
-
-    Returns
-    -------
-    facing : Facing
-        The pairs.
-    low, high : arrays, rad
-        Driver angles of the ends of the common range on the driver's flanks, root first.
+    Returns them with the driver angles, rad, of the range's ends on the driver, root first.
     """
-    phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     step, pair = pairs.beside(phi1)
     every = Facing(pairs=pairs, step=step, pair=pair, phi1=phi1[step])
     height = pairs.guide.height
     ends = [every.end(1, tip=False), every.end(1, tip=True)]
     mates = [every.end(2, tip=True), every.end(2, tip=False)]
-    far, near = (height(every.flank(1, angle, moving=False)[0]) for angle in ends)
-    highest, lowest = (height(every.flank(2, angle, moving=False)[0]) for angle in mates)
-    apart = np.abs(every.pairs.place(1, every.pair) - pairs.track.arc_length(every.phi1))
-    shared = (np.minimum(far, highest) > np.maximum(near, lowest)) & (apart < 2.0 * pairs.pitch)
+    own, other = (
+        [height(every.flank(wheel, angle, moving=False)[0]) for angle in angles]
+        for wheel, angles in zip(WHEELS, (ends, mates), strict=True)
+    )
+    highest, lowest = np.minimum(own[0], other[0]), np.maximum(own[1], other[1])
+    apart = np.abs(pairs.place(1, pair) - pairs.track.arc_length(every.phi1))
+    shared = (highest > lowest) & (apart < 2.0 * pairs.pitch)
     found = every.select(shared)
     low, high = ends[0][shared], ends[1][shared]
-    cut = []
-    for own, limit, beyond in (
-        (low, highest[shared], far[shared] > highest[shared]),
-        (high, lowest[shared], near[shared] < lowest[shared]),
-    ):
-        some, angle = found.select(beyond), own.copy()
-        angle[beyond] = some.find(
-            1, limit[beyond], high[beyond], low[beyond], 0.5 * (low + high)[beyond]
-        )
-        cut.append(angle)
-    return found, cut[0], cut[1]
+    return (
+        found,
+        found.find(1, highest[shared], high, low, low),
+        found.find(1, lowest[shared], high, low, high),
+    )
 
 
 def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
-    """Return where the flanks of a side come nearest at phases (see `facing`)."""
-    found, low, high = facing(pairs, phi1)
+    """Return where the flanks of a side come nearest at phases `phi1`, rad."""
+    found, low, high = _facing(pairs, np.atleast_1d(np.asarray(phi1, dtype=float)))
     root, tip = found.end(2, tip=False), found.end(2, tip=True)
     many = found.select(np.repeat(np.arange(len(low)), _SAMPLES))
     share = np.tile(np.linspace(0.0, 1.0, _SAMPLES), len(low))
@@ -256,19 +224,19 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     left = np.where(falling[rows, best] > 0.0, best, before)
     right = np.where(falling[rows, best] > 0.0, after, best)
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
-    at, extreme = angle[rows, best], turn[rows, best]
-    some = found.select(inner)
-    at[inner] = bracketed_root(
+    extreme, some = turn[rows, best], found.select(inner)
+    at = bracketed_root(
         lambda x: some.compare(x, root[inner], tip[inner])[1],
         angle[inner, left[inner]],
         angle[inner, right[inner]],
         _EXTREME,
     )
-    extreme[inner] = -pairs.side * some.compare(at[inner], root[inner], tip[inner])[0]
-    edge = np.ones(len(low), dtype=bool)
-    edge[inner] = False
+    extreme[inner] = -pairs.side * some.compare(at, root[inner], tip[inner])[0]
     return Touches(
-        facing=found, turn=-pairs.side * extreme, angle=at, edge=edge, low=low, high=high
+        step=found.step,
+        pair=found.pair,
+        turn=-pairs.side * extreme,
+        edge=~np.isin(rows, inner),
     )
 
 
@@ -296,15 +264,16 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     Evenly spaced flanks of a side are parts of curves that touch all together, so that none of
     their ends can be ahead of a tangency. Elsewhere ends are searched.
     """
-    outward = foremost(pairs.side, len(phi1), found.step, found.lead)
+    outward = of_leading_pair(pairs.side, len(phi1), found.step, found.lead)
     searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
-    near = touches(pairs, phi1[searched])
-    ends = foremost(pairs.side, len(phi1), searched[near.step[near.edge]], near.turn[near.edge])
+    some = touches(pairs, phi1[searched])
+    step, turn = searched[some.step[some.edge]], some.turn[some.edge]
+    ends = of_leading_pair(pairs.side, len(phi1), step, turn)
     return -pairs.side * np.maximum(outward, ends), ends > outward
 
 
-def foremost(side: int, count: int, step: Ints, turn: Array) -> Array:
-    """Return how far a side pushes the driven wheel at each phase, against the others.
+def of_leading_pair(side: int, count: int, step: Ints, turn: Array) -> Array:
+    """Return how far the leading tooth pair of a side pushes the driven wheel at each phase.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
-"""The overlap that the exact flanks predict for a driver turned ahead: a lens on each pair.
+"""Contact patches: the overlap that the exact flanks predict on each pair as the driver is ahead.
 
 Where the driver's flank stands deeper in its mate than their common normal is long, both are graphs
 over their common tangent, and the area between them is the difference of two integrals, over the
 stretch on which the driver's is above. That holds also where an end of a flank or a knot of the law
-clips the lens; only what lies beyond the end of a flank, on a fillet or a tip, is left out. Inside
-smooth flanks the lens has the closed form ``(4/3)*delta*sqrt(2*delta/kr)`` with the penetration
+clips the patch; only what lies beyond the end of a flank, on a fillet or a tip, is left out. Inside
+smooth flanks the patch has the closed form ``(4/3)*delta*sqrt(2*delta/kr)`` with the penetration
 delta and the relative curvature kr.
 """
 
@@ -26,36 +26,32 @@ from gearcam.numeric.roots import newton_in_bracket
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 _SMALL = 1e-9
-"""Step, in pitches, at which they end."""
+"""Step, in pitches, at which the search for a common normal ends."""
 
 _MISS = 1e-9
-"""What they may miss of being one, in rad and pitches."""
+"""What two normals may miss of being one, in rad and pitches."""
 
 _CLOSE = 1e-6
-"""The same of the ends of lenses, in pitches."""
+"""Place, in pitches, to which ends of patches are found: the depth there is next to nothing."""
 
 _ANGLE = 1e-8
 """Step of Newton's method, rad, after which the next would be below rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Lenses:
-    """Predicted overlaps, one entry each.
+class Patches:
+    """Predicted contact patches, one entry each.
 
     Parameters
     ----------
     step, pair : (n,) int arrays
-        Ints of the phase; j.
+        Number of the phase; j.
     area : (n,) array, mm^2
-        By integrating the gap.
+        By integrating the depth.
     closed : (n,) array, mm^2
-        By the closed form; nan where the lens is clipped, holds a knot or lies near a cusp.
+        By the closed form; nan where the patch is clipped, holds a knot or lies near a cusp.
     depth : (n,) array, mm
         Largest penetration, along the normal.
-    radius : (2, n) array, mm
-        Distances of the lens's ends from the driver's axis: towards its root, towards its tip.
-    edge : (n,) bool array
-        Whether an end of a flank lies inside the lens.
     """
 
     step: Ints
@@ -63,13 +59,14 @@ class Lenses:
     area: Array
     closed: Array
     depth: Array
-    radius: Array
-    edge: Mask
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Graphs:
     """Flanks of n pairs as graphs over the tangent at the normal that they share.
+
+    x rises along the tangent to the driver's tip, y in the direction in which the driver presses;
+    both are 0 at the driver's point on the normal.
 
     Parameters
     ----------
@@ -77,21 +74,16 @@ class Graphs:
         The side.
     pair : (n,) int array
         j.
-    turned : (2, n) complex array
-        What turns the points of both wheels.
-    shift : (2, n) complex array, mm
-        What is added to them then; zero is the driver's point on the normal.
-    along : (n,) complex array
-        Unit tangent, towards the driver's tip; the driver presses along ``side*1j*along``.
+    turn, offset : (2, n) complex arrays, 1 and mm
+        What turns the points of both wheels, and what is added to them then.
     center : (2, n) array, rad
         Driver angles of the points on the normal.
     """
 
     pairs: FlankPairs
     pair: Ints
-    turned: Plane
-    shift: Plane
-    along: Plane
+    turn: Plane
+    offset: Plane
     center: Array
 
     def select(self, index: Ints | Mask) -> Graphs:
@@ -99,9 +91,8 @@ class Graphs:
         return Graphs(
             pairs=self.pairs,
             pair=self.pair[index],
-            turned=self.turned[:, index],
-            shift=self.shift[:, index],
-            along=self.along[index],
+            turn=self.turn[:, index],
+            offset=self.offset[:, index],
             center=self.center[:, index],
         )
 
@@ -110,66 +101,59 @@ class Graphs:
         """Place sf of both flanks, (2, n), mm."""
         return np.stack([self.pairs.place(wheel, self.pair) for wheel in WHEELS])
 
-    def places(self, ends: tuple[Array, Array]) -> Array:
-        """Return x at the `ends` of what both flanks share, and between, nearest to 0: (3, n)."""
-        one, two = (
-            np.stack([self.at(wheel, angle)[0] for angle in angles])
-            for wheel, angles in zip(WHEELS, ends, strict=True)
-        )
-        low, high = np.maximum(one[0], two[0]), np.minimum(one[1], two[1])
-        return np.stack([low, np.clip(0.0, low, high), high])
-
-    def ends(self, wheel: Wheel) -> Array:
-        """Return the driver angles, rad, of a `wheel`'s flanks at the lower and upper end in x."""
-        low, high = self.pairs.reach(wheel, self.pair)
-        sf = self.sf[wheel - 1]
+    @cached_property
+    def ends(self) -> Array:
+        """Driver angles, rad, of both flanks at their lower and upper end in x, (2, 2, n)."""
         # x rises to the driver's tip, and so to the driven wheel's root
-        reach = np.stack([low, high] if wheel == 1 else [high, low])
-        return self.pairs.toothings[0].track.angle(sf - self.pairs.sigma(wheel) * reach)
+        (root, tip), (low, high) = (self.pairs.reach(wheel, self.pair) for wheel in WHEELS)
+        reach = np.array([[root, tip], [-high, -low]])
+        return self.pairs.track.angle(self.sf[:, None] - self.pairs.side * reach)
+
+    @property
+    def places(self) -> Array:
+        """Ends in x of what both flanks share, and the place between nearest to 0: (3, n)."""
+        low, high = np.stack(
+            [[self.at(wheel, end)[0] for end in self.ends[wheel - 1]] for wheel in WHEELS], axis=1
+        )
+        low, high = low.max(axis=0), high.min(axis=0)
+        return np.stack([low, np.clip(0.0, low, high), high])
 
     def at(self, wheel: Wheel, angle: Array) -> tuple[Array, Array, Array]:
         """Return x and y, mm, of a `wheel`'s flanks at driver angles, rad, and dx/dangle."""
-        toothing = self.pairs.toothings[wheel - 1]
-        sigma = self.pairs.sigma(wheel)
-        frames, sf = toothing.frames(angle), self.sf[wheel - 1]
-        turned = self.turned[wheel - 1] * np.conj(self.along)
-        shift = self.shift[wheel - 1] * np.conj(self.along)
-        seen = toothing.flank_points(frames, sf, sigma) * turned + shift
-        slope = np.real(toothing.flank_motion(frames, sf, sigma) * turned)
+        toothing, turn = self.pairs.toothings[wheel - 1], self.turn[wheel - 1]
+        sigma, sf, frames = self.pairs.sigma(wheel), self.sf[wheel - 1], toothing.frames(angle)
+        seen = toothing.flank_points(frames, sf, sigma) * turn + self.offset[wheel - 1]
+        slope = np.real(toothing.flank_motion(frames, sf, sigma) * turn)
         return seen.real, self.pairs.side * seen.imag, slope
 
     def slope(self, wheel: Wheel, angle: Array) -> Array:
         """Return dy/dx of a `wheel`'s flanks at driver angles `angle`, rad."""
         toothing = self.pairs.toothings[wheel - 1]
         frames = toothing.frames(angle, curved=False)
-        normals = toothing.normals(frames, self.pairs.sigma(wheel)) * self.turned[wheel - 1]
-        direction = -1j * normals * np.conj(self.along)
-        return self.pairs.side * direction.imag / direction.real
+        normals = toothing.normals(frames, self.pairs.sigma(wheel)) * self.turn[wheel - 1]
+        return -self.pairs.side * normals.real / normals.imag
 
-    def find(self, wheel: Wheel, x: Array, ends: Array) -> Array:
-        """Return the driver angles, rad, at which a `wheel`'s flanks have an `x`, within `ends`."""
+    def find(self, wheel: Wheel, x: Array) -> Array:
+        """Return the driver angles, rad, at which a `wheel`'s flanks have an `x`; no end passed."""
 
         def miss(angle: Array) -> tuple[Array, Array]:
             value, _, slope = self.at(wheel, angle)
             return value - x, slope
 
-        start = self.center[wheel - 1] + x / self._rise[wheel - 1]
-        start = np.clip(start, ends.min(axis=0), ends.max(axis=0))
+        center, ends = self.center[wheel - 1], self.ends[wheel - 1]
+        start = np.clip(center + x / self.at(wheel, center)[2], ends.min(axis=0), ends.max(axis=0))
         return newton_in_bracket(miss, ends[0], ends[1], start, _ANGLE)
 
-    @cached_property
-    def _rise(self) -> tuple[Array, Array]:
-        """dx/dangle of both flanks at the normal."""
-        return self.at(1, self.center[0])[2], self.at(2, self.center[1])[2]
-
-    def depth(self, x: Array, ends: tuple[Array, Array]) -> tuple[Array, Array, Array]:
-        """Return how deep the driver's flanks stand at `x`, mm, and both angles within `ends`."""
-        one, two = (self.find(wheel, x, ends[wheel - 1]) for wheel in WHEELS)
+    def depth(self, x: Array) -> tuple[Array, Array, Array]:
+        """Return how deep the driver's flanks stand at `x`, mm, and both driver angles, rad."""
+        one, two = (self.find(wheel, x) for wheel in WHEELS)
         return self.at(1, one)[1] - self.at(2, two)[1], one, two
 
 
-def lenses(pairs: FlankPairs, phi1: ArrayLike, overclosure: float, lead: ArrayLike = 0.0) -> Lenses:
-    """Predict the overlaps of a side.
+def patches(
+    pairs: FlankPairs, phi1: ArrayLike, overclosure: float, lead: ArrayLike = 0.0
+) -> Patches:
+    """Predict the contact patches of a side.
 
     Parameters
     ----------
@@ -184,46 +168,37 @@ def lenses(pairs: FlankPairs, phi1: ArrayLike, overclosure: float, lead: ArrayLi
 
     Returns
     -------
-    Lenses
-        Only pairs that overlap.
+    Patches
+        Only of pairs that overlap.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     step, pair = pairs.beside(phi1)
     lead = np.broadcast_to(lead, phi1.shape)[step]
     some, deep, bend, graphs = _overlapping(pairs, pair, phi1[step], overclosure, lead)
-    ends = graphs.ends(1), graphs.ends(2)
-    places = graphs.places(ends)
     # past a cusp the normal is not where the flanks are deepest: that is at an end then
-    values = np.stack([graphs.depth(place, ends)[0] for place in places])
+    places = graphs.places
+    values = np.stack([graphs.depth(place)[0] for place in places])
     best = np.where(values[1] >= values.max(axis=0), 1, values.argmax(axis=0))
     real = np.flatnonzero((places[0] < places[2]) & (values.max(axis=0) > 0.0))
-    graphs, ends = graphs.select(real), (ends[0][:, real], ends[1][:, real])
-    step, pair, best = (numbers[real] for numbers in (step[some], pair[some], best))
-    deep, bend, places, values = deep[real], bend[real], places[:, real], values[:, real]
+    graphs, some, best, deep, bend = (
+        graphs.select(real), some[real], best[real], deep[real], bend[real]
+    )  # fmt: skip
+    places, values = places[:, real], values[:, real]
     rows = np.arange(real.size)
     top, value = places[best, rows], values[best, rows]
-    reach = np.sqrt(2.0 * deep / np.where(bend > 0.0, bend, np.inf))
-    sides = [
-        _end(graphs, ends, top, places[k], values[k] > 0.0, sign * reach)
-        for k, sign in ((0, -1.0), (2, 1.0))
-    ]
-    edge = sides[0][2] | sides[1][2]
-    one, two = (np.stack([side[0][k] for side in sides]) for k in (0, 1))
-    closed = np.where(edge, np.nan, (4.0 / 3.0) * deep * reach)
-    closed[_uneven(pairs, one[0], one[1]) | ~(bend > 0.0)] = np.nan
-    axis = graphs.shift[0]
-    radius = [
-        np.abs((x + 1j * pairs.side * y) * graphs.along - axis)
-        for x, y, _ in (graphs.at(1, angle) for angle in one)
-    ]
-    return Lenses(
-        step=step,
-        pair=pair,
+    half = np.sqrt(2.0 * deep / np.where(bend > 0.0, bend, np.inf))
+    cut = values[[0, 2]] > 0.0
+    lower = _end(graphs, top, places[0], cut[0], -half)
+    upper = _end(graphs, top, places[2], cut[1], half)
+    one, two = np.stack([lower, upper], axis=1)
+    clipped = cut.any(axis=0)
+    unlike = clipped | _uneven(pairs, one) | ~(bend > 0.0)
+    return Patches(
+        step=step[some],
+        pair=pair[some],
         area=np.maximum(_below(graphs, 1, one) - _below(graphs, 2, two), 0.0),
-        closed=closed,
-        depth=np.where(best == 1, np.where(edge, value, deep), value),
-        radius=np.stack(radius),
-        edge=edge,
+        closed=np.where(unlike, np.nan, (4.0 / 3.0) * deep * half),
+        depth=np.where((best == 1) & ~clipped, deep, value),
     )
 
 
@@ -246,14 +221,16 @@ def _overlapping(
     with np.errstate(divide="ignore", invalid="ignore"):
         bend = first.kappa / one.regularity(first, sf[0], side)
         bend = bend + second.kappa / two.regularity(second, sf[1], -side)
-    turned = np.stack([np.exp(-1j * ahead), pairs.guide.stand(ahead, lead)[0]])
+    turn = np.stack([np.exp(-1j * ahead), pairs.guide.stand(ahead, lead)[0]])
     origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
+    offset = at.foot - np.stack([first.p, second.p]) * turn - origin
+    # the tangent towards the driver's tip becomes the x-axis
+    level = 1j * np.conj(at.normal[0])
     graphs = Graphs(
         pairs=pairs,
         pair=pair,
-        turned=turned,
-        shift=at.foot - np.stack([first.p, second.p]) * turned - origin,
-        along=-1j * at.normal[0],
+        turn=turn * level,
+        offset=offset * level,
         center=np.stack([pose.one, pose.two]),
     )
     return some, deep[some], bend[some], graphs.select(some)
@@ -276,26 +253,22 @@ def _shared(pairs: FlankPairs, pose: Pose, separation: Array) -> tuple[Pose, Nor
     return pose._replace(one=x[0], two=x[1]), at
 
 
-def _end(
-    graphs: Graphs, ends: tuple[Array, Array], top: Array, limit: Array, cut: Mask, guess: Array
-) -> tuple[tuple[Array, Array], Array, Mask]:
-    """Find where lenses end between their deepest place and a limit, in x; `cut` at the limit.
+def _end(graphs: Graphs, top: Array, limit: Array, cut: Mask, guess: Array) -> Array:
+    """Find where patches end between their deepest place and a limit, in x; `cut` at the limit.
 
-    Returns the driver angles on both flanks, x, and whether the limit cuts the lens off.
+    Returns the driver angles on both flanks, (2, n).
     """
-    x = limit.copy()
-    at = np.flatnonzero(~cut)
-    some, inner = graphs.select(at), (ends[0][:, at], ends[1][:, at])
+    x, at = limit.copy(), np.flatnonzero(~cut)
+    some = graphs.select(at)
 
     def depth(place: Array) -> tuple[Array, Array]:
-        deep, first, second = some.depth(place, inner)
+        deep, first, second = some.depth(place)
         return -deep, some.slope(2, second) - some.slope(1, first)
 
     low, high = np.minimum(top, limit)[at], np.maximum(top, limit)[at]
     start = np.clip(guess[at], low, high)
     x[at] = newton_in_bracket(depth, top[at], limit[at], start, _CLOSE * graphs.pairs.pitch)
-    _, one, two = graphs.depth(x, ends)
-    return (one, two), x, cut
+    return np.stack(graphs.depth(x)[1:])
 
 
 def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
@@ -308,14 +281,10 @@ def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
     return (y * slope).reshape(count, n) @ _WEIGHTS * half
 
 
-def _uneven(pairs: FlankPairs, low: Array, high: Array) -> Mask:
-    """Whether stretches of flank, by driver angle, hold a knot of the law."""
-    arc, knots = pairs.track.arc, pairs.guide.law.knots
-    start, end = np.minimum(low, high), np.maximum(low, high)
-    if not arc.periodic:
-        inside = (knots > start[:, None]) & (knots < end[:, None])
-        return np.any(inside, axis=1)
+def _uneven(pairs: FlankPairs, angles: Array) -> Mask:
+    """Whether stretches of flank between driver angles, (2, n), hold a knot of the law."""
+    law, (start, end) = pairs.guide.law, np.sort(angles, axis=0)[..., None]
+    knots = pairs.track.knots_near(0.5 * (start + end)[:, 0])
     # a smooth law has no knots but the ends of its lobe
-    knots = knots[:-1] if len(knots) > 2 else knots[:0]
-    first = np.floor((start[:, None] - knots) / arc.period)
-    return np.any(np.floor((end[:, None] - knots) / arc.period) > first, axis=1)
+    smooth = law.lobes.closed and len(law.knots) == 2
+    return np.any((knots > start) & (knots < end), axis=1) & (not smooth)
