@@ -17,16 +17,16 @@ Flanks only: that an edge meets the mate's fillet is seen by the stepwise overla
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.track import WHEELS, Wheel
+from gearcam.gears.track import WHEELS
 from gearcam.meshing.contact import Contacts
+from gearcam.meshing.placed_flanks import PlacedFlanks
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.roots import bracketed_root, newton_in_bracket
+from gearcam.numeric.roots import bracketed_root
 
 _SAMPLES = 13
 """Points of a flank between which the extreme is sought: on a smooth flank there is one."""
@@ -40,123 +40,34 @@ _EXTREME = 1e-10
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Facing:
-    """Pairs of flanks at phases, compared at equal heights.
+class Facing(PlacedFlanks):
+    """Pairs of flanks at phases, seen from the driven wheel's guide, compared at equal heights."""
 
-    Parameters
-    ----------
-    pairs : FlankPairs
-        The side.
-    step, pair : (n,) int arrays
-        Number of the phase; j.
-    phi1 : (n,) array, rad
-        Phase.
-    """
-
-    pairs: FlankPairs
-    step: Ints
-    pair: Ints
-    phi1: Array
-
-    def select(self, index: Mask | Ints) -> Facing:
-        """Return some of the pairs, by `index`."""
-        return Facing(
-            pairs=self.pairs, step=self.step[index], pair=self.pair[index], phi1=self.phi1[index]
-        )
-
-    def end(self, wheel: Wheel, tip: bool) -> Array:
-        """Return the driver angles, rad, of the ends (`tip` or root) of a `wheel`'s flanks."""
-        toothing = self.pairs.toothings[wheel - 1]
-        sigma = self.pairs.sigma(wheel)
-        reach = self.pairs.reach(wheel, self.pair)[int(tip)]
-        return toothing.track.angle(self._places[wheel - 1] - sigma * reach)
-
-    def flank(self, wheel: Wheel, angle: Array, *, moving: bool) -> tuple[Plane, Plane]:
-        """Return points seen from the driven wheel's guide and directions of a wheel's flanks.
-
-        Parameters
-        ----------
-        wheel : {1, 2}
-            Driver or driven wheel.
-        angle : (n,) array, rad
-            Driver angles that name the points.
-        moving : bool
-            Whether the directions are derivatives by `angle` instead of unit vectors.
-
-        Returns
-        -------
-        points, directions : (n,) complex arrays
-            With the wheels turned to their phases, mm and 1 (or mm/rad).
-        """
-        toothing = self.pairs.toothings[wheel - 1]
-        sigma = self.pairs.sigma(wheel)
-        frames, sf = toothing.frames(angle, curved=moving), self._places[wheel - 1]
-        point = toothing.flank_points(frames, sf, sigma)
-        if moving:
-            direction = toothing.flank_motion(frames, sf, sigma)
-        else:
-            direction = toothing.turn * toothing.normals(frames, sigma)
-        turn, offset = self._stands[wheel - 1]
-        return point * turn + offset, direction * turn
-
-    @cached_property
-    def _places(self) -> tuple[Array, Array]:
-        return self.pairs.place(1, self.pair), self.pairs.place(2, self.pair)
-
-    @cached_property
-    def _stands(self) -> tuple[tuple[Plane, Plane | float], tuple[Plane, Plane]]:
-        driver = np.exp(-1j * self.phi1)
-        return (driver, -self.pairs.distance), self.pairs.guide.stand(self.phi1, 0.0)
-
-    def find(self, wheel: Wheel, height: Array, low: Array, high: Array, start: Array) -> Array:
-        """Return the driver angles, rad, of flank points of given heights.
-
-        Parameters
-        ----------
-        wheel : {1, 2}
-            Driver or driven wheel.
-        height : (n,) array, mm
-            Heights.
-        low, high : (n,) arrays, rad
-            Angles of flank points that are lower and higher.
-        start : (n,) array, rad
-            First guess.
-
-        Returns
-        -------
-        (n,) array
-            The nearer end where a height is not reached.
-        """
+    def heights(self, points: Plane, directions: Plane) -> tuple[Array, Array]:
+        """Return the heights of points, mm, and how they grow in directions."""
         guide = self.pairs.guide
+        return guide.height(points), guide.rates(points, directions)[0]
 
-        def miss(angle: Array) -> tuple[Array, Array]:
-            point, direction = self.flank(wheel, angle, moving=True)
-            return guide.height(point) - height, guide.rates(point, direction)[0]
-
-        start = np.clip(start, np.minimum(low, high), np.maximum(low, high))
-        return newton_in_bracket(miss, low, high, start, _FOUND)
-
-    def compare(self, angle: Array, root: Array, tip: Array) -> tuple[Array, Array]:
+    def compare(self, angle: Array) -> tuple[Array, Array]:
         """Compare flanks at points of the driver's.
 
         Parameters
         ----------
         angle : (n,) array, rad
             Driver angles that name the points.
-        root, tip : (n,) arrays, rad
-            Ends of the mates' flanks.
 
         Returns
         -------
         turn, slope : (n,) arrays, rad (of a rack mm) and their change by the height
             The driven wheel's turn until it meets the points, and its derivative.
         """
-        point, direction = self.flank(1, angle, moving=False)
-        mate = self.find(2, self.pairs.guide.height(point), root, tip, angle)
-        other, along = self.flank(2, mate, moving=False)
-        rise, turn = self.pairs.guide.rates(point, direction)
-        mates, turned = self.pairs.guide.rates(other, along)
-        return self.pairs.guide.turn(point, other), turn / rise - turned / mates
+        guide, (point, direction) = self.pairs.guide, self.at(1, angle, unit=True)
+        height = guide.height(point)
+        mate = self.find(2, self.heights, height, self.ends[1], angle, _FOUND)
+        other, along = self.at(2, mate, unit=True)
+        rise, turn = guide.rates(point, direction)
+        mates, turned = guide.rates(other, along)
+        return guide.turn(point, other), turn / rise - turned / mates
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -186,39 +97,53 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
     Returns them with the driver angles, rad, of the range's ends on the driver, root first.
     """
     step, pair = pairs.beside(phi1)
-    every = Facing(pairs=pairs, step=step, pair=pair, phi1=phi1[step])
-    height = pairs.guide.height
-    ends = [every.end(1, tip=False), every.end(1, tip=True)]
-    mates = [every.end(2, tip=True), every.end(2, tip=False)]
-    own, other = (
-        [height(every.flank(wheel, angle, moving=False)[0]) for angle in angles]
-        for wheel, angles in zip(WHEELS, (ends, mates), strict=True)
+    turn, offset = pairs.guide.stand(phi1[step], 0.0)
+    every = Facing(
+        pairs=pairs,
+        step=step,
+        pair=pair,
+        turn=np.stack([np.exp(-1j * phi1[step]), turn]),
+        offset=np.stack([np.full_like(offset, -pairs.distance), offset]),
     )
-    highest, lowest = np.minimum(own[0], other[0]), np.maximum(own[1], other[1])
-    apart = np.abs(pairs.place(1, pair) - pairs.track.arc_length(every.phi1))
+    # seen from the guide heights fall from root to tip of the driver's flank
+    (highest, lowest), (root, tip) = (
+        [pairs.guide.height(every.at(wheel, end, unit=True)[0]) for end in ends]
+        for wheel, ends in zip(WHEELS, every.ends, strict=True)
+    )
+    highest, lowest = np.minimum(highest, tip), np.maximum(lowest, root)
+    apart = np.abs(every.sf[0] - pairs.track.arc_length(phi1)[step])
     shared = (highest > lowest) & (apart < 2.0 * pairs.pitch)
-    found = every.select(shared)
-    low, high = ends[0][shared], ends[1][shared]
-    return (
-        found,
-        found.find(1, highest[shared], high, low, low),
-        found.find(1, lowest[shared], high, low, high),
+    found, height = every.select(shared), np.stack([highest, lowest])[:, shared]
+    low, high = (
+        found.find(1, found.heights, limit, found.ends[0, ::-1], own, _FOUND)
+        for limit, own in zip(height, found.ends[0], strict=True)
     )
+    return found, low, high
 
 
 def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
-    """Return where the flanks of a side come nearest at phases `phi1`, rad."""
+    """Return where the flanks of a side come nearest at phases.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+
+    Returns
+    -------
+    Touches
+        Ordered by phase, then by pair.
+    """
     found, low, high = _facing(pairs, np.atleast_1d(np.asarray(phi1, dtype=float)))
-    root, tip = found.end(2, tip=False), found.end(2, tip=True)
     many = found.select(np.repeat(np.arange(len(low)), _SAMPLES))
-    share = np.tile(np.linspace(0.0, 1.0, _SAMPLES), len(low))
-    angle = np.repeat(low, _SAMPLES) + share * np.repeat(high - low, _SAMPLES)
-    turn, slope = many.compare(angle, np.repeat(root, _SAMPLES), np.repeat(tip, _SAMPLES))
-    # On the driving side the largest turn counts, on the other the smallest.
-    turn, slope, angle = (v.reshape(-1, _SAMPLES) for v in (-pairs.side * turn, slope, angle))
+    angle = np.linspace(low, high, _SAMPLES, axis=1)
+    turn, slope = (values.reshape(angle.shape) for values in many.compare(angle.ravel()))
+    # on the driving side the largest turn counts, on the other the smallest
+    turn = -pairs.side * turn
     rows, best = np.arange(len(low)), turn.argmax(axis=1)
-    # heights fall from root to tip of the driver's flank: there the extreme lies where the slope,
-    # taken towards the tip, turns from rising to falling.
+    # the extreme lies where the slope, taken towards the driver's tip, turns from rising to falling
     falling = pairs.side * slope
     before, after = np.maximum(best - 1, 0), np.minimum(best + 1, _SAMPLES - 1)
     left = np.where(falling[rows, best] > 0.0, best, before)
@@ -226,12 +151,12 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
     extreme, some = turn[rows, best], found.select(inner)
     at = bracketed_root(
-        lambda x: some.compare(x, root[inner], tip[inner])[1],
+        lambda x: some.compare(x)[1],
         angle[inner, left[inner]],
         angle[inner, right[inner]],
         _EXTREME,
     )
-    extreme[inner] = -pairs.side * some.compare(at, root[inner], tip[inner])[0]
+    extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
         step=found.step,
         pair=found.pair,

@@ -101,11 +101,8 @@ class HalfTeeth:
     @cached_property
     def circles(self) -> tuple[Plane, Array]:
         """Centres and radii of circles about the half-teeth, (n,), mm."""
-        begin, sizes = self.starts[: self.count], np.diff(self.starts)[: self.count]
-        points = self.points[: self.starts[self.count]]
-        center: Plane = np.asarray(np.add.reduceat(points, begin) / sizes, dtype=complex)
-        apart = np.abs(points - np.repeat(center, sizes))
-        return center, np.asarray(np.maximum.reduceat(apart, begin))
+        left, low, right, high = shapely.bounds(self.polygons[: self.count]).T
+        return 0.5 * (left + right + 1j * (low + high)), 0.5 * np.hypot(right - left, high - low)
 
     def placed(self, which: Ints, turn: Plane, offset: Plane) -> Any:
         """Return some as polygons, (n,), by number, each with its own `turn` and `offset`, mm."""

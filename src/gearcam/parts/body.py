@@ -192,17 +192,15 @@ class Part:
     def steps(self) -> tuple[Layer, ...]:
         """The plate, or its steps from the lowest up."""
         height = self.width / len(self.contours)
-        teeth = [
-            (Opening(kind="INNER", shape=contour, name="inner edge"),) for contour in self.inner
-        ] or [()] * len(self.contours)
+        inner = [Opening(kind="INNER", shape=edge, name="inner edge") for edge in self.inner]
         return tuple(
             Layer(
                 edge=contour,
                 low=number * height,
                 high=(number + 1) * height,
-                openings=(*inner, *self.openings),
+                openings=(*inner[number : number + 1], *self.openings),
             )
-            for number, (contour, inner) in enumerate(zip(self.contours, teeth, strict=True))
+            for number, contour in enumerate(self.contours)
         )
 
     @cached_property

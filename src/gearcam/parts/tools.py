@@ -206,8 +206,8 @@ def _of_neighbours(p: Plane, n: Plane, of: int, most: int) -> tuple[float, tuple
     """Find the least width of pairs up to `most` apart among one `of` so many points."""
     p, n = p[::of], n[::of]
     best, pair, size = math.inf, (0, 0), len(p)
-    for shift in range(1, min(most, size - 1) + 1):
-        for way in (shift, -shift):
+    for apart in range(1, min(most, size - 1) + 1):
+        for way in (apart, -apart):
             width = _width(p, n, np.roll(p, way), np.roll(n, way))
             k = int(width.argmin())
             if width[k] < best:
