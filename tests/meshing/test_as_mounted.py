@@ -1,4 +1,4 @@
-"""Non-circular pairs off their designed distance: common normals against the search for the gap."""
+"""Non-circular pairs off their designed distance: common normals and the search for first touch."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def leads(pairs: FlankPairs, phi1: np.ndarray) -> np.ndarray:
 
 
 def searched(pairs: FlankPairs, phi1: np.ndarray) -> np.ndarray:
-    """By the search for the gap, which knows nothing of common normals."""
+    """By the search for first touch, which knows nothing of common normals."""
     found = touches(pairs, phi1)
     outward = np.full(len(phi1), -np.inf)
     np.maximum.at(outward, found.step, -pairs.side * found.turn)

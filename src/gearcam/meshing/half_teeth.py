@@ -105,7 +105,7 @@ class HalfTeeth:
         return 0.5 * (left + right + 1j * (low + high)), 0.5 * np.hypot(right - left, high - low)
 
     def placed(self, which: Ints, turn: Plane, offset: Plane) -> Any:
-        """Return some as polygons, (n,), by number, each with its own `turn` and `offset`, mm."""
+        """Return those of numbers `which` as polygons, each with its `turn` and `offset`, mm."""
         sizes = self.starts[which + 1] - self.starts[which]
         owner = np.repeat(np.arange(len(which)), sizes)
         first = np.cumsum(sizes) - sizes

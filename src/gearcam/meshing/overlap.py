@@ -200,8 +200,8 @@ class Turning:
         step, half = np.nonzero(self.rolling.guide.height(seen) - radius <= self._height)
         seen = seen[step, half]
         points = shapely.points(seen.real, seen.imag)
-        near = np.unique(self._tree.query(points, predicate="dwithin", distance=radius[half])[0])
-        step, half = step[near], half[near]
+        some = np.unique(self._tree.query(points, predicate="dwithin", distance=radius[half])[0])
+        step, half = step[some], half[some]
         if not self.driver.closed:
             bodies = self._touched_bodies(turn, offset)
             step = np.append(step, bodies)
@@ -216,7 +216,7 @@ class Turning:
         center, radius = self.driven.circles
         seen = (center - offset[:, None]) * np.conj(turn)[:, None]
         centers: Any = shapely.points(seen.real, seen.imag)
-        near = shapely.dwithin(body, centers, cast("Any", radius)).any(axis=1)
+        touched = shapely.dwithin(body, centers, cast("Any", radius)).any(axis=1)
         points = self.driver.points[last[0] : last[1]] * turn[:, None] + offset[:, None]
         bodies = as_polygons(points.ravel(), np.full(len(turn), points.shape[1]))
-        return np.flatnonzero(near | shapely.intersects(self.driven.polygons[-1], bodies))
+        return np.flatnonzero(touched | shapely.intersects(self.driven.polygons[-1], bodies))

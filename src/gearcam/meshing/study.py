@@ -246,16 +246,16 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
             nearest="leave it out: the rack stands as designed",
         )
     depth = 2.0 * pair.rack.addendum * pair.module
-    near, far = pair.center_distance - depth, pair.center_distance + depth
-    if not near < spec.center_distance < far:
+    least, most = pair.center_distance - depth, pair.center_distance + depth
+    if not least < spec.center_distance < most:
         raise InfeasibleError(
             "the wheels are mounted so far from their designed distance that their teeth do not "
             "mesh",
             where="meshing.center_distance_mm",
             value=spec.center_distance,
-            limit=near if spec.center_distance <= near else far,
+            limit=least if spec.center_distance <= least else most,
             unit="mm",
-            nearest=f"between {shown(near)} and {shown(far)} mm",
+            nearest=f"between {shown(least)} and {shown(most)} mm",
         )
     return spec.center_distance
 

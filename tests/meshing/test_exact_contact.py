@@ -1,4 +1,4 @@
-"""The exact contact and gap of non-circular wheels against dense points and finite differences."""
+"""Exact contact and first touch of non-circular wheels: dense points and finite differences."""
 
 from __future__ import annotations
 
