@@ -158,10 +158,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     )
     extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
-        step=found.step,
-        pair=found.pair,
-        turn=-pairs.side * extreme,
-        edge=~np.isin(rows, inner),
+        step=found.step, pair=found.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
     )
 
 

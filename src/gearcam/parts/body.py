@@ -231,11 +231,6 @@ class Part:
         )
 
     @cached_property
-    def area(self) -> float:
-        """Outline (of a stepped part the lowest) less openings, mm^2."""
-        return self.steps[0].moments.area
-
-    @cached_property
     def volume(self) -> float:
         """Volume of the true shape, mm^3."""
         whole = sum(layer.height * layer.moments.area for layer in self.layers)
@@ -252,5 +247,4 @@ class Part:
     @property
     def thickness(self) -> float:
         """Height from the lowest to the highest face, mm."""
-        ends = [(layer.low, layer.high) for layer in self.layers]
-        return max(high for _, high in ends) - min(low for low, _ in ends)
+        return max(layer.high for layer in self.layers) - min(layer.low for layer in self.layers)

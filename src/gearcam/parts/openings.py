@@ -274,10 +274,8 @@ def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tupl
     rays = np.exp(1j * (start + travel * np.linspace(0.0, 1.0, _RAYS)))
     places = (radii[:, None] * rays).ravel()
     made: Any = points(places.real, places.imag)
-    index, away = STRtree(segments).query_nearest(made, return_distance=True, all_matches=False)
-    free = np.empty(len(places))
-    free[index[0]] = away
-    free[~np.asarray(solid.contains(made))] = 0.0
+    _, away = STRtree(segments).query_nearest(made, return_distance=True, all_matches=False)
+    free = np.where(np.asarray(solid.contains(made)), away, 0.0)
     room = np.minimum(free.reshape(len(radii), _RAYS).min(axis=1), radii - inner)
     best = int(room.argmax())
     return float(radii[best]), 2.0 * float(room[best])
