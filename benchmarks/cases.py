@@ -18,7 +18,7 @@ import shapely
 
 import gearcam
 import peers
-from gearcam.meshing.halves import halve
+from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.study import BLOCK
 from measuring import ROOT, Result, Timing, commands, in_turns, measure, show, table
@@ -268,7 +268,7 @@ def against_whole_outlines(tries: int = 7) -> Result:
     for name, design in designs.items():
         job = gearcam.build(design)
         outlines = job.gear1.outline @ [1, 1j], job.gear2.outline @ [1, 1j]
-        halves = [halve(gear.profile) for gear in job.gears]
+        halves = [half_teeth(gear.profile) for gear in job.gears]
         turning = Turning(
             rolling=job.pair.rolling,
             driver=halves[0],

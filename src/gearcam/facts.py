@@ -212,6 +212,6 @@ def _bare(value: Any) -> Any:
     return value
 
 
-def extent(low: float, high: float, factor: float = 1.0) -> dict[str, float]:
+def extent(low: float, high: float, factor: float = 1) -> dict[str, float]:
     """Return the range from `low` to `high`, both times `factor`."""
     return {"min": factor * low, "max": factor * high}

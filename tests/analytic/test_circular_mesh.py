@@ -17,8 +17,8 @@ from gearcam.gears.pair import Gear
 from gearcam.gears.spec import Rack
 from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.gap import touches
-from gearcam.meshing.lens import lenses
+from gearcam.meshing.edges import touches
+from gearcam.meshing.patches import patches
 from helpers_pairs import job
 
 MODULE = 2.5
@@ -156,7 +156,7 @@ def test_lens_areas(teeth: tuple[int, int], rack: Rack) -> None:
     _, gears = spur(teeth, rack)
     overclosure = math.radians(0.005)
     phases = np.linspace(0.0, 2.0 * math.pi / teeth[0], 41)
-    found = lenses(flank_pairs(gears, DRIVE), phases, overclosure)
+    found = patches(flank_pairs(gears, DRIVE), phases, overclosure)
     whole = np.isfinite(found.closed)
     assert np.count_nonzero(whole) > 30
     # near the base circle the curvature changes within the lens

@@ -18,20 +18,28 @@ BANNED = {
     "strokes?": "profile segment",
     "tip curve": "addendum curve",
     "contact-off-flank": "fillet interference",
+    "lens(?:es)?": "contact patch",
+    "foremost": "leading tooth pair",
+    "idle": "non-contact",
+    "halves": "half-teeth",
 }
 """Words that have gone, and what is said instead."""
 
 ELSEWHERE = {
     "strokes?": ("lettering.py", "nest.py", "svg.py", "cut_svg.py", "sheet_svg.py", "slider.py"),
     "feeds?": ("simple.py",),
+    "idle": ("numerals.py", "paper.py"),
+    "halves": ("lost.py", "chords.py", "sampling.py", "openings.py"),
 }
-"""Files in which a word is the field's own: strokes of a pen or a slide, machine feeds."""
+"""Files in which a word is the field's own, or plain English: strokes of a pen or a slide, machine
+feeds, idle zeros of a number, halves of an interval."""
 
 TERMS = (
     "centrode", "addendum curve", "form point", "fillet interference", "backlash", "contact ratio",
     "overclosure", "rack travel", "stepped gear", "knife-edge follower", "profile segment",
     "pitch curve", "prime circle", "base circle", "cam profile", "pressure angle", "undercut",
-    "transmission error", "track", "wall", "body", "lift", "profile shift",
+    "transmission error", "track", "wall", "body", "lift", "profile shift", "contact patch",
+    "half-tooth", "edge contact", "non-contact stretch", "leading tooth pair",
 )  # fmt: skip
 GLOSSARY = (rules.ROOT / "docs" / "conventions.md").read_text("utf-8")
 GLOSSARY = GLOSSARY.partition("\n## Glossary\n")[2].partition("\n## ")[0]

@@ -1,4 +1,4 @@
-"""Non-circular pairs off their designed distance: common normals against the search for the gap."""
+"""Non-circular pairs off their designed distance: common normals and the search for first touch."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.gap import first_touch, touches
-from gearcam.meshing.idle import idle
+from gearcam.meshing.edges import first_touch, touches
+from gearcam.meshing.non_contact import non_contact
 from gearcam.meshing.numbers import harmonics, numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, study
@@ -35,7 +35,7 @@ def leads(pairs: FlankPairs, phi1: np.ndarray) -> np.ndarray:
 
 
 def searched(pairs: FlankPairs, phi1: np.ndarray) -> np.ndarray:
-    """By the search for the gap, which knows nothing of common normals."""
+    """By the search for first touch, which knows nothing of common normals."""
     found = touches(pairs, phi1)
     outward = np.full(len(phi1), -np.inf)
     np.maximum.at(outward, found.step, -pairs.side * found.turn)
@@ -87,7 +87,7 @@ def test_clearance_and_play_are_taken_up() -> None:
 def test_what_drives_where_no_flanks_touch(more: float, edges: bool) -> None:
     made = profile("ellipse")
     pairs = flank_pairs(made.gears, DRIVE, made.pair.center_distance + more)
-    found = idle(pairs)
+    found = non_contact(pairs)
     assert found
     assert all(stretch.edges for stretch in found) == edges
     middle = np.array([0.5 * (stretch.start + stretch.end) for stretch in found])

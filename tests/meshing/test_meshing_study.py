@@ -236,7 +236,7 @@ def subject_of(made: GearPairResult) -> Subject:
 
 
 def test_teeth_that_cannot_be_told_apart_are_refused() -> None:
-    """Halves that cross themselves once showed overlap where there is none."""
+    """HalfTeeth that cross themselves once showed overlap where there is none."""
     made = job(Ellipse(eccentricity=0.281), (9, 6), module=2.0, x=0.4)
     with pytest.raises(InfeasibleError, match="wheel 2"):
         study(made.gears, MeshingSpec())

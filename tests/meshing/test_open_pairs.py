@@ -22,8 +22,8 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.formula import RackLaw
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.gap import touches
-from gearcam.meshing.halves import Halves, halve
+from gearcam.meshing.edges import touches
+from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.phases import phases
 from gearcam.meshing.settings import MeshingSpec
@@ -53,8 +53,8 @@ def made(name: str) -> GearPairResult:
 
 
 @cache
-def halves(name: str) -> tuple[Halves, Halves]:
-    return halve(made(name).gear1.profile), halve(made(name).gear2.profile)
+def halves(name: str) -> tuple[HalfTeeth, HalfTeeth]:
+    return half_teeth(made(name).gear1.profile), half_teeth(made(name).gear2.profile)
 
 
 def turning(name: str, shift: float = 0.0) -> Turning:
@@ -158,7 +158,7 @@ def test_in_place_nothing_overlaps_and_nothing_plays(name: str) -> None:
     for side in (DRIVE, COAST):
         first = extreme(name, side, angles)
         assert first == pytest.approx(0.0, abs=1e-9)
-    held = turning(name).gaps(DRIVE, angles, -OVERCLOSURE)
+    held = turning(name).flank_distance(DRIVE, angles, -OVERCLOSURE)
     assert np.all(held > 0.0)
     noise = 2.0 * sum(parts.chord_error for parts in halves(name))
     assert held.max() < OVERCLOSURE * np.abs(made(name).gear1.outline @ [1, 1j]).max() + noise

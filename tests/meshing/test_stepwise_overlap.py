@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
-from gearcam.meshing.halves import Halves, halve
+from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import job, profile
 
@@ -24,8 +24,8 @@ TURN = np.radians(np.arange(360.0))
 
 
 @cache
-def halves_of(made: GearPairResult) -> tuple[Halves, Halves]:
-    return halve(made.gear1.profile), halve(made.gear2.profile)
+def halves_of(made: GearPairResult) -> tuple[HalfTeeth, HalfTeeth]:
+    return half_teeth(made.gear1.profile), half_teeth(made.gear2.profile)
 
 
 def turning_of(made: GearPairResult, shift: float = 0.0) -> Turning:
@@ -108,7 +108,7 @@ def test_pieces_are_those_of_every_two_halves(name: str, shift: float, lead: flo
         assert found.radius[:, mine] == pytest.approx(np.array(ends), rel=1e-4)
 
 
-def placed(halves: Halves, turn: Any, shift: Any) -> Any:
+def placed(halves: HalfTeeth, turn: Any, shift: Any) -> Any:
     """All halves of a closed wheel, turned and shifted."""
     parts: Any = np.split(halves.points * turn + shift, halves.starts[1:-1])
     return np.array([shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in parts])

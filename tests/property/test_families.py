@@ -31,7 +31,7 @@ from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.position import MotionLaw
 from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
 from gearcam.laws.ratio.table import TableLaw
-from gearcam.meshing.halves import halve
+from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import explained, job
 
@@ -214,7 +214,7 @@ def demand_free(made: GearPairResult) -> None:
     end = float(made.centrode_angles()[-1]) if made.law.of_rack else made.law.lobes.period
     phases = end * (np.arange(12) + 0.37) / 12
     assert max(whole_overlap(made, phi) for phi in phases) <= explained(made)
-    first, second = (halve(gear.profile) for gear in made.gears)
+    first, second = (half_teeth(gear.profile) for gear in made.gears)
     if not (first.sound and second.sound):  # the study refuses them
         phases = end * np.arange(PHASES_PER_TOOTH) / PHASES_PER_TOOTH
         assert max(whole_overlap(made, phi) for phi in phases) <= explained(made)

@@ -120,7 +120,7 @@ class FlankPairs(Mounting):
         j = np.arange(-3, open_one.teeth + 4)
         return j[self.real(j)]
 
-    def near(self, s: Array) -> Ints:
+    def candidates(self, s: Array) -> Ints:
         """Return the pairs that may touch at nominal rolls `s`, mm: (len(s), m)."""
         longest = max(
             float(np.abs(end).max()) for f in self.flanks for end in (f.lowest, f.highest)
@@ -132,7 +132,7 @@ class FlankPairs(Mounting):
 
     def beside(self, phi1: Array) -> tuple[Ints, Ints]:
         """Return the pairs that may touch at phases `phi1`, rad: indices of the phases, and j."""
-        candidates = self.near(self.track.arc_length(phi1))
+        candidates = self.candidates(self.track.arc_length(phi1))
         step, column = np.nonzero(self.real(candidates))
         return step, candidates[step, column]
 

@@ -19,9 +19,6 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.quantities import NUMBER, Param
 
-__all__ = ["KIND", "clearances", "drive_checks", "spans"]
-
-
 _CLEARANCE = (
     "tip_clearance",
     Param(NUMBER, ge=0, le=1, doc="least clearance of tips from the mate's root, in modules"),
@@ -112,7 +109,7 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: A
 
 @check("fillet-interference", kind=KIND, unit="phases")
 def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of facing halves that overlap although their flanks cannot.
+    """Warn of facing half-teeth that overlap although their flanks cannot.
 
     Looks at: contact of the outlines where no active flanks predict it.
     """
@@ -148,7 +145,7 @@ def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Remark]:
             )
 
 
-def clearances(meshing: Meshing) -> tuple[Array, Array]:
+def clearances(meshing: Meshing) -> list[Array]:
     """Return the distances of the tips' middles from the mates' outlines.
 
     Parameters
@@ -158,7 +155,7 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
 
     Returns
     -------
-    one, two : (z1,) and (z2,) arrays, mm
+    list of (z1,) and (z2,) array, mm
         Of each whole tooth of both wheels, at the phase at which its middle passes the pitch
         point; 0 where it lies inside its mate. A closed wheel on a rack: those that pass it.
     """
@@ -172,10 +169,10 @@ def clearances(meshing: Meshing) -> tuple[Array, Array]:
         phi1 = turning.rolling.arc.angle(places)
         passed = phi1 <= pairs.travel * (1.0 + _PASSED)
         phi1 = phi1[passed]
-        turn, shift = turning.pose(phi1, 0.0)
-        # the half of a tooth begins in the middle of its tip
+        turn, offset = turning.pose(phi1, 0.0)
+        # a half-tooth begins in the middle of its tip
         numbers = np.array(toothing.numbers)[toothing.whole][passed]
         tips = own.tips[np.searchsorted(own.teeth, numbers)]
-        seen = tips * turn + shift if toothing.wheel == 1 else (tips - shift) / turn
+        seen = tips * turn + offset if toothing.wheel == 1 else (tips - offset) / turn
         result.append(mate.distance(seen))
-    return result[0], result[1]
+    return result

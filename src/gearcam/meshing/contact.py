@@ -24,7 +24,7 @@ class Contacts:
     Parameters
     ----------
     step : (n,) int array
-        Ints of the phase.
+        Number of the phase.
     pair : (n,) int array
         j.
     lead : (n,) array, rad
@@ -74,7 +74,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
 
     Notes
     -----
-    A contact at the reach ``u = sf - s`` of both flanks moves along them by ``dS1 = -g1*ds1`` and
+    A contact at the rolls ``u = sf - s`` of both flanks moves along them by ``dS1 = -g1*ds1`` and
     ``dS2 = g2*ds2`` with ``g1 = sigma*sin(alpha) + u1*kappa1*cos(alpha)`` and ``g2 =
     -sigma*sin(alpha) + u2*kappa2*cos(alpha)``; as designed ds1 = ds2. Flanks have the curvatures
     kappa/g.
@@ -83,11 +83,11 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     side = pairs.side
     step, pair = pairs.beside(phi1)
     pose, touching = touch(pairs, phi1[step], pairs.separation(pair))
-    reach = [
+    rolled = [
         sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
         for wheel, sign, angle in zip(WHEELS, (side, -side), (pose.one, pose.two), strict=True)
     ]
-    for wheel, w in zip(WHEELS, reach, strict=True):
+    for wheel, w in zip(WHEELS, rolled, strict=True):
         low, high = pairs.reach(wheel, pair)
         touching = touching & (w >= low) & (w <= high)
     step, pair = step[touching], pair[touching]

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from gearcam.findings import Remark, Severity, check
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
+from gearcam.meshing.non_contact import NonContact, non_contact
 from gearcam.meshing.settings import KIND
 from gearcam.numerals import shown
-
-if TYPE_CHECKING:
-    from gearcam.meshing.idle import Idle
 
 _SHOWN = 3
 """Ranges of driver angles that a finding names."""
@@ -43,7 +41,7 @@ def ranges_text(ranges: list[tuple[float, float]]) -> str:
     return f"phi1 = {', '.join(named)} deg{more}"
 
 
-def arcs_text(found: list[Idle]) -> str:
+def arcs_text(found: list[NonContact]) -> str:
     """Return the stretches in words."""
     return ranges_text([(each.start, each.end) for each in found])
 
@@ -51,15 +49,6 @@ def arcs_text(found: list[Idle]) -> str:
 def side_name(pairs: FlankPairs) -> str:
     """Return what the flanks of a side do."""
     return "driving forward" if pairs.side == DRIVE else "driving backward"
-
-
-def _idle(pairs: FlankPairs) -> list[Idle]:
-    """Return the stretches on which no flanks touch; the search is loaded where there are some."""
-    if pairs.stretches[2].all():
-        return []
-    from gearcam.meshing.idle import idle
-
-    return list(idle(pairs))
 
 
 def _repeats(pairs: FlankPairs) -> str:
@@ -77,7 +66,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
     """
     told: dict[str, list[tuple[float, str]]] = {}
     for pairs in subject.sides:
-        worst, found = float(pairs.contact_ratios.min()), _idle(pairs)
+        worst, found = float(pairs.contact_ratios.min()), non_contact(pairs)
         if worst >= limit and not found:
             continue
         tooth = int(pairs.tooth(1, pairs.numbers)[pairs.contact_ratios.argmin()])
@@ -111,7 +100,7 @@ def nothing_drives(subject: Sided, limit: float) -> Iterator[Remark]:  # noqa: A
     Looks at: arcs of the driver's turn on which nothing touches.
     """
     for pairs in subject.sides:
-        empty = [stretch for stretch in _idle(pairs) if not stretch.edges]
+        empty = [stretch for stretch in non_contact(pairs) if not stretch.edges]
         if empty:
             yield Remark(
                 "On these arcs neither flanks nor their ends reach the mate all along: "

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from gearcam.facts import extent
+from gearcam.gears.contact import DRIVE
 from gearcam.meshing.study import Meshing
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask
@@ -44,34 +46,33 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
         "overclosure_deg": float(np.degrees(setup.spec.overclosure)),
         "penetration_mm": setup.penetration,
         "chord_error_mm": max(turning.driver.chord_error, turning.driven.chord_error),
-        "contact_ratio": extent(pairs.contact_ratios),
+        "contact_ratio": _extent(pairs.contact_ratios),
         "arcs": [
             {"from_deg": float(a), "to_deg": float(b), "pairs": int(n)}
             for a, b, n in zip(np.degrees(start), np.degrees(end), carrying, strict=True)
         ],
     }
-    if turning.guide.turns:
+    if turning.rolling.guide.turns:
         result["center_distance_mm"] = turning.distance
     if not meshing.blocks:
         return result
     stepwise = pairs_in_contact(meshing)
     result |= {
-        "pairs_in_contact": extent(stepwise, int),
+        "pairs_in_contact": _extent(stepwise),
         "interference_steps": int(np.count_nonzero(meshing.every("interferes"))),
         "edge_steps": int(np.count_nonzero(meshing.every("edge"))),
         "agreement": agreement(meshing, stepwise),
-        **motion(meshing),
+        **transmission(meshing),
     }
-    for name in ("backlash", "held_back"):
+    for name in ("backlash", "held_back_gap"):
         found = meshing.every(name)
-        if np.isfinite(found).any():
-            result[f"{name.replace('held_back', 'held_back_gap')}_mm"] = extent(
-                found[np.isfinite(found)]
-            )
+        found = found[np.isfinite(found)]
+        if found.size:
+            result[f"{name}_mm"] = _extent(found)
     return result
 
 
-def motion(meshing: Meshing) -> dict[str, Any]:
+def transmission(meshing: Meshing) -> dict[str, Any]:
     """Return what the driven wheel lags behind: on the whole, and by how much that changes.
 
     Parameters
@@ -89,7 +90,7 @@ def motion(meshing: Meshing) -> dict[str, Any]:
     touching = np.isfinite(lead)
     if not touching.any():
         return {}
-    unit = meshing.setup.turning.guide.unit
+    unit = meshing.setup.turning.rolling.guide.unit
     error: dict[str, Any] = {
         "unit": unit,
         "mean_lag": float(-lead[touching].mean()),
@@ -100,7 +101,7 @@ def motion(meshing: Meshing) -> dict[str, Any]:
         error["no_harmonics"] = reason
     else:
         error["harmonics"] = harmonics(meshing, lead)
-    return {"lag_mm": extent((-lead * along)[touching]), "transmission_error": error}
+    return {"lag_mm": _extent((-lead * along)[touching]), "transmission_error": error}
 
 
 def without_harmonics(meshing: Meshing, touching: Mask) -> str:
@@ -118,7 +119,7 @@ def without_harmonics(meshing: Meshing, touching: Mask) -> str:
     str
         With what would give them.
     """
-    spec, pairs = meshing.setup.spec, meshing.setup.sides[1]
+    spec, pairs = meshing.setup.spec, meshing.setup.pairs[DRIVE]
     teeth = pairs.toothings[0].teeth
     turns = (meshing.setup.stretch[1] - meshing.setup.stretch[0]) / (2.0 * np.pi)
     if not pairs.closed:
@@ -155,7 +156,8 @@ def harmonics(meshing: Meshing, lead: Array) -> list[dict[str, float]]:
     """
     start, end = meshing.setup.stretch
     turns = round((end - start) / (2.0 * np.pi))
-    orders = np.arange(1, MOST_ORDERS * meshing.setup.sides[1].toothings[0].teeth + 1)
+    teeth = meshing.setup.pairs[DRIVE].toothings[0].teeth
+    orders = np.arange(1, MOST_ORDERS * teeth + 1)
     parts = 2.0 / len(lead) * np.fft.rfft(lead)[orders * turns] * np.exp(-1j * orders * start)
     return [
         {"order": int(order), "amplitude": float(abs(part)), "phase_deg": float(np.degrees(angle))}
@@ -163,22 +165,8 @@ def harmonics(meshing: Meshing, lead: Array) -> list[dict[str, float]]:
     ]
 
 
-def extent(values: Array | Ints, kind: type = float) -> dict[str, Any]:
-    """Return the smallest and the largest of some values.
-
-    Parameters
-    ----------
-    values : (n,) array
-        Not empty.
-    kind : type
-        Type of the numbers.
-
-    Returns
-    -------
-    dict
-        ``min`` and ``max``.
-    """
-    return {"min": kind(values.min()), "max": kind(values.max())}
+def _extent(values: Array | Ints) -> dict[str, float]:
+    return extent(values.min().item(), values.max().item())
 
 
 def pairs_in_contact(meshing: Meshing) -> Ints:
@@ -202,7 +190,7 @@ def agreement(meshing: Meshing, stepwise: Ints) -> dict[str, Any]:
     -------
     dict
         ``inside``: largest relative difference of the area from the closed form where that holds;
-        ``clipped_mm2``: largest difference from the integrated gap elsewhere; ``steps_apart``:
+        ``clipped_mm2``: largest difference from the integrated depth elsewhere; ``steps_apart``:
         phases at which outlines and exact flanks, both with the overclosure, count different pairs.
     """
     area, predicted, closed = (
@@ -211,7 +199,7 @@ def agreement(meshing: Meshing, stepwise: Ints) -> dict[str, Any]:
     noise = meshing.setup.noise
     clipped = np.abs(area - predicted)[np.ma.getmaskarray(closed)]
     found = [
-        np.bincount(block.lenses.step, block.lenses.depth > noise, minlength=len(block.phi1))
+        np.bincount(block.patches.step, block.patches.depth > noise, minlength=len(block.phi1))
         for block in meshing.blocks
     ]
     return {

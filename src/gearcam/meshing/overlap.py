@@ -1,11 +1,11 @@
 """Stepwise overlap: the outlines of the pair, turned phase by phase and intersected.
 
 This is the source texts' study of the contact patch (003, section 2.3.3.1), and the proof that
-looks at nothing but outlines. The wheels are taken in `halves` of teeth, the driver's turned into
-the driven wheel's frame. Half h of the driver faces half h of the driven wheel, and can reach the
-two beside it: so all overlap of the wheels is looked at, and each piece of it belongs to a pair of
-halves. So does what an open wheel or a rack may run into far from the pitch point: its other end,
-or the body below its teeth.
+looks at nothing but outlines. The wheels are taken in `half_teeth`, the driver's turned into the
+driven wheel's frame. Half-tooth h of the driver faces half-tooth h of the driven wheel, and can
+touch the two beside it: so all overlap of the wheels is looked at, and each piece of it belongs to
+a pair of half-teeth. So does what an open wheel or a rack may run into far from the pitch point:
+its other end, or the body below its teeth.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ from typing import Any, cast
 import numpy as np
 import shapely
 
-from gearcam.gears.guide import Guide
 from gearcam.gears.rolling import Rolling
-from gearcam.meshing.halves import Halves, as_polygons
+from gearcam.meshing.half_teeth import HalfTeeth, as_polygons
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 
@@ -30,16 +29,16 @@ class Overlaps:
     Parameters
     ----------
     step : (n,) int array
-        Ints of the phase.
+        Number of the phase.
     half : (2, n) int array
-        Halves h of driver and driven wheel that overlap, counted within the first turn; the number
-        after the last one is the body of an open wheel.
+        Half-teeth h of driver and driven wheel that overlap, counted within the first turn; the
+        number after the last one is the body of an open wheel.
     facing : (n,) bool array
-        Whether these halves face each other, so that their flanks are a pair.
+        Whether these half-teeth face each other, so that their flanks are a pair.
     area : (n,) array, mm^2
         Area.
     length : (n,) array, mm
-        Diagonal of its box: the length of a thin lens.
+        Diagonal of its box: the length of a thin patch.
     radius : (2, n) array, mm
         Smallest and largest distance of its corners from the driver's axis.
     """
@@ -53,7 +52,7 @@ class Overlaps:
 
     @property
     def depth(self) -> Array:
-        """Depth of a lens (a parabola's segment) of this area and length, mm."""
+        """Depth of a patch, a parabola's segment, of this area and length, mm."""
         return 1.5 * self.area / self.length
 
 
@@ -65,7 +64,7 @@ class Turning:
     ----------
     rolling : Rolling
         The centrodes.
-    driver, driven : Halves
+    driver, driven : HalfTeeth
         The wheels.
     distance : float, mm
         Distance of the shafts as mounted; of a rack, how far it is moved away from its place.
@@ -74,15 +73,10 @@ class Turning:
     """
 
     rolling: Rolling
-    driver: Halves
-    driven: Halves
+    driver: HalfTeeth
+    driven: HalfTeeth
     distance: float
     moved: float = 0.0
-
-    @cached_property
-    def guide(self) -> Guide:
-        """What guides the driven wheel."""
-        return self.rolling.guide
 
     @cached_property
     def _tree(self) -> Any:
@@ -91,12 +85,12 @@ class Turning:
     @cached_property
     def _height(self) -> float:
         """Largest height of the driven wheel, mm."""
-        return float(self.guide.height(self.driven.points).max())
+        return float(self.rolling.guide.height(self.driven.points).max())
 
     def pose(
         self, phi1: Array, overclosure: float, lead: Array | float = 0.0
     ) -> tuple[Plane, Plane]:
-        """Return the turn and shift that take the driver's points into the driven wheel's frame.
+        """Return the turn and offset that take the driver's points into the driven wheel's frame.
 
         Parameters
         ----------
@@ -109,18 +103,18 @@ class Turning:
 
         Returns
         -------
-        turn, shift : (n,) complex arrays, 1 and mm
+        turn, offset : (n,) complex arrays, 1 and mm
         """
-        turn, shift = self.guide.stand(phi1, lead)
+        turn, offset = self.rolling.guide.stand(phi1, lead)
         back = np.conj(turn)
-        return np.exp(-1j * (phi1 + overclosure)) * back, back * (-self.distance - shift)
+        return np.exp(-1j * (phi1 + overclosure)) * back, back * (-self.distance - offset)
 
     def overlaps(self, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Overlaps:
         """Return all pieces of overlap at phases (see `pose`)."""
-        turn, shift = self.pose(phi1, overclosure, lead)
-        step, one = self._near(turn, shift)
-        turn, shift = turn[step], shift[step]
-        polygons = self.driver.placed(one, turn, shift)
+        turn, offset = self.pose(phi1, overclosure, lead)
+        step, one = self._candidates(turn, offset)
+        turn, offset = turn[step], offset[step]
+        polygons = self.driver.placed(one, turn, offset)
         own, mate = self._tree.query(polygons)
         mates = self.driven.polygons[mate]
         # the prepared ones first: twice as fast as the tree's own test
@@ -132,27 +126,26 @@ class Turning:
         half = np.stack([one[own] + self.driver.first, mate + self.driven.first])
         bounds = shapely.bounds(shared)
         corners, of = shapely.get_coordinates(shared, return_index=True)
-        seen = np.abs(corners @ [1.0, 1.0j] - shift[own][of])
-        starts = np.flatnonzero(np.append(True, np.diff(of) > 0)) if len(of) else of
-        radius = [f.reduceat(seen, starts) if len(of) else seen for f in (np.minimum, np.maximum)]
+        seen = np.abs(corners @ [1.0, 1.0j] - offset[own][of])
+        starts = np.searchsorted(of, np.arange(len(shared)))
         return Overlaps(
             step=step[own],
             half=half,
             facing=self.face(phi1[step[own]], *half),
             area=area[some],
             length=np.hypot(bounds[:, 2] - bounds[:, 0], bounds[:, 3] - bounds[:, 1]),
-            radius=np.stack(radius),
+            radius=np.stack([end.reduceat(seen, starts) for end in (np.minimum, np.maximum)]),
         )
 
     def face(self, phi1: Array, one: Ints, two: Ints) -> Mask:
-        """Return whether halves face each other.
+        """Return whether half-teeth face each other.
 
         Parameters
         ----------
         phi1 : (n,) array, rad
             Phases.
         one, two : (n,) int arrays
-            Halves h of driver and driven wheel, counted within the first turns.
+            Half-teeth h of driver and driven wheel, counted within the first turns.
 
         Returns
         -------
@@ -160,15 +153,17 @@ class Turning:
         """
         driver, at = self.driver, self.rolling.tracks[0].arc_length(phi1) - self.moved
         count = one
-        if driver.closed:  # counted on over the turns, to the half nearest the pitch point
+        if driver.closed:  # counted on over the turns, to the one nearest the pitch point
             past = 2.0 * at / driver.pitch
             count = one + driver.count * np.rint((past - 0.5 - one) / driver.count).astype(np.int64)
         mate = self.driven.index(count)
         real = (mate >= 0) & (one < driver.first + driver.count)
         return real & (mate + self.driven.first == two)
 
-    def gaps(self, side: int, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Array:
-        """Return the least distance of facing halves of a side at phases.
+    def flank_distance(
+        self, side: int, phi1: Array, overclosure: float, lead: Array | float = 0.0
+    ) -> Array:
+        """Return the least distance of facing half-teeth of a side at phases.
 
         Parameters
         ----------
@@ -182,7 +177,7 @@ class Turning:
         (n,) array, mm
             0 where they overlap; infinite where none face each other.
         """
-        turn, shift = self.pose(phi1, overclosure, lead)
+        turn, offset = self.pose(phi1, overclosure, lead)
         s, pitch = self.rolling.tracks[0].arc_length(phi1), self.driver.pitch
         pair = np.rint(s / pitch - 0.25 * side).astype(np.int64)
         least = np.full(len(phi1), np.inf)
@@ -190,38 +185,38 @@ class Turning:
             half = 2 * j - (side < 0)
             one, two = self.driver.index(half), self.driven.index(half)
             there = np.flatnonzero((one >= 0) & (two >= 0))
-            polygons = self.driver.placed(one[there], turn[there], shift[there])
+            polygons = self.driver.placed(one[there], turn[there], offset[there])
             distance = shapely.distance(polygons, self.driven.polygons[two[there]])
             least[there] = np.minimum(least[there], distance)
         return least
 
-    def _near(self, turn: Plane, shift: Plane) -> tuple[Ints, Ints]:
-        """Phases and halves of the driver that may touch the driven wheel.
+    def _candidates(self, turn: Plane, offset: Plane) -> tuple[Ints, Ints]:
+        """Phases and half-teeth of the driver that may touch the driven wheel.
 
         The driver's body is the last of all.
         """
         center, radius = self.driver.circles
-        seen = center * turn[:, None] + shift[:, None]
-        step, half = np.nonzero(self.guide.height(seen) - radius <= self._height)
+        seen = center * turn[:, None] + offset[:, None]
+        step, half = np.nonzero(self.rolling.guide.height(seen) - radius <= self._height)
         seen = seen[step, half]
         points = shapely.points(seen.real, seen.imag)
-        near = np.unique(self._tree.query(points, predicate="dwithin", distance=radius[half])[0])
-        step, half = step[near], half[near]
+        some = np.unique(self._tree.query(points, predicate="dwithin", distance=radius[half])[0])
+        step, half = step[some], half[some]
         if not self.driver.closed:
-            bodies = self._touched_bodies(turn, shift)
+            bodies = self._touched_bodies(turn, offset)
             step = np.append(step, bodies)
             half = np.append(half, np.full(len(bodies), self.driver.count))
             order = np.argsort(step, kind="stable")
             step, half = step[order], half[order]
         return step, half
 
-    def _touched_bodies(self, turn: Plane, shift: Plane) -> Ints:
+    def _touched_bodies(self, turn: Plane, offset: Plane) -> Ints:
         """Phases at which the driver's body may touch the driven wheel."""
         body, last = self.driver.polygons[-1], self.driver.starts[-2:]
         center, radius = self.driven.circles
-        seen = (center - shift[:, None]) * np.conj(turn)[:, None]
+        seen = (center - offset[:, None]) * np.conj(turn)[:, None]
         centers: Any = shapely.points(seen.real, seen.imag)
-        near = shapely.dwithin(body, centers, cast("Any", radius)).any(axis=1)
-        points = self.driver.points[last[0] : last[1]] * turn[:, None] + shift[:, None]
+        touched = shapely.dwithin(body, centers, cast("Any", radius)).any(axis=1)
+        points = self.driver.points[last[0] : last[1]] * turn[:, None] + offset[:, None]
         bodies = as_polygons(points.ravel(), np.full(len(turn), points.shape[1]))
-        return np.flatnonzero(near | shapely.intersects(self.driven.polygons[-1], bodies))
+        return np.flatnonzero(touched | shapely.intersects(self.driven.polygons[-1], bodies))

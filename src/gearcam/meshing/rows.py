@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from gearcam.meshing.contact import Contacts
-from gearcam.meshing.lens import Lenses
 from gearcam.meshing.overlap import Overlaps, Turning
+from gearcam.meshing.patches import Patches
 from gearcam.numeric.arrays import Array, Mask
 
 
@@ -22,24 +23,22 @@ class Block:
         Number of the first phase.
     phi1, phi2 : (n,) arrays, rad
         Driver and nominal driven angles.
-    side : {-1, +1}
-        sigma of the driver's flanks that the overclosure presses together.
     lead : (n,) array, rad
-        The driven wheel's turn from its nominal place at first touch on that side (of a rack its
-        way, mm); not finite where nothing touches.
+        The driven wheel's turn from its nominal place at first touch on the side that the
+        overclosure presses together (of a rack its way, mm); not finite where nothing touches.
     along : (n,) array, mm/rad
         What such turns are along the pitch curve.
     backlash : (n,) array, mm
         What the driven wheel can turn between both touches, along the pitch curve.
     edge : (n,) bool array
         Whether an edge decides the first touch.
-    held_back : (n,) array, mm
+    held_back_gap : (n,) array, mm
         Distance of the flanks when the driver is held back by the overclosure.
     overlaps : Overlaps
         Of the outlines, with the driver ahead.
     contacts : Contacts
         Exact ones, without overclosure.
-    lenses : Lenses
+    patches : Patches
         Predicted overlaps.
     interferes : (n,) bool array
         Whether flanks overlap that should not, or deeper than the overclosure explains.
@@ -48,27 +47,26 @@ class Block:
     first: int
     phi1: Array
     phi2: Array
-    side: int
     lead: Array
     along: Array
     backlash: Array
     edge: Mask
-    held_back: Array
+    held_back_gap: Array
     overlaps: Overlaps
     contacts: Contacts
-    lenses: Lenses
+    patches: Patches
     interferes: Mask
 
 
 def on_side(found: Overlaps, side: int) -> Mask:
-    """Return which overlaps lie on facing halves of a side.
+    """Return which overlaps lie on facing half-teeth of a side.
 
     Parameters
     ----------
     found : Overlaps
         Pieces.
     side : {-1, +1}
-        sigma of the driver's halves.
+        sigma of the driver's half-teeth.
 
     Returns
     -------
@@ -77,7 +75,7 @@ def on_side(found: Overlaps, side: int) -> Mask:
     return found.facing & (found.half[0] % 2 == (side < 0))
 
 
-def columns_of(blocks: list[Block], turning: Turning) -> dict[str, Array]:
+def columns_of(blocks: list[Block], turning: Turning, side: int) -> dict[str, Array]:
     """Return the rows of a study: one for each phase and pair that overlaps or is in contact.
 
     Parameters
@@ -86,26 +84,28 @@ def columns_of(blocks: list[Block], turning: Turning) -> dict[str, Array]:
         What was found.
     turning : Turning
         The wheels.
+    side : {-1, +1}
+        sigma of the driver's flanks that are pressed together.
 
     Returns
     -------
     dict of str to (n,) array
         Columns; what does not exist is masked.
     """
-    parts = [_columns(block, turning) for block in blocks]
+    parts = [_columns(block, turning, side) for block in blocks]
     if not parts:
         return {}
     return {name: np.ma.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _columns(block: Block, turning: Turning) -> dict[str, Array]:
-    found, exact, lens = block.overlaps, block.contacts, block.lenses
+def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
+    found, exact, patch = block.overlaps, block.contacts, block.patches
     wheels = turning.driver, turning.driven
     keys = [
         (found.step, *found.half),
         *(
-            (each.step, *(halves.of_pair(each.pair, block.side) for halves in wheels))
-            for each in (exact, lens)
+            (each.step, *(wheel.of_pair(each.pair, side) for wheel in wheels))
+            for each in (exact, patch)
         ),
     ]
     every, where = np.unique(
@@ -115,16 +115,11 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
     rows = np.split(where.ravel(), np.cumsum([len(found.step), len(exact.step)]))
     size = every.shape[1]
 
-    def column(number: int, values: Array) -> Array:
+    def column(number: int, values: Array) -> Any:
         result = np.ma.array(np.zeros(size), mask=True)
         result[rows[number]] = np.ma.masked_invalid(values)
         return result
 
-    area = np.zeros(size)
-    area[rows[0]] = found.area
-    carries = np.zeros(size)
-    carries[rows[1]] = 1.0
-    axis, unit = turning.distance, turning.guide.unit
     return {
         "step": (block.first + step).astype(float),
         "phi1_deg": np.degrees(block.phi1[step]),
@@ -133,22 +128,22 @@ def _columns(block: Block, turning: Turning) -> dict[str, Array]:
         "tooth2": turning.driven.tooth(two).astype(float),
         "side": np.where(one % 2 == 0, 1.0, -1.0),
         "facing": turning.face(block.phi1[step], one, two).astype(float),
-        "carries": carries,
-        "area_mm2": area,
-        "predicted_mm2": column(2, lens.area),
-        "closed_mm2": column(2, lens.closed),
+        "carries": np.isin(np.arange(size), rows[1]).astype(float),
+        "area_mm2": column(0, found.area).filled(0.0),
+        "predicted_mm2": column(2, patch.area),
+        "closed_mm2": column(2, patch.closed),
         "depth_mm": column(0, found.depth),
         "length_mm": column(0, found.length),
         "patch_from_mm": column(0, found.radius[0]),
         "patch_to_mm": column(0, found.radius[1]),
         "contact_radius1_mm": column(1, np.abs(exact.point)),
-        "contact_radius2_mm": column(1, np.abs(exact.point - axis)),
+        "contact_radius2_mm": column(1, np.abs(exact.point - turning.distance)),
         "pressure_angle_deg": column(1, np.degrees(exact.pressure_angle)),
         "sliding_mm_per_rad": column(1, exact.sliding),
         "specific_sliding1": column(1, exact.specific[0]),
         "specific_sliding2": column(1, exact.specific[1]),
         "relative_curvature_per_mm": column(1, exact.curvature),
-        f"lag_{unit}": np.ma.masked_invalid(-block.lead[step]),
+        f"lag_{turning.rolling.guide.unit}": np.ma.masked_invalid(-block.lead[step]),
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
-        "held_back_gap_mm": block.held_back[step],
+        "held_back_gap_mm": block.held_back_gap[step],
     }

@@ -1,4 +1,4 @@
-"""The meshing study: exact contact, exact gap and stepwise overlap side by side, phase by phase.
+"""The meshing study: exact contact, first touch and stepwise overlap side by side, by phases.
 
 At every phase the driven wheel is first turned until it touches, as in a machine: this takes up the
 backlash. Then the driver is turned ahead by a small angle, and the outlines are intersected; the
@@ -20,10 +20,10 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import FINEST, Gear, GearPair
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.gap import first_touch, to_pitch_line
-from gearcam.meshing.halves import halve
-from gearcam.meshing.lens import lenses
+from gearcam.meshing.edges import first_touch, to_pitch_line
+from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Overlaps, Turning
+from gearcam.meshing.patches import patches
 from gearcam.meshing.phases import phases, stretch
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
@@ -54,6 +54,10 @@ class Setup:
         Both sides.
     turning : Turning
         The outlines.
+    side : {-1, +1}
+        The side that the overclosure presses together.
+    stretch : (float, float), rad
+        Driver angles between which the pair is studied.
     penetration : float, mm
         Smallest penetration of a full contact: overclosure times lever.
     lever : float, mm
@@ -63,23 +67,10 @@ class Setup:
     spec: MeshingSpec
     pairs: dict[int, FlankPairs]
     turning: Turning
+    side: int
+    stretch: tuple[float, float]
     penetration: float
     lever: float
-
-    @property
-    def sides(self) -> tuple[FlankPairs, FlankPairs]:
-        """The pairs of flanks that hold back and those that drive."""
-        return self.pairs[COAST], self.pairs[DRIVE]
-
-    @property
-    def stretch(self) -> tuple[float, float]:
-        """Driver angles between which the pair is studied, rad."""
-        return stretch(self.spec, self.pairs[DRIVE])
-
-    @property
-    def side(self) -> int:
-        """The side that the overclosure presses together."""
-        return DRIVE if self.spec.overclosure > 0.0 else COAST
 
     @property
     def noise(self) -> float:
@@ -111,7 +102,7 @@ class Meshing:
     @property
     def sides(self) -> tuple[FlankPairs, FlankPairs]:
         """The pairs of flanks that hold back and those that drive."""
-        return self.setup.sides
+        return self.setup.pairs[COAST], self.setup.pairs[DRIVE]
 
     @property
     def complete(self) -> bool:
@@ -120,12 +111,12 @@ class Meshing:
 
     @cached_property
     def columns(self) -> dict[str, Any]:
-        """The rows of ``meshing.csv``: one a phase and pair of halves that touch or should."""
-        return columns_of(self.blocks, self.setup.turning)
+        """The rows of ``meshing.csv``: one a phase and pair of half-teeth that touch or should."""
+        return columns_of(self.blocks, self.setup.turning, self.setup.side)
 
     @property
     def on_side(self) -> Mask:
-        """Which rows are of facing halves of the side that is pressed together."""
+        """Which rows are of facing half-teeth of the side that is pressed together."""
         rows = self.columns
         return (rows["facing"].data > 0.0) & (rows["side"].data == self.setup.side)
 
@@ -165,15 +156,14 @@ def run(setup: Setup, progress: Progress | None = None) -> Meshing:
     """Return the study of a pair as mounted (see `study`)."""
     phi1 = phases(setup.spec, setup.pairs[setup.side])
     blocks: list[Block] = []
-    done = 0
     try:
         for start in range(0, len(phi1), BLOCK):
             if progress is not None:
                 progress("meshing", start, len(phi1))
             blocks.append(_block(setup, phi1[start : start + BLOCK], start))
-            done = min(start + BLOCK, len(phi1))
     except KeyboardInterrupt:
         pass
+    done = sum(len(block.phi1) for block in blocks)
     return Meshing(setup=setup, phi1=phi1[:done], asked=len(phi1), blocks=blocks)
 
 
@@ -216,11 +206,11 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
             unit="deg",
             nearest=f"at least {shown(np.degrees(abs(least)), 3)} deg",
         )
-    both = [halve(replace(gear.profile, tolerance=tolerance)) for gear in gears]
-    for gear, halves in zip(gears, both, strict=True):
-        if not halves.sound:
+    both = [half_teeth(replace(gear.profile, tolerance=tolerance)) for gear in gears]
+    for gear, wheel in zip(gears, both, strict=True):
+        if not wheel.sound:
             raise InfeasibleError(
-                "the teeth are too few and too deep to be told apart by halves",
+                "the teeth are too few and too deep to be told apart",
                 where=f"wheel {gear.wheel}",
                 value=float(gear.toothing.teeth),
                 nearest="more teeth or a smaller x; build and check look at such wheels",
@@ -233,7 +223,13 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         moved=gears[0].toothing.moved,
     )
     return Setup(
-        spec=spec, pairs=pairs, turning=turning, penetration=penetration, lever=float(levers.max())
+        spec=spec,
+        pairs=pairs,
+        turning=turning,
+        side=side,
+        stretch=stretch(spec, pairs[side]),
+        penetration=penetration,
+        lever=float(levers.max()),
     )
 
 
@@ -250,16 +246,16 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
             nearest="leave it out: the rack stands as designed",
         )
     depth = 2.0 * pair.rack.addendum * pair.module
-    near, far = pair.center_distance - depth, pair.center_distance + depth
-    if not near < spec.center_distance < far:
+    least, most = pair.center_distance - depth, pair.center_distance + depth
+    if not least < spec.center_distance < most:
         raise InfeasibleError(
             "the wheels are mounted so far from their designed distance that their teeth do not "
             "mesh",
             where="meshing.center_distance_mm",
             value=spec.center_distance,
-            limit=near if spec.center_distance <= near else far,
+            limit=least if spec.center_distance <= least else most,
             unit="mm",
-            nearest=f"between {shown(near)} and {shown(far)} mm",
+            nearest=f"between {shown(least)} and {shown(most)} mm",
         )
     return spec.center_distance
 
@@ -268,16 +264,13 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     """Study some phases; `first` is the number of the first of them."""
     spec, turning, side = setup.spec, setup.turning, setup.side
     touching = {s: contacts(setup.pairs[s], phi1) for s in (DRIVE, COAST)}
-    extreme, edge = {}, np.zeros(len(phi1), dtype=bool)
-    for s, found in touching.items():
-        extreme[s], by_edge = first_touch(setup.pairs[s], phi1, found)
-        if s == side:
-            edge = by_edge
-    lead = np.where(np.isfinite(extreme[side]), extreme[side], 0.0)
+    first_touches = {s: first_touch(setup.pairs[s], phi1, found) for s, found in touching.items()}
+    first_lead, edge = first_touches[side]
+    lead = np.where(np.isfinite(first_lead), first_lead, 0.0)
     ahead = turning.overlaps(phi1, spec.overclosure, lead)
-    held = turning.gaps(side, phi1, -spec.overclosure, lead)
+    held = turning.flank_distance(side, phi1, -spec.overclosure, lead)
     along = to_pitch_line(setup.pairs[side], phi1)
-    backlash = (extreme[COAST] - extreme[DRIVE]) * along
+    backlash = (first_touches[COAST][0] - first_touches[DRIVE][0]) * along
     # too little room for both sides is hidden from the outlines by the overclosure
     interferes = backlash < -setup.noise
     interferes[ahead.step[trespasses(setup, ahead)]] = True
@@ -285,15 +278,14 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
         first=first,
         phi1=phi1,
         phi2=turning.rolling.law.phi2(phi1),
-        side=side,
-        lead=extreme[side],
+        lead=first_lead,
         along=along,
         backlash=backlash,
         edge=edge,
-        held_back=held,
+        held_back_gap=held,
         overlaps=ahead,
         contacts=touching[side],
-        lenses=lenses(setup.pairs[side], phi1, spec.overclosure, lead),
+        patches=patches(setup.pairs[side], phi1, spec.overclosure, lead),
         interferes=interferes,
     )
 

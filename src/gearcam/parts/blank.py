@@ -124,10 +124,7 @@ class WheelBlank:
             yield name, None, message, rule
 
 
-_Told = tuple[str, str, str]
-
-
-def _bore_problems(one: WheelBlank) -> Iterator[_Told]:
+def _bore_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
     bore = one.bore
     for name in ("keyway_width", "keyway_depth", "bore_flat"):
         if getattr(one, name) and not bore:
@@ -145,7 +142,7 @@ def _bore_problems(one: WheelBlank) -> Iterator[_Told]:
         yield "bore_flat", "is no flat of this bore", rule
 
 
-def _other_problems(one: WheelBlank) -> Iterator[_Told]:
+def _other_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
     for name in ("bolt_circle", "bolt_diameter"):
         if one.bolts and not getattr(one, name):
             yield name, "is missing beside bolts", "bolts with bolt_circle_mm and bolt_diameter_mm"

@@ -192,17 +192,15 @@ class Part:
     def steps(self) -> tuple[Layer, ...]:
         """The plate, or its steps from the lowest up."""
         height = self.width / len(self.contours)
-        teeth = [
-            (Opening(kind="INNER", shape=contour, name="inner edge"),) for contour in self.inner
-        ] or [()] * len(self.contours)
+        inner = [Opening(kind="INNER", shape=edge, name="inner edge") for edge in self.inner]
         return tuple(
             Layer(
                 edge=contour,
                 low=number * height,
                 high=(number + 1) * height,
-                openings=(*inner, *self.openings),
+                openings=(*inner[number : number + 1], *self.openings),
             )
-            for number, (contour, inner) in enumerate(zip(self.contours, teeth, strict=True))
+            for number, contour in enumerate(self.contours)
         )
 
     @cached_property
@@ -233,11 +231,6 @@ class Part:
         )
 
     @cached_property
-    def area(self) -> float:
-        """Outline (of a stepped part the lowest) less openings, mm^2."""
-        return self.steps[0].moments.area
-
-    @cached_property
     def volume(self) -> float:
         """Volume of the true shape, mm^3."""
         whole = sum(layer.height * layer.moments.area for layer in self.layers)
@@ -254,5 +247,4 @@ class Part:
     @property
     def thickness(self) -> float:
         """Height from the lowest to the highest face, mm."""
-        ends = [(layer.low, layer.high) for layer in self.layers]
-        return max(high for _, high in ends) - min(low for low, _ in ends)
+        return max(layer.high for layer in self.layers) - min(layer.low for layer in self.layers)

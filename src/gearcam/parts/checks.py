@@ -93,11 +93,10 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
     for name, tools, uncut in rows:
         if tools.diameter >= subject.kerf:
             continue
-        what, where = _tightest(tools)
         left = "metal is left there, on flanks too" if uncut else "metal is left there"
         yield Remark(
             f"A cutter that burns {shown(subject.kerf, 4)} mm does not get into "
-            f"{what}{where}, which takes {shown(tools.diameter, 4)} mm: {left}.",
+            f"{_tightest(tools)}, which takes {shown(tools.diameter, 4)} mm: {left}.",
             name,
             subject.kerf,
             severity="error" if uncut else "warning",
@@ -119,21 +118,20 @@ def large_tool(subject: PartsSubject, limit: float) -> Iterator[Remark]:
     for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
             continue
-        what, where = _tightest(tools)
         yield Remark(
             f"The largest round tool that reaches every place has "
-            f"{shown(tools.diameter, 4)} mm: {what}{where} limits it.",
+            f"{shown(tools.diameter, 4)} mm: {_tightest(tools)} limits it.",
             name,
             tools.diameter,
         )
 
 
-def _tightest(tools: ToolLimits) -> tuple[str, str]:
+def _tightest(tools: ToolLimits) -> str:
     """Return what limits a tool, and where."""
     narrow = tools.slot < 2.0 * tools.inner_radius
     place = tools.slot_place if narrow else tools.inner_place
     what = "a slot" if narrow else "an inner corner or radius"
     if place is None:
-        return what, ""
+        return what
     x, y = (decimal(value, 4) for value in place)
-    return what, f" at x = {x}, y = {y} mm"
+    return f"{what} at x = {x}, y = {y} mm"

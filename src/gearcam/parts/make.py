@@ -15,8 +15,6 @@ from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part
 from gearcam.parts.openings import Workpiece, openings
 
-Marker = Callable[[], Mark]
-
 
 def make_part(
     name: str,
@@ -24,7 +22,7 @@ def make_part(
     width: float,
     blank: WheelBlank,
     work: Workpiece,
-    marker: Marker | None = None,
+    marker: Callable[[], Mark] | None = None,
 ) -> Part:
     """Make the part of a wheel.
 
@@ -52,16 +50,15 @@ def make_part(
     InfeasibleError
         If something has no room, or meets something else.
     """
-    edges = list(contours)
-    found = openings(blank, edges, work)
+    found = openings(blank, contours, work)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
-        _demand_within(hub, edges, work)
+        _demand_within(hub, contours, work)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     part = Part(
         name=name,
-        contours=tuple(edges),
+        contours=tuple(contours),
         width=width,
         openings=found,
         hub=hub,

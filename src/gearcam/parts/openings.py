@@ -122,12 +122,9 @@ def _with_arc(corners: list[complex], angle: float, turn: complex) -> Loop:
 def _bolts(blank: WheelBlank) -> Iterator[Opening]:
     for number in range(blank.bolts):
         angle = blank.bolt_angle + 2.0 * math.pi * number / blank.bolts
-        yield _hole(0.5 * blank.bolt_circle, angle, blank.bolt_diameter, f"bolt hole {number + 1}")
-
-
-def _hole(radius: float, angle: float, diameter: float, name: str) -> Opening:
-    center = radius * np.array([math.cos(angle), math.sin(angle)])
-    return Opening(kind="HOLE", shape=Circle(center=center, diameter=diameter), name=name)
+        center = 0.5 * blank.bolt_circle * np.array([math.cos(angle), math.sin(angle)])
+        shape = Circle(center=center, diameter=blank.bolt_diameter)
+        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
 
 def openings(
@@ -155,7 +152,11 @@ def openings(
     InfeasibleError
         If they meet each other, the hub's edge or the outline, or have no room.
     """
-    solid, wide = _common(contours), blank.widened
+    from shapely import intersection_all
+
+    # what all steps have in common
+    solid: Any = intersection_all([contour.polygon for contour in contours])
+    wide = blank.widened
     found = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
     found += _bolts(wide)
     if blank.stop_pin:
@@ -164,16 +165,6 @@ def openings(
     if blank.lightening_holes:
         found += _lightening(wide, solid, found, work)
     return tuple(found)
-
-
-def _common(contours: Sequence[Contour]) -> Polygon:
-    """Return what all steps' `contours` have in common."""
-    from shapely import intersection_all
-
-    if len(contours) == 1:
-        return contours[0].polygon
-    shared: Any = intersection_all([contour.polygon for contour in contours])
-    return shared
 
 
 def _demand_apart(
@@ -283,10 +274,8 @@ def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tupl
     rays = np.exp(1j * (start + travel * np.linspace(0.0, 1.0, _RAYS)))
     places = (radii[:, None] * rays).ravel()
     made: Any = points(places.real, places.imag)
-    index, away = STRtree(segments).query_nearest(made, return_distance=True, all_matches=False)
-    free = np.empty(len(places))
-    free[index[0]] = away
-    free[~np.asarray(solid.contains(made))] = 0.0
+    _, away = STRtree(segments).query_nearest(made, return_distance=True, all_matches=False)
+    free = np.where(np.asarray(solid.contains(made)), away, 0.0)
     room = np.minimum(free.reshape(len(radii), _RAYS).min(axis=1), radii - inner)
     best = int(room.argmax())
     return float(radii[best]), 2.0 * float(room[best])

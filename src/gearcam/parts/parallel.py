@@ -24,7 +24,7 @@ from gearcam.numeric.arrays import Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.hermite import on_cubics
-from gearcam.parts.rolled import Touched, arc_run, roll, too_far
+from gearcam.parts.rolled import arc_run, roll, too_far
 
 _DEPTH: Final = 2.0
 """A place is lost where the outline comes nearer than the distance by this many chord errors."""
@@ -67,7 +67,7 @@ def moved(contour: Contour, by: float) -> Contour:
     """
     if by == 0.0:
         return contour
-    runs = [part.as_run(part.by) for part, _, _ in roll(contour, by).pairs]
+    runs = [part.as_run(part.by) for part, _, _ in roll(contour, by)]
     return _contour(runs, contour, by)
 
 
@@ -125,11 +125,11 @@ def rounded(contour: Contour, radius: float) -> Contour:
     if radius == 0.0:
         return contour
     runs: list[Run] = []
-    for one, two, center in roll(contour, -radius).pairs:
+    for one, two, center in roll(contour, -radius):
         if one.corner is None:
             runs.append(one.as_run(0.0))
         if center is not None:
-            start, end = (place - center for place in _ends(one, two))
+            start, end = one.touched(one.high) - center, two.touched(two.low) - center
             normals = start / abs(start), end / abs(end)
             runs.append(arc_run(center, radius, *normals, contour.tolerance))
     return _contour(runs, contour, -radius)
@@ -183,10 +183,6 @@ def _fewer_digits(size: float) -> float:
     """Round a size down to three digits, as it is said."""
     step = 10.0 ** (math.floor(math.log10(size)) - 2)
     return float(f"{math.floor(size / step) * step:.3g}")
-
-
-def _ends(one: Touched, two: Touched) -> tuple[complex, complex]:
-    return one.touched(one.high), two.touched(two.low)
 
 
 def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:

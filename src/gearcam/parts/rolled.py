@@ -72,11 +72,6 @@ class Touched:
         """Return what the disc touches at a place."""
         return self.place(at)[0] if self.corner is None else self.corner
 
-    def middle(self, at: float) -> complex:
-        """Return where the disc's middle is at a place."""
-        point, tangent = self.place(at)
-        return point - 1j * self.by * tangent
-
     @property
     def backwards(self) -> bool:
         """Whether the disc's middle goes against the outline: the disc is larger than its bend."""
@@ -98,30 +93,7 @@ class Touched:
         return Run(points=as_pairs(p - 1j * by * t), tangents=as_pairs(t), joints=inside)
 
 
-@dataclass(frozen=True, eq=False)
-class Rolled:
-    """The way of a disc.
-
-    Parameters
-    ----------
-    touched : tuple of Touched
-        What it touches, in order, counter-clockwise.
-    centers : tuple of complex or None, mm
-        Behind each stretch, where the disc touches this and the next one at once; None where one
-        ends as the next begins.
-    """
-
-    touched: tuple[Touched, ...]
-    centers: tuple[complex | None, ...]
-
-    @property
-    def pairs(self) -> list[tuple[Touched, Touched, complex | None]]:
-        """Each stretch with the next one and what is between them."""
-        following = self.touched[1:] + self.touched[:1]
-        return list(zip(self.touched, following, self.centers, strict=True))
-
-
-def roll(contour: Contour, radius: float) -> Rolled:
+def roll(contour: Contour, radius: float) -> list[tuple[Touched, Touched, complex | None]]:
     """Roll a disc along a contour.
 
     Parameters
@@ -133,7 +105,9 @@ def roll(contour: Contour, radius: float) -> Rolled:
 
     Returns
     -------
-    Rolled
+    list of (Touched, Touched, complex or None), mm
+        What it touches, counter-clockwise: each stretch, the next one, and where the disc touches
+        both at once; None where one ends as the next begins.
 
     Raises
     ------
@@ -156,10 +130,11 @@ def roll(contour: Contour, radius: float) -> Rolled:
                 touched.append(replace(pieces[k], low=float(low), high=float(high)))
                 centers.append(None)
         if rings[0].crossed:
-            centers[-1] = touched[-1].middle(touched[-1].high)
+            point, tangent = touched[-1].place(touched[-1].high)
+            centers[-1] = point - 1j * touched[-1].by * tangent
     if any(part.backwards for part in touched):
         raise too_far(contour, radius)
-    return Rolled(tuple(touched), tuple(centers))
+    return list(zip(touched, touched[1:] + touched[:1], centers, strict=True))
 
 
 def _pieces(contour: Contour, radius: float) -> tuple[list[Touched], dict[int, complex]]:
@@ -168,10 +143,9 @@ def _pieces(contour: Contour, radius: float) -> tuple[list[Touched], dict[int, c
     made: list[Touched] = []
     closing: dict[int, complex] = {}
     for run, following in zip(runs, [*runs[1:], runs[0]], strict=True):
-        whole = Touched(run, radius, 0.0, len(run.points) - 1.0)
-        made.append(whole)
-        corner, before = whole.place(whole.high)
-        behind = Touched(following, radius, 0.0, 1.0).place(0.0)[1]
+        made.append(Touched(run, radius, 0.0, len(run.points) - 1.0))
+        corner, before = complex(*run.points[-1]), complex(*run.tangents[-1])
+        behind = complex(*following.tangents[0])
         turn = float(np.angle(behind / before))
         if turn * radius > _SMOOTH * contour.tolerance:
             arc = arc_run(corner, radius, -1j * before, -1j * behind, contour.tolerance)

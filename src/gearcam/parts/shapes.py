@@ -142,10 +142,9 @@ class Loop:
 
     def contour(self, tolerance: float) -> Contour:
         """Return the loop as a contour within a `tolerance`, mm: a run for each of its pieces."""
-        vertices = self.points(tolerance)
         return Contour(
             dense=lambda: tuple(self._runs(_DENSE * tolerance)),
-            vertices=vertices,
+            vertices=self.points(tolerance),
             tolerance=tolerance,
             chord_error=tolerance,
         )
@@ -154,16 +153,11 @@ class Loop:
         for start, chord, bend in zip(
             *bulge_pieces(self.vertices, self.bulges, closed=True), strict=True
         ):
-            half = 2.0 * math.atan(bend)  # half of the arc's angle
-            radius = 0.5 * abs(chord) / abs(math.sin(half)) if half else math.inf
-            count = max(1, math.ceil(abs(half) / math.sqrt(2.0 * sagitta / radius)) if half else 1)
-            way = np.linspace(0.0, 1.0, count + 1)
-            reach = np.sin(half * way) / math.sin(half) if half else way
-            spokes = np.exp(1j * half * (way - 1.0))
-            tangents = chord / abs(chord) * np.exp(1j * half * (2.0 * way - 1.0))
-            points = start + chord * reach * spokes
-            points[-1] = start + chord
-            yield Run(points=as_pairs(points), tangents=as_pairs(tangents))
+            ends = as_pairs(np.array([start, start + chord]))
+            points = flatten_bulges(ends, np.array([bend]), sagitta, closed=False)
+            turns = 2.0 * math.atan(bend) * np.linspace(-1.0, 1.0, len(points))
+            tangents = chord / abs(chord) * np.exp(1j * turns)
+            yield Run(points=points, tangents=as_pairs(tangents))
 
 
 def frozen(values: object) -> Array:

@@ -13,7 +13,6 @@ Depends on numeric; shapely inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -21,7 +20,7 @@ import numpy as np
 
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
-from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.contour import Contour
 from gearcam.numeric.hermite import on_cubics
 
 _FACING: Final = -0.5
@@ -131,59 +130,37 @@ def _inner(contour: Contour) -> tuple[float, complex | None]:
 
 def _slot(contour: Contour) -> tuple[float, complex | None]:
     """Width and middle of the narrowest slot."""
-    chain = _ByLength.of(contour.runs)
-    length = np.diff(chain.way[chain.first], append=chain.way[-1])
-    step = chain.way[-1] / max(_LEAST, _PER_RUN * len(length))
+    runs = contour.runs
+    points = np.concatenate([as_complex(run.points) for run in runs])
+    tangents = np.concatenate([as_complex(run.tangents) for run in runs])
+    last = np.cumsum([len(run.points) for run in runs]) - 1
+    first = np.append(0, last[:-1] + 1)
+    steps = np.abs(np.diff(points, prepend=points[0]))
+    steps[first] = 0.0  # a run begins where the one before it ends
+    way = np.cumsum(steps)
+
+    def at(run: Ints, along: Array) -> tuple[Plane, Plane]:
+        """Points and outward normals at ways along the outline, none beyond its run's ends."""
+        along = np.clip(along, way[first[run]], way[last[run]])
+        step = np.clip(np.searchsorted(way, along, side="right") - 1, first[run], last[run] - 1)
+        share = (along - way[step]) / (way[step + 1] - way[step])
+        made, directions = on_cubics(points, tangents, step, share)
+        return made, -1j * directions
+
+    length = np.diff(way[first], append=way[-1])
+    step = way[-1] / max(_LEAST, _PER_RUN * len(length))
     counts = np.ceil(length / step).astype(int) + 1
     number = np.repeat(np.arange(len(counts)), counts)
     share = np.concatenate([np.linspace(0.0, 1.0, count) for count in counts.tolist()])
-    along = chain.way[chain.first[number]] + share * length[number]
-    p, n = chain.at(number, along)
-    best, pair = _narrowest(p, n)
+    along = way[first[number]] + share * length[number]
+    best, pair = _narrowest(*at(number, along))
     if math.isinf(best):
         return best, None
-    (p, n), (q, m) = (chain.at(number[[k]], along[k] + step * _FINER) for k in pair)
+    (p, n), (q, m) = (at(number[[k]], along[k] + step * _FINER) for k in pair)
     width = _width(p[:, None], n[:, None], q[None], m[None])
     a = int(width.min(axis=1).argmin())
     best = float(width[a].min())
     return best, complex(p[a] + 0.5 * best * n[a])
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _ByLength:
-    """The runs of a contour one behind the other by arc length: the `way` to each point, mm.
-
-    `first` and `last` are the numbers of the runs' first and last points.
-    """
-
-    points: Plane
-    tangents: Plane
-    way: Array
-    first: Ints
-    last: Ints
-
-    @classmethod
-    def of(cls, runs: Sequence[Run]) -> _ByLength:
-        points = np.concatenate([as_complex(run.points) for run in runs])
-        last = np.cumsum([len(run.points) for run in runs]) - 1
-        steps = np.abs(np.diff(points, prepend=points[0]))
-        steps[last[:-1] + 1] = 0.0  # a run begins where the one before it ends
-        return cls(
-            points=points,
-            tangents=np.concatenate([as_complex(run.tangents) for run in runs]),
-            way=np.cumsum(steps),
-            first=np.append(0, last[:-1] + 1),
-            last=last,
-        )
-
-    def at(self, run: Ints, way: Array) -> tuple[Plane, Plane]:
-        """Points and outward normals at ways along the chain, none beyond its run's ends."""
-        way = np.clip(way, self.way[self.first[run]], self.way[self.last[run]])
-        step = np.searchsorted(self.way, way, side="right") - 1
-        step = np.clip(step, self.first[run], self.last[run] - 1)
-        share = (way - self.way[step]) / (self.way[step + 1] - self.way[step])
-        points, tangents = on_cubics(self.points, self.tangents, step, share)
-        return points, -1j * tangents
 
 
 def _narrowest(p: Plane, n: Plane) -> tuple[float, tuple[int, int]]:
@@ -206,8 +183,8 @@ def _of_neighbours(p: Plane, n: Plane, of: int, most: int) -> tuple[float, tuple
     """Find the least width of pairs up to `most` apart among one `of` so many points."""
     p, n = p[::of], n[::of]
     best, pair, size = math.inf, (0, 0), len(p)
-    for shift in range(1, min(most, size - 1) + 1):
-        for way in (shift, -shift):
+    for apart in range(1, min(most, size - 1) + 1):
+        for way in (apart, -apart):
             width = _width(p, n, np.roll(p, way), np.roll(n, way))
             k = int(width.argmin())
             if width[k] < best:

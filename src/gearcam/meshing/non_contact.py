@@ -1,4 +1,4 @@
-"""Stretches on which no flanks share a tangent: there ends of flanks drive, or nothing does."""
+"""Non-contact stretches: no flanks share a tangent, and ends of flanks drive, or nothing does."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import touch
-from gearcam.meshing.gap import foremost, to_pitch_line, touches
+from gearcam.meshing.edges import of_leading_pair, to_pitch_line, touches
 
 _ROUNDING = 1e-12
 """Share of a lobe by which the driver angle of its end may be off by rounding."""
@@ -18,7 +18,7 @@ _BETWEEN = np.linspace(0.02, 0.98, 9)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Idle:
+class NonContact:
     """A stretch of the driver's way on which no flanks share a tangent.
 
     Parameters
@@ -38,7 +38,7 @@ class Idle:
     apart: float
 
 
-def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
+def non_contact(pairs: FlankPairs) -> list[NonContact]:
     """Return the stretches of a lobe, or of an open pair's way, on which no flanks touch.
 
     Parameters
@@ -48,7 +48,7 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
 
     Returns
     -------
-    tuple of Idle
+    list of NonContact
         In order.
     """
     start, end, carrying = pairs.stretches
@@ -56,15 +56,15 @@ def idle(pairs: FlankPairs) -> tuple[Idle, ...]:
     at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - _ROUNDING)))
     phi1 = (start[at, None] + (end - start)[at, None] * _BETWEEN).ravel()
     if not phi1.size:
-        return ()
-    near = touches(pairs, phi1)
-    lead = -pairs.side * foremost(pairs.side, len(phi1), near.step, near.turn)
-    nearest = pairs.near(pairs.track.arc_length(phi1))[:, 0]
-    free = touch(pairs, phi1, pairs.separation(nearest))[0].lead
+        return []
+    found = touches(pairs, phi1)
+    lead = -pairs.side * of_leading_pair(pairs.side, len(phi1), found.step, found.turn)
+    any_pair = pairs.candidates(pairs.track.arc_length(phi1))[:, 0]
+    free = touch(pairs, phi1, pairs.separation(any_pair))[0].lead
     apart = np.abs((lead - free) * to_pitch_line(pairs, phi1)).reshape(len(at), -1).max(axis=1)
-    return tuple(
-        Idle(start=low, end=high, edges=bool(np.isfinite(most)), apart=most)
+    return [
+        NonContact(start=low, end=high, edges=bool(np.isfinite(most)), apart=most)
         for low, high, most in zip(
             start[at].tolist(), end[at].tolist(), apart.tolist(), strict=True
         )
-    )
+    ]

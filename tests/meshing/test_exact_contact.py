@@ -1,4 +1,4 @@
-"""The exact contact and gap of non-circular wheels against dense points and finite differences."""
+"""Exact contact and first touch of non-circular wheels: dense points and finite differences."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.gap import touches
+from gearcam.meshing.edges import touches
 from helpers_pairs import job, profile
 
 

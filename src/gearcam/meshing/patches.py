@@ -1,0 +1,252 @@
+"""Contact patches: the overlap that the exact flanks predict on each pair as the driver is ahead.
+
+Where the driver's flank stands deeper in its mate than their common normal is long, both are graphs
+over their common tangent, and the area between them is the difference of two integrals, over the
+stretch on which the driver's is above. That holds also where an end of a flank or a knot of the law
+clips the patch; only what lies beyond the end of a flank, on a fillet or a tip, is left out. Inside
+smooth flanks the patch has the closed form ``(4/3)*delta*sqrt(2*delta/kr)`` with the penetration
+delta and the relative curvature kr.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearcam.gears.contact import FlankPairs
+from gearcam.gears.normals import Normals, Pose, normals
+from gearcam.gears.track import WHEELS, Wheel
+from gearcam.meshing.placed_flanks import PlacedFlanks
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.newton import damped_newton
+from gearcam.numeric.roots import newton_in_bracket
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+_SMALL = 1e-9
+"""Step, in pitches, at which the search for a common normal ends."""
+
+_MISS = 1e-9
+"""What two normals may miss of being one, in rad and pitches."""
+
+_CLOSE = 1e-6
+"""Place, in pitches, to which ends of patches are found: the depth there is next to nothing."""
+
+_ANGLE = 1e-8
+"""Step of Newton's method, rad, after which the next would be below rounding."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Patches:
+    """Predicted contact patches, one entry each.
+
+    Parameters
+    ----------
+    step, pair : (n,) int arrays
+        Number of the phase; j.
+    area : (n,) array, mm^2
+        By integrating the depth.
+    closed : (n,) array, mm^2
+        By the closed form; nan where the patch is clipped, holds a knot or lies near a cusp.
+    depth : (n,) array, mm
+        Largest penetration, along the normal.
+    """
+
+    step: Ints
+    pair: Ints
+    area: Array
+    closed: Array
+    depth: Array
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Graphs(PlacedFlanks):
+    """Flanks of n pairs as graphs over the tangent at the normal that they share.
+
+    x rises along the tangent to the driver's tip, y in the direction in which the driver presses;
+    both are 0 at the driver's point on the normal.
+
+    Parameters
+    ----------
+    center : (2, n) array, rad
+        Driver angles of the points on the normal.
+    penetration : (n,) array, mm
+        How deep the driver's flanks stand on the normal.
+    curvature : (n,) array, 1/mm
+        Relative curvature of the flanks there.
+    """
+
+    center: Array
+    penetration: Array
+    curvature: Array
+
+    @property
+    def rising(self) -> Array:
+        """Driver angles, rad, of both flanks at their lower and upper end in x, (2, 2, n)."""
+        # x rises to the driver's tip, and so to the driven wheel's root
+        return np.stack([self.ends[0], self.ends[1, ::-1]])
+
+    @property
+    def places(self) -> Array:
+        """Ends in x of what both flanks share, and the place between nearest to 0: (3, n)."""
+        x = [
+            [self.at(wheel, end, unit=True)[0].real for end in ends]
+            for wheel, ends in zip(WHEELS, self.rising, strict=True)
+        ]
+        low, high = np.max(x, axis=0)[0], np.min(x, axis=0)[1]
+        return np.stack([low, np.clip(0.0, low, high), high])
+
+    def slope(self, wheel: Wheel, angle: Array) -> Array:
+        """Return dy/dx of a `wheel`'s flanks at driver angles `angle`, rad."""
+        direction = self.at(wheel, angle, unit=True)[1]
+        return self.pairs.side * direction.imag / direction.real
+
+    def depth(self, x: Array) -> tuple[Array, Array]:
+        """Return how deep the driver's flanks stand at `x`, mm, and both driver angles, (2, n)."""
+        angles, y = [], []
+        for wheel, center, ends in zip(WHEELS, self.center, self.rising, strict=True):
+            start = center + x / self.at(wheel, center)[1].real
+            angles.append(self.find(wheel, _along, x, ends, start, _ANGLE))
+            y.append(self.pairs.side * self.at(wheel, angles[-1], unit=True)[0].imag)
+        return y[0] - y[1], np.stack(angles)
+
+
+def _along(points: Plane, directions: Plane) -> tuple[Array, Array]:
+    return points.real, directions.real
+
+
+def patches(
+    pairs: FlankPairs, phi1: ArrayLike, overclosure: float, lead: ArrayLike = 0.0
+) -> Patches:
+    """Predict the contact patches of a side.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+    overclosure : float, rad
+        How far the driver is ahead of them.
+    lead : (n,) array or float, rad
+        How far the driven wheel is ahead of its nominal place; of a rack mm.
+
+    Returns
+    -------
+    Patches
+        Only of pairs that overlap.
+    """
+    phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
+    graphs = _overlapping(pairs, phi1, overclosure, np.broadcast_to(lead, phi1.shape))
+    # past a cusp the normal is not where the flanks are deepest: that is at an end then
+    places = graphs.places
+    values = np.stack([graphs.depth(place)[0] for place in places])
+    real = np.flatnonzero((places[0] < places[2]) & (values.max(axis=0) > 0.0))
+    graphs, places, values = graphs.select(real), places[:, real], values[:, real]
+    deepest = values.max(axis=0)
+    best = np.where(values[1] >= deepest, 1, values.argmax(axis=0))
+    top, convex = places[best, np.arange(real.size)], graphs.curvature > 0.0
+    half = np.sqrt(2.0 * graphs.penetration / np.where(convex, graphs.curvature, np.inf))
+    cut = values[[0, 2]] > 0.0
+    lower = _end(graphs, top, places[0], cut[0], -half)
+    upper = _end(graphs, top, places[2], cut[1], half)
+    one, two = np.stack([lower, upper], axis=1)
+    clipped = cut.any(axis=0)
+    unlike = clipped | _uneven(pairs, one) | ~convex
+    return Patches(
+        step=graphs.step,
+        pair=graphs.pair,
+        area=np.maximum(_below(graphs, 1, one) - _below(graphs, 2, two), 0.0),
+        closed=np.where(unlike, np.nan, (4.0 / 3.0) * graphs.penetration * half),
+        depth=np.where((best == 1) & ~clipped, graphs.penetration, deepest),
+    )
+
+
+def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array) -> Graphs:
+    """Find the normals that pairs share, and the pairs that overlap along them."""
+    step, pair = pairs.beside(phi1)
+    side, guide, phi1 = pairs.side, pairs.guide, phi1[step]
+    ahead = phi1 + overclosure
+    lead = lead[step] + guide.nominal(phi1) - guide.nominal(ahead)
+    center, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.separation(pair))
+    (first, second), (one, two) = at.frames, pairs.toothings
+    sf = [pairs.place(wheel, pair) for wheel in WHEELS]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        curvature = first.kappa / one.regularity(first, sf[0], side)
+        curvature = curvature + second.kappa / two.regularity(second, sf[1], -side)
+    turn = np.stack([np.exp(-1j * ahead), guide.stand(ahead, lead)[0]])
+    origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
+    offset = at.foot - np.stack([first.p, second.p]) * turn - origin
+    # the tangent towards the driver's tip becomes the x-axis
+    level = 1j * np.conj(at.normal[0])
+    every = Graphs(
+        pairs=pairs,
+        step=step,
+        pair=pair,
+        turn=turn * level,
+        offset=offset * level,
+        center=center,
+        penetration=-side * at.equations[1],
+        curvature=curvature,
+    )
+    missed = np.abs(at.equations[0]) + np.abs(at.equations[2]) / pairs.pitch
+    return every.select((every.penetration > 0.0) & (missed < _MISS))
+
+
+def _shared(pairs: FlankPairs, pose: Pose, separation: Array) -> tuple[Array, Normals]:
+    """Find the rolls at which two flanks of a given pose have one normal, at any distance.
+
+    Returns them as driver angles, rad, (2, n), and the normal.
+    """
+    # the third unknown is the distance along it
+    none = np.zeros_like(separation)
+    by_distance = np.stack([none, none - 1.0, none])
+
+    def evaluate(x: Array) -> tuple[Normals, Array, Array]:
+        at = normals(pairs, pose._replace(one=x[0], two=x[1]), separation)
+        slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by_distance], axis=1)
+        return at, at.equations + x[2] * by_distance, slopes
+
+    scale = pairs.toothings[0].frames(pose.one, curved=False).speed / pairs.pitch
+    x = np.stack([pose.one, pose.two, none])
+    x, at = damped_newton(evaluate, x, scale, _SMALL)
+    return x[:2], at
+
+
+def _end(graphs: Graphs, top: Array, limit: Array, cut: Mask, guess: Array) -> Array:
+    """Find where patches end between their deepest place and a limit, in x; `cut` at the limit.
+
+    Returns the driver angles on both flanks, (2, n).
+    """
+    x, at = limit.copy(), np.flatnonzero(~cut)
+    some = graphs.select(at)
+
+    def depth(place: Array) -> tuple[Array, Array]:
+        deep, (one, two) = some.depth(place)
+        return -deep, some.slope(2, two) - some.slope(1, one)
+
+    low, high = np.minimum(top, limit)[at], np.maximum(top, limit)[at]
+    start = np.clip(guess[at], low, high)
+    x[at] = newton_in_bracket(depth, top[at], limit[at], start, _CLOSE * graphs.pairs.pitch)
+    return graphs.depth(x)[1]
+
+
+def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
+    """Integrate flanks over x between driver angles, (2, n), rad: mm^2."""
+    n, count = len(_NODES), angles.shape[1]
+    many = graphs.select(np.repeat(np.arange(count), n))
+    half = 0.5 * (angles[1] - angles[0])
+    place = (angles[0][:, None] + half[:, None] * (1.0 + _NODES)).ravel()
+    point, slope = many.at(wheel, place)
+    return graphs.pairs.side * (point.imag * slope.real).reshape(count, n) @ _WEIGHTS * half
+
+
+def _uneven(pairs: FlankPairs, angles: Array) -> Mask:
+    """Whether stretches of flank between driver angles, (2, n), hold a knot of the law."""
+    law, (start, end) = pairs.guide.law, np.sort(angles, axis=0)[..., None]
+    knots = pairs.track.knots_near(0.5 * (start + end)[:, 0])
+    # a smooth law has no knots but the ends of its lobe
+    smooth = law.lobes.closed and len(law.knots) == 2
+    return np.any((knots > start) & (knots < end), axis=1) & (not smooth)
