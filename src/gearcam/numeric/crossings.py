@@ -28,6 +28,7 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.chords import chord_shares, near_chords
+from gearcam.numeric.contour import polygon_area
 from gearcam.numeric.sampling import Curves
 
 _TOUCH = 1e-9
@@ -151,8 +152,7 @@ class Ring:
     @property
     def area(self) -> float:
         """Signed area of its polygon."""
-        p = self.polygon - self.polygon[0]
-        return 0.5 * float((np.conj(p) * np.roll(p, -1)).imag.sum())
+        return polygon_area(as_pairs(self.polygon))
 
 
 def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
@@ -315,12 +315,12 @@ def _ring(tangle: _Tangle, stays: _Stays, parameter: Array, gap: Array) -> Ring:
         ways.append(np.append(first, np.arange(int(first) + 1, last)))
     way = np.concatenate(ways)
     number = way.astype(np.int64)
-    low, high = (chain.points[(number + k) % total] for k in (0, 1))
+    p, q = (chain.points[(number + k) % total] for k in (0, 1))
     crossings = [end % count for _, end in stays if end >= 0]
     return Ring(
         branches=tuple(branches),
         crossed=bool(crossings),
-        polygon=low + (way - number) * (high - low),
+        polygon=p + (way - number) * (q - p),
         gap=float(gap[np.array(crossings, dtype=np.int64)].max(initial=0.0)),
     )
 

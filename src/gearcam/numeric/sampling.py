@@ -56,10 +56,12 @@ class Curves(Protocol):
     @property
     def start(self) -> Array:
         """Parameter at which each curve begins, (n,)."""
+        ...
 
     @property
     def end(self) -> Array:
         """Parameter at which each curve ends, (n,); it may be less than at the beginning."""
+        ...
 
     @property
     def corner(self) -> Mask:
@@ -67,13 +69,16 @@ class Curves(Protocol):
 
         The first one does: of a smooth closed curve it is where the only run begins and ends.
         """
+        ...
 
     @property
     def breaks(self) -> tuple[Ints, Array]:
         """Places inside curves at which the curvature jumps: numbers of curves, parameters (k,)."""
+        ...
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, mm, and forward unit tangents of curves at parameters, all (k,)."""
+        ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
