@@ -10,7 +10,7 @@ shaft is infinitely far, the driver's radius is ``r1 = A*i/(1 + w*i)`` and the c
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -107,7 +107,7 @@ class Rolling:
     def curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Both centrodes' extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
 
-        def curvatures(phi: Array) -> tuple[Array, Array]:
+        def curvature(wheel: int, phi: Array) -> list[Array]:
             i, di, ddi, dddi = self.law.ratio.derivatives(phi, 3)
             i0, i1, i2 = Jet([i, di]), Jet([di, ddi]), Jet([ddi, dddi])
             a = 1.0 / (1.0 + self.mate * i0)
@@ -116,11 +116,11 @@ class Rolling:
             ddr = square * (i2 - 2.0 * self.mate * (a * i1 * i1))
             speed = sqrt(r * r + dr * dr)
             kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
-            both = [k.derivatives() for k in (kappa, (1.0 + self.mate * i0) / speed - kappa)]
-            return np.stack([k[0] for k in both]), np.stack([k[1] for k in both])
+            if wheel == 2:
+                kappa = (1.0 + self.mate * i0) / speed - kappa
+            return (kappa / self.center_distance).derivatives()
 
-        found = extremes(curvatures, self._tooth_knots)
-        first, second = ((x, kappa / self.center_distance) for x, kappa in found)
+        first, second = (extremes(partial(curvature, k), self._tooth_knots) for k in (1, 2))
         return first, second
 
     @property
