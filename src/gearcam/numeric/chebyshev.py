@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -97,10 +98,16 @@ class Expansion:
 
     def antiderivative(self) -> Expansion:
         """Return the integral from the first knot."""
-        scaled = self.coefficients * (0.5 * np.diff(self.knots))
-        integral = np.polynomial.chebyshev.chebint(scaled, lbnd=-1)
-        integral[0, 1:] += np.cumsum(integral.sum(axis=0))[:-1]
-        return replace(self, coefficients=integral)
+        c = self.coefficients * (0.5 * np.diff(self.knots))
+        c = np.vstack([c, np.zeros((2, c.shape[1]))])
+        k = np.arange(1, len(c) - 1)[:, None]
+        previous = c[:-2].copy()
+        previous[0] *= 2.0
+        integral = np.vstack([np.zeros((1, c.shape[1])), (previous - c[2:]) / (2.0 * k)])
+        signs = (-1.0) ** np.arange(len(integral))
+        starts = np.concatenate([[0.0], np.cumsum(integral.sum(axis=0) - signs @ integral)])
+        integral[0] = starts[:-1] - signs @ integral
+        return Expansion(knots=self.knots, coefficients=integral, error=self.error)
 
     @property
     def last(self) -> float:
@@ -143,8 +150,8 @@ def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: flo
     grid = np.asarray(breaks, dtype=float)
     span = grid[-1] - grid[0]
     parts = np.ceil(_FIRST_CUTS * np.diff(grid) / span).astype(int)
-    number = np.concatenate([[0], np.cumsum(parts)])
-    knots = np.interp(np.arange(number[-1] + 1), number, grid)
+    cuts = [np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(grid), parts, strict=True)]
+    knots = np.concatenate([grid[:1], *cuts])
     low, high = knots[:-1], knots[1:]
     done: list[tuple[Array, Array, Array]] = []
     scale = error = 0.0

@@ -21,7 +21,18 @@ _GROWTH: Final = 10.0
 
 
 def points_to_fit(run: Run, tolerance: float) -> tuple[Plane, Plane]:
-    """Return a run's points and tangents, complex, without repeated points.
+    """Return a run's points and tangents, without repeated points.
+
+    Parameters
+    ----------
+    run : Run
+        A smooth piece, mm.
+    tolerance : float, mm
+        Of the fit.
+
+    Returns
+    -------
+    points, tangents : (n,) complex arrays, mm and 1
 
     Raises
     ------
