@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -44,11 +44,11 @@ class ShownRise(Rise):
     def _largest(self) -> tuple[float, ...]:
         """Largest absolute S', S'' and S''' between knots."""
 
-        def values(phi: Array) -> tuple[Array, Array]:
-            found = np.array(self.function.derivatives(phi, 4))
-            return found[1:4], found[2:5]
+        def values(order: int, phi: Array) -> list[Array]:
+            return self.function.derivatives(phi, order + 1)[order:]
 
-        inside = extremes(values, np.union1d(self.function.knots, self.cuts))
+        cuts = np.union1d(self.function.knots, self.cuts)
+        inside = [extremes(partial(values, order), cuts) for order in (1, 2, 3)]
         before, after = self._sides
         at_knots = np.abs(before[1:] + after[:-1]).max(axis=0)[1:]
         return tuple(

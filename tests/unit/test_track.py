@@ -66,10 +66,9 @@ class Polar(Track):
 
         def curvature(phi: Array) -> tuple[Array, Array]:
             slope = (self._kappa(phi + step) - self._kappa(phi - step)) / (2.0 * step)
-            return self._kappa(phi)[None], slope[None]
+            return self._kappa(phi), slope
 
-        ((places, values),) = extremes(curvature, np.array([0.0, 2.0 * math.pi]))
-        return places, values
+        return extremes(curvature, np.array([0.0, 2.0 * math.pi]))
 
 
 def polar(half_axis: float) -> Polar:

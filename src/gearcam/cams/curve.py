@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -133,7 +134,7 @@ class CamCurve:
         return (along + 1j * height) * tangents, tangents
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class ProfileSegments:
     """Sweeps and jumps in order; fulfils `gearcam.numeric.sampling.Curves`.
 
@@ -160,6 +161,11 @@ class ProfileSegments:
     end: Array
     jump: Mask
     corner: Mask
+
+    def taken(self, index: Ints) -> ProfileSegments:
+        """Return some of the segments, in the order of `index`."""
+        names = ("piece", "start", "end", "jump", "corner")
+        return replace(self, **{name: getattr(self, name)[index] for name in names})
 
     @property
     def backward(self) -> Mask:
@@ -252,33 +258,19 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
         From the beginning of the turn; no corner but at a pitch curve's jumps (see `begun`).
     """
     program = curve.program
-    knots, count = program.knots, len(program.knots) - 1
     hard = {jump.theta: jump for jump in program.hard}
     drawn = curve.mechanism.flat or inset != 0.0
     rows: list[tuple[int, float, float, bool, bool]] = []
-    for piece in range(count):
-        jump = hard.get(float(knots[piece]))
-        if jump is not None and drawn:
+    for piece, (low, high) in enumerate(pairwise(program.knots.tolist())):
+        jump = hard.get(low)
+        if jump and drawn:
             rows.append((piece, jump.before, jump.after, True, False))
-        corner = jump is not None and not drawn
-        rows.append((piece, float(knots[piece]), float(knots[piece + 1]), False, corner))
-    piece, start, end, jumps, corner = zip(*rows, strict=True)
-    return ProfileSegments(
-        curve=curve,
-        inset=inset,
-        piece=np.array(piece),
-        start=np.array(start),
-        end=np.array(end),
-        jump=np.array(jumps),
-        corner=np.array(corner),
-    )
+        rows.append((piece, low, high, False, jump is not None and not drawn))
+    return ProfileSegments(curve, inset, *map(np.array, zip(*rows, strict=True)))
 
 
 def begun(segments: ProfileSegments) -> ProfileSegments:
     """Return segments that begin at a corner, as a `Sampler` wants; one is made if needed."""
-    order = (np.arange(len(segments.start)) + segments.corner.argmax()) % len(segments.start)
-    turned = {
-        name: getattr(segments, name)[order] for name in ("piece", "start", "end", "jump", "corner")
-    }
-    turned["corner"][0] = True  # a smooth closed curve begins somewhere
-    return replace(segments, **turned)
+    turned = segments.taken(np.roll(np.arange(len(segments.start)), -segments.corner.argmax()))
+    turned.corner[0] = True  # a smooth closed curve begins somewhere
+    return turned

@@ -66,16 +66,6 @@ class Followed:
     contact: Plane
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _Places:
-    """Places that may be touched: number of the angle, position, error and point of each."""
-
-    angle: Ints
-    position: Array
-    error: Array
-    point: Plane
-
-
 def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Followed:
     """Return the lift that a profile gives: the polygon of some points.
 
@@ -105,8 +95,7 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
     parts = []
     for first in range(0, max(len(angles), 1), _TOGETHER):
         some = angles[first : first + _TOGETHER]
-        places = _on_chords(profile, mechanism, np.exp(1j * some), _ROUNDING * profile.size)
-        parts.append(_highest(places, some))
+        parts.append(_highest(profile, mechanism, some))
     position, error, contact = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Followed(
         theta=angles,
@@ -133,7 +122,9 @@ def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
         )
 
 
-def _highest(places: _Places, angles: Array) -> tuple[Array, Array, Plane]:
+def _highest(
+    profile: ProfilePoints, mechanism: Mechanism, angles: Array
+) -> tuple[Array, Array, Plane]:
     """Return position, error and contact at each angle.
 
     Raises
@@ -141,8 +132,15 @@ def _highest(places: _Places, angles: Array) -> tuple[Array, Array, Plane]:
     InfeasibleError
         If nothing is touched at one of them.
     """
-    touched = np.isfinite(places.position)
-    number, position = places.angle[touched], places.position[touched]
+    turn, tolerance = np.exp(1j * angles), _ROUNDING * profile.size
+    number, chord, upper = _candidates(profile, mechanism, turn, tolerance)
+    start, step = profile.points[chord], profile.chords[chord]
+    z, way = turn[number] * start, turn[number] * step
+    position, part = _on_chord(mechanism, z, way, 0.0, tolerance)
+    # half of what the bound leaves: it counts the heights of the curve twice
+    error, point = 0.5 * np.maximum(upper - position, 0.0), start + part * step
+    touched = np.isfinite(position)
+    number, position = number[touched], position[touched]
     order = np.lexsort((position, number))
     last = np.searchsorted(number[order], np.arange(len(angles)), side="right")
     missed = np.diff(last, prepend=0) == 0
@@ -156,8 +154,8 @@ def _highest(places: _Places, angles: Array) -> tuple[Array, Array, Plane]:
     best = order[last - 1]
     # a lower place may be the highest within its error
     highest = position[best]
-    np.maximum.at(highest, number, position + places.error[touched])
-    return position[best], highest - position[best], places.point[touched][best]
+    np.maximum.at(highest, number, position + error[touched])
+    return position[best], highest - position[best], point[touched][best]
 
 
 # --- one place ---------------------------------------------------------------------------------
@@ -265,15 +263,3 @@ def _candidates(
     upper = _on_chord(mechanism, z, turn[angle] * profile.chords[chord], height, tolerance)[0]
     keep = (upper >= lower[angle] - tolerance) & (upper > -np.inf)
     return angle[keep], chord[keep], upper[keep]
-
-
-def _on_chords(
-    profile: ProfilePoints, mechanism: Mechanism, turn: Plane, tolerance: float
-) -> _Places:
-    """Return the contacts with chords."""
-    angle, chord, upper = _candidates(profile, mechanism, turn, tolerance)
-    start, step = profile.points[chord], profile.chords[chord]
-    position, part = _on_chord(mechanism, turn[angle] * start, turn[angle] * step, 0.0, tolerance)
-    # half of what the bound leaves: it counts the heights of the curve twice
-    error = 0.5 * np.maximum(upper - position, 0.0)
-    return _Places(angle=angle, position=position, error=error, point=start + part * step)

@@ -89,12 +89,11 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme
     if end == start or end - start > _TURN - _NARROWEST:
         return Extreme(theta=start, value=0.0)
 
-    def missing(theta: Array) -> tuple[Array, Array]:
-        asked = program.derivatives(theta, 1)
+    def missing(theta: Array) -> list[Array]:
         with np.errstate(invalid="ignore"):
             given = rest(Jet.variable(theta, 1)).derivatives()
-        return (asked[0] - given[0])[None], (asked[1] - given[1])[None]
+        return list(np.subtract(program.derivatives(theta, 1), given))
 
-    ((places, values),) = extremes(missing, program.cuts_between(start, end))
+    places, values = extremes(missing, program.cuts_between(start, end))
     best = int(np.nanargmax(values))
     return Extreme(theta=float(places[best]) % _TURN, value=max(0.0, float(values[best])))

@@ -74,24 +74,18 @@ def range_of(
     Range or None
         None where there are no stretches.
     """
-    places, values = [], []
-    for low, high in stretches:
 
-        def function(theta: Array) -> tuple[Array, Array]:
-            value, slope = pick(curve.contact(theta)).derivatives()[:2]
-            return value[None], slope[None]
+    def function(theta: Array) -> list[Array]:
+        return pick(curve.contact(theta)).derivatives()
 
-        ((place, value),) = extremes(function, curve.program.cuts_between(low, high))
-        places.append(place)
-        values.append(value)
-    if not places:
+    found = [extremes(function, curve.program.cuts_between(*ends)) for ends in stretches]
+    if not found:
         return None
-    theta, value = np.concatenate(places), np.concatenate(values)
-    ends = (
+    theta, value = np.concatenate(found, axis=1)
+    low, high = (
         Extreme(theta=float(theta[k]), value=float(value[k]))
-        for k in (int(np.argmin(value)), int(np.argmax(value)))
+        for k in (value.argmin(), value.argmax())
     )
-    low, high = ends
     return Range(low=low, high=high)
 
 
@@ -117,24 +111,21 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     back = (jump.theta for jump in hard if side * (jump.after - jump.before) < 0.0)
     found = [(theta, theta) for theta in back]
 
-    def both(theta: Array) -> tuple[Array, Array]:
-        value, slope = curve.contact(theta).speed.derivatives()[:2]
-        return value[None], slope[None]
+    def speed(theta: Array) -> list[Array]:
+        return curve.contact(theta).speed.derivatives()
 
-    seen = curve.contact_of(survey.found).speed.derivatives()[:2]
+    seen = curve.contact_of(survey.found).speed.derivatives()
     if _stays_positive(survey.places, *seen):
         return found
-    ((places, values),) = extremes_among(both, survey.places, seen[0][None], seen[1][None])
-    for k in range(len(places) - 1):
+    places, values = extremes_among(speed, survey.places, *seen)
+    sweep = np.searchsorted(cuts, places, side="right")
+    for k in np.flatnonzero(sweep[:-1] == sweep[1:]).tolist():  # not across a knot
         pair, sign = places[k : k + 2], values[k : k + 2] < 0.0
-        across = np.searchsorted(cuts, pair[0], side="right") != np.searchsorted(
-            cuts, pair[1], side="right"
-        )
-        if across or not sign.any():
-            continue  # both sides of a knot are places of their own
+        if not sign.any():
+            continue
         low, high = (_at_knot(float(place), knots) for place in pair)
         if not sign.all():
-            root = float(bracketed_root(lambda t: both(t)[0][0], pair[:1], pair[1:], _ROOT)[0])
+            root = float(bracketed_root(lambda t: speed(t)[0], pair[:1], pair[1:], _ROOT)[0])
             low, high = (low, root) if sign[0] else (root, high)
         if low < high:
             found.append((low, high))

@@ -119,17 +119,10 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
     if follower.flat:
         return _swinging_face(follower, size, pivot)
     arm = _given(follower.arm, "an arm")
-    if not abs(pivot - arm) < size < pivot + arm:
-        low, high = abs(pivot - arm), pivot + arm
-        raise InfeasibleError(
-            "the arm cannot reach the prime circle",
-            where="cam.prime_radius_mm",
-            value=size,
-            limit=low if size <= low else high,
-            unit="mm",
-            nearest=f"arm and pivot allow {shown(low)} to {shown(high)} mm, both excluded",
-            ways=_between("cam.prime_radius_mm", size, low, high),
-        )
+    low, high = abs(pivot - arm), pivot + arm
+    if not low < size < high:
+        what, parts = "the arm cannot reach the prime circle", "arm and pivot"
+        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high)
     # half the angle from the sides: exact where the triangle is nearly flat
     half = math.atan2(
         math.sqrt((size - pivot + arm) * (size + pivot - arm)),
@@ -138,11 +131,23 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
     return Mechanism(start=2.0 * half, arm=arm, pivot=pivot, **kind)
 
 
-def _between(key: str, size: float, low: float, high: float) -> tuple[Way, ...]:
-    """Return the way of a size from the limit that it passes to the middle of what is allowed."""
-    if high <= 0.0:
-        return ()
-    return (Way(near={key: low if size <= low else high}, far={key: 0.5 * (low + high)}),)
+def _out_of_reach(
+    what: str, key: str, parts: str, size: float, low: float, high: float, *ways: Way
+) -> InfeasibleError:
+    """Return the error of a size that is not between what the parts allow."""
+    limit, least = low if size <= low else high, max(low, 0.0)
+    if high > 0.0:  # from the limit that the size passes to the middle of what is allowed
+        near = least if size <= least else high
+        ways = (Way(near={key: near}, far={key: 0.5 * (least + high)}), *ways)
+    return InfeasibleError(
+        what,
+        where=key,
+        value=size,
+        limit=limit,
+        unit="mm",
+        nearest=f"{parts} allow {shown(low)} to {shown(high)} mm, both excluded",
+        ways=ways,
+    )
 
 
 def _given(value: float | None, what: str) -> float:
@@ -155,18 +160,9 @@ def _swinging_face(follower: FollowerSpec, size: float, pivot: float) -> Mechani
     reach = size + follower.face_offset
     if not abs(reach) < pivot:
         low, high = -pivot - follower.face_offset, pivot - follower.face_offset
-        raise InfeasibleError(
-            "the face cannot touch the base circle",
-            where="cam.base_radius_mm",
-            value=size,
-            limit=low if size <= low else high,
-            unit="mm",
-            nearest=f"pivot and face offset allow {shown(low)} to {shown(high)} mm, both excluded",
-            ways=(
-                *_between("cam.base_radius_mm", size, max(low, 0.0), high),
-                Way(far={"follower.face_offset_mm": 0.0}),
-            ),
-        )
+        what, parts = "the face cannot touch the base circle", "pivot and face offset"
+        way = Way(far={"follower.face_offset_mm": 0.0})
+        raise _out_of_reach(what, "cam.base_radius_mm", parts, size, low, high, way)
     return Mechanism(
         flat=True,
         oscillating=True,

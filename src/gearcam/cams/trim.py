@@ -196,12 +196,5 @@ def cut_out(
         point = complex(segments.at(index, places)[0][0])
         corners.append(Corner(point=point, before=before, after=after))
     index, start, end, corner = rows_between(segments, branches)
-    kept = replace(
-        segments,
-        piece=segments.piece[index],
-        start=start,
-        end=end,
-        jump=segments.jump[index],
-        corner=corner,
-    )
+    kept = replace(segments.taken(index), start=start, end=end, corner=corner)
     return kept, tuple(corners)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any, Final
 
@@ -101,16 +101,16 @@ class Rolling:
     def curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Both centrodes' extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
 
-        def curvatures(phi: Array) -> tuple[Array, Array]:
+        def curvature(wheel: int, phi: Array) -> list[Array]:
             ratios = self.law.ratio.derivatives(phi, 3)
             wi, r, dr, ddr = _radii([Jet(both) for both in pairwise(ratios)], self.mate)
             speed = sqrt(r * r + dr * dr)
             kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
-            both = [k.derivatives() for k in (kappa, (1.0 + wi) / speed - kappa)]
-            return np.stack([k[0] for k in both]), np.stack([k[1] for k in both])
+            if wheel == 2:
+                kappa = (1.0 + wi) / speed - kappa
+            return (kappa / self.center_distance).derivatives()
 
-        found = extremes(curvatures, self._tooth_knots)
-        first, second = ((x, kappa / self.center_distance) for x, kappa in found)
+        first, second = (extremes(partial(curvature, k), self._tooth_knots) for k in (1, 2))
         return first, second
 
     @property

@@ -60,10 +60,9 @@ class Subject:
         def slope(phi: Array) -> tuple[Array, Array]:
             r, dr, ddr = self.pair.rolling.radii(phi, 2)
             bend = (ddr * r - dr * dr) / (r * r + dr * dr)
-            return np.arctan(dr / r)[None], bend[None]
+            return np.arctan(dr / r), bend
 
-        ((places, values),) = extremes(slope, self.pair.law.knots)
-        return places, values
+        return extremes(slope, self.pair.law.knots)
 
     @cached_property
     def pressure_angles(self) -> dict[str, tuple[float, float]]:
@@ -88,10 +87,9 @@ class Subject:
 
         def change(phi: Array) -> tuple[Array, Array]:
             _, di, ddi = law.ratio.derivatives(phi, 2)
-            return scale * di[None], scale * ddi[None]
+            return scale * di, scale * ddi
 
-        ((places, values),) = extremes(change, law.knots)
-        return places, values
+        return extremes(change, law.knots)
 
     @cached_property
     def sides(self) -> tuple[FlankPairs, FlankPairs]:

@@ -156,12 +156,10 @@ class Program(Displacement):
         """Return the smallest and largest derivative of an `order` to 3, on both sides of knots."""
         survey = self.survey
 
-        def values(theta: Array) -> tuple[Array, Array]:
-            found = np.array(self.lift.derivatives(theta, order + 1))
-            return found[[order]], found[[order + 1]]
+        def values(theta: Array) -> list[Array]:
+            return self.lift.derivatives(theta, order + 1)[order:]
 
-        seen = survey.found[[order]], survey.found[[order + 1]]
-        ((_, inside),) = extremes_among(values, survey.places, *seen)
+        _, inside = extremes_among(values, survey.places, *survey.found[order : order + 2])
         found = np.concatenate([inside, survey.before[:, order], survey.after[:, order]])
         return float(found.min()), float(found.max())
 

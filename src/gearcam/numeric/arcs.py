@@ -16,12 +16,14 @@ import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs, off_circle
+from gearcam.numeric.bulges import as_pairs, off_circle
 from gearcam.numeric.contour import Run
+from gearcam.numeric.fitting import longest_pieces, points_to_fit
 from gearcam.numeric.hermite import on_cubics
 
 Piece = list[tuple[complex, float]]
@@ -40,12 +42,6 @@ ROUNDING = 1e-15
 
 SAME_ARC = 1e-6
 """Difference of the two end angles, rad, below which a biarc is written as one arc."""
-
-AIM = 0.97
-"""Part of the predicted length that the search tries: a little short, so that most succeed."""
-
-LEAST_ERROR = 1e-3
-"""Error in tolerances below which a length says nothing: the search grows tenfold at most."""
 
 NEAR = 0.02
 """The search stops where the longest fitting piece is known to this part of its length."""
@@ -104,19 +100,13 @@ def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
         If the tolerance is not positive, or the run is not finite or has fewer than two different
         points.
     """
-    if not tolerance > 0:
-        raise ValueError(f"the tolerance must be positive, not {tolerance}")
     curve = _curve(run, tolerance)
     last = len(curve.points) - 1
-    knots, bulges = [complex(curve.points[0])], []
-    start, guess = 0, last
-    while start < last:
-        end, piece = _longest(curve, start, guess, tolerance)
-        for point, bulge in piece:
-            knots.append(point)
-            bulges.append(bulge)
-        start, guess = end, end - start
-    return as_pairs(np.array(knots)), np.array(bulges)
+    pieces = longest_pieces(
+        partial(_piece, curve, tolerance), partial(_furthest, curve), last, tolerance, 3, NEAR
+    )
+    ends, bulges = zip(*(arc for _, piece in pieces for arc in piece), strict=True)
+    return as_pairs(np.array([curve.points[0], *ends])), np.array(bulges)
 
 
 def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
@@ -153,13 +143,7 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
 
 
 def _curve(run: Run, tolerance: float) -> _Curve:
-    points, tangents = as_complex(run.points), as_complex(run.tangents)
-    if not (np.isfinite(points).all() and np.isfinite(tangents).all()):
-        raise ValueError("points and tangents of a run must be finite")
-    kept = np.concatenate([[True], np.diff(points) != 0])
-    points, tangents = points[kept], tangents[kept]
-    if len(points) < 2:
-        raise ValueError("a run needs at least two different points")
+    points, tangents = points_to_fit(run, tolerance)
     steps = np.angle(tangents[1:] * np.conj(tangents[:-1]))
     turned = np.concatenate([[0.0], np.cumsum(steps)])
     length = np.abs(np.diff(points))
@@ -188,24 +172,6 @@ def _between(points: Plane, tangents: Plane, parts: Ints) -> tuple[Plane, Ints]:
     return np.append(on_cubics(points, tangents, index, part)[0], points[-1]), place
 
 
-def _longest(curve: _Curve, start: int, guess: int, tolerance: float) -> tuple[int, Piece]:
-    """Return end and arcs of the longest piece from `start` that stays within the tolerance."""
-    low, best = start + 1, _piece(curve, start, start + 1, tolerance)[1]
-    high = _furthest(curve, start)
-    trial, rounds = min(start + guess, high), 0
-    while high - low > NEAR * (low - start):
-        rounds += 1
-        trial = min(max(trial, low + 1), high)
-        error, piece = _piece(curve, start, trial, tolerance)
-        if error <= tolerance:
-            low, best = trial, piece
-        else:
-            high = trial - 1
-        growth = AIM * (tolerance / max(error, LEAST_ERROR * tolerance)) ** (1 / 3)
-        trial = start + round(growth * (trial - start)) if rounds % 3 else (low + high + 1) // 2
-    return low, best
-
-
 def _furthest(curve: _Curve, start: int) -> int:
     """Return the last index to which the tangent turns by no more than `MAX_TURN`."""
     turned = np.abs(curve.turned[start + 1 :] - curve.turned[start])
@@ -213,7 +179,7 @@ def _furthest(curve: _Curve, start: int) -> int:
     return start + max(1, int(np.argmax(over)) if over.any() else len(turned))
 
 
-def _piece(curve: _Curve, start: int, end: int, tolerance: float) -> tuple[float, Piece]:
+def _piece(curve: _Curve, tolerance: float, start: int, end: int) -> tuple[float, Piece]:
     """Return the largest distance and the arcs of the biarc between two points of the curve."""
     p, q = complex(curve.points[start]), complex(curve.points[end])
     t, u = complex(curve.tangents[start]), complex(curve.tangents[end])

@@ -87,9 +87,8 @@ class Expansion:
         At this degree, and with coefficients that fall to rounding, powers lose nothing, and they
         take half the time.
         """
-        half = 0.5 * np.diff(self.knots)
         powers = _powers_of_chebyshev(len(self.coefficients)).T @ self.coefficients
-        return 0.5 * (self.knots[:-1] + self.knots[1:]), 1.0 / half, powers
+        return 0.5 * (self.knots[:-1] + self.knots[1:]), 2.0 / np.diff(self.knots), powers
 
     def shifted(self, constant: float) -> Expansion:
         """Return the function with a constant added."""

@@ -28,6 +28,7 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.chords import chord_shares, near_chords
+from gearcam.numeric.contour import polygon_area
 from gearcam.numeric.sampling import Curves
 
 _TOUCH = 1e-9
@@ -151,8 +152,7 @@ class Ring:
     @property
     def area(self) -> float:
         """Signed area of its polygon."""
-        p = self.polygon - self.polygon[0]
-        return 0.5 * float((np.conj(p) * np.roll(p, -1)).imag.sum())
+        return polygon_area(as_pairs(self.polygon))
 
 
 def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
@@ -301,34 +301,26 @@ def _right_of_start(chain: Chain, at: Array, change: Ints) -> int:
 
 def _ring(tangle: _Tangle, stays: _Stays, parameter: Array, gap: Array) -> Ring:
     """Return the ring of some stays, with the parameters (2, m) and gaps (m,) of crossings."""
-    chain, at = tangle.chain, _events(tangle)[0]
-    curve, count = chain.curve[tangle.chord].ravel(), len(tangle.turn)
-    places = parameter.ravel()
-    branches = [
-        Branch(
-            CurvePoint(int(curve[begin]), float(places[begin]))
-            if begin >= 0
-            else CurvePoint(int(chain.curve[0]), float(chain.low[0])),
-            CurvePoint(int(curve[end]), float(places[end]))
-            if end >= 0
-            else CurvePoint(int(chain.curve[-1]), float(chain.high[-1])),
-        )
-        for begin, end in stays
-    ]
-    total, ways = len(chain.points), []
+    chain, at, count = tangle.chain, _events(tangle)[0], len(tangle.turn)
+    total, curve = len(chain.points), chain.curve[tangle.chord]
+    # the ends of the chain stand last, where -1 finds them
+    low, high = (np.append(parameter, end) for end in (chain.low[0], chain.high[-1]))
+    one, two = (np.append(curve, chain.curve[end]) for end in (0, -1))
+    branches, ways = [], []
     for begin, end in stays:
-        first = float(at[begin]) if begin >= 0 else 0.0
-        last = float(at[end]) if end >= 0 else float(len(chain.curve))
+        start = CurvePoint(int(one[begin]), float(low[begin]))
+        branches.append(Branch(start, CurvePoint(int(two[end]), float(high[end]))))
+        first, last = np.append(at, 0.0)[begin], np.append(at, len(chain.curve))[end]
         last += total if last < first else 0
         ways.append(np.append(first, np.arange(int(first) + 1, last)))
     way = np.concatenate(ways)
     number = way.astype(np.int64)
-    low, high = (chain.points[(number + k) % total] for k in (0, 1))
+    p, q = (chain.points[(number + k) % total] for k in (0, 1))
     crossings = [end % count for _, end in stays if end >= 0]
     return Ring(
         branches=tuple(branches),
         crossed=bool(crossings),
-        polygon=low + (way - number) * (high - low),
+        polygon=p + (way - number) * (q - p),
         gap=float(gap[np.array(crossings, dtype=np.int64)].max(initial=0.0)),
     )
 

@@ -54,10 +54,8 @@ class Jet:
         scaled = [v * math.factorial(k) if k > 1 else v for k, v in enumerate(self.c)]
         return [v if isinstance(v, np.ndarray) else np.full(shape, v) for v in scaled]
 
-    def _lift(self, other: Jet | Value) -> Jet:
-        if isinstance(other, Jet):
-            return other
-        return Jet([np.full_like(self.c[0], other), *[0.0] * self.order])
+    def _constant(self, value: Value) -> Jet:
+        return Jet([np.full_like(self.c[0], value), *[0.0] * self.order])
 
     def __neg__(self) -> Jet:
         return Jet([-value for value in self.c])
@@ -106,7 +104,7 @@ class Jet:
         return Jet(quotient)
 
     def __rtruediv__(self, other: Value) -> Jet:
-        return self._lift(other) / self
+        return self._constant(other) / self
 
     def __pow__(self, exponent: Jet | Value) -> Jet:
         if isinstance(exponent, Jet):
@@ -132,7 +130,7 @@ class Jet:
         if exponent < 0:
             return 1.0 / self._integer_power(-exponent)
         if not exponent:
-            return self._lift(1.0)
+            return self._constant(1.0)
         if exponent & 1:
             return self if exponent == 1 else self * self._integer_power(exponent - 1)
         half = self._integer_power(exponent // 2)
@@ -140,12 +138,7 @@ class Jet:
 
 
 def _total(terms: Sequence[Value]) -> Value:
-    if not terms:
-        return 0.0
-    total, *more = terms
-    for term in more:
-        total = total + term
-    return total
+    return sum(terms[1:], start=terms[0]) if terms else 0.0
 
 
 def _is_zero(value: Value) -> bool:
@@ -153,25 +146,24 @@ def _is_zero(value: Value) -> bool:
     return isinstance(value, float) and value == 0.0
 
 
+def _weights(x: Jet, k: int) -> list[tuple[Value, int]]:
+    """Return what makes coefficient k of f(x) from those of f'(x): f' = f'(x)*x', and which."""
+    return [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
+
+
 def _chain(jet: Jet, value: Value, slope: Callable[[Jet], Jet]) -> Jet:
     """Return f(jet) from f at the points and the jet of f' (one order less is enough)."""
-    result = [value]
-    if jet.order:
-        inner = slope(Jet(jet.c[:-1]))
-        for k in range(1, jet.order + 1):
-            terms = [
-                j * jet.c[j] * inner.c[k - j] for j in range(1, k + 1) if not _is_zero(jet.c[j])
-            ]
-            result.append(_total(terms) / k)
-    return Jet(result)
+    if not jet.order:
+        return Jet([value])
+    inner, orders = slope(Jet(jet.c[:-1])), range(1, jet.order + 1)
+    return Jet([value, *(_total([w * inner.c[j] for w, j in _weights(jet, k)]) for k in orders)])
 
 
 def exp(x: Jet) -> Jet:
     """Exponential of a jet."""
     result: list[Value] = [np.exp(x.c[0])]
     for k in range(1, x.order + 1):
-        weights = [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
-        result.append(_total([w * result[j] for w, j in weights]))
+        result.append(_total([w * result[j] for w, j in _weights(x, k)]))
     return Jet(result)
 
 
@@ -203,7 +195,7 @@ def _oscillate(x: Jet, sine: bool) -> Jet:
             f.append((g[0] if k % 2 else f[0]) * (factor if k % 4 < 2 else -factor))
         return Jet(f)
     for k in range(1, x.order + 1):
-        weights = [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
+        weights = _weights(x, k)
         f.append(_total([w * g[j] for w, j in weights]))
         g.append(-_total([w * f[j] for w, j in weights]))
     return Jet(f)

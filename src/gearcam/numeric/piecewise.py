@@ -8,7 +8,7 @@ which is the first to do so.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -25,6 +25,9 @@ _SAME = 1e-9
 
 _INSET = 1e-12
 """Share of an interval that its outermost places keep from the knots: still of its own piece."""
+
+_PLACES = 192
+"""Places in all intervals together, at least a quarter of them in each."""
 
 _FLAT = 1e-8
 """Share of an interval to which extremes are placed: there a value is flat, good to rounding."""
@@ -141,12 +144,7 @@ class Piecewise:
 
     def extremes_over(self, knots: Array) -> tuple[tuple[float, float], tuple[float, float]]:
         """Return smallest and largest value between some of the knots, each as (place, value)."""
-
-        def slope(x: Array) -> tuple[Array, Array]:
-            value, derivative = self.derivatives(x, 1)
-            return value[None], derivative[None]
-
-        ((places, values),) = extremes(slope, knots)
+        places, values = extremes(lambda x: self.derivatives(x, 1), knots)
         low, high = int(np.argmin(values)), int(np.argmax(values))
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
 
@@ -214,15 +212,13 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
     return replace(parts, offsets=totals[:-1] - starts)
 
 
-def places_between(knots: ArrayLike, samples: int = 192) -> Array:
+def places_between(knots: ArrayLike) -> Array:
     """Return places in every interval between knots, both ends just inside.
 
     Parameters
     ----------
     knots : (n + 1,) array
         Rising.
-    samples : int
-        Places in all, at least a quarter of them in every interval.
 
     Returns
     -------
@@ -231,7 +227,7 @@ def places_between(knots: ArrayLike, samples: int = 192) -> Array:
     """
     grid = np.asarray(knots, dtype=float)
     width = np.diff(grid)
-    steps = np.linspace(_INSET, 1.0 - _INSET, max(samples // len(width), samples // 4))
+    steps = np.linspace(_INSET, 1.0 - _INSET, max(_PLACES // len(width), _PLACES // 4))
     x = grid[:-1, None] + width[:, None] * steps
     # of a narrow interval so small a share may round to the knot, which is another piece's
     x[:, 0] = np.maximum(x[:, 0], np.nextafter(grid[:-1], np.inf))
@@ -239,33 +235,29 @@ def places_between(knots: ArrayLike, samples: int = 192) -> Array:
     return x
 
 
-def extremes(
-    function: Callable[[Array], tuple[Array, Array]], knots: ArrayLike, samples: int = 192
-) -> list[tuple[Array, Array]]:
-    """Find all extremes of functions: roots of their slopes, and both sides of their knots.
+def extremes(function: Callable[[Array], Sequence[Array]], knots: ArrayLike) -> tuple[Array, Array]:
+    """Find all extremes of a function: roots of its slope, and both sides of its knots.
 
     Parameters
     ----------
     function : callable
-        ``function(x) -> (values, slopes)``, both of shape (m, len(x)) for m functions.
+        ``function(x) -> (values, slopes)``.
     knots : (n + 1,) array
-        Between them the functions are smooth.
-    samples : int
-        Of the places between which sign changes of the slopes are sought (see `places_between`).
+        Between them the function is smooth.
 
     Returns
     -------
-    list of m (places, values)
+    places, values : (k,) arrays
         Candidates for the largest and smallest value, in rising order of place.
     """
-    x = places_between(knots, samples)
-    values, slopes = (found.reshape(-1, *x.shape) for found in function(x.ravel()))
+    x = places_between(knots)
+    values, slopes = (found.reshape(x.shape) for found in function(x.ravel()))
     return extremes_among(function, x, values, slopes)
 
 
 def extremes_among(
-    function: Callable[[Array], tuple[Array, Array]], x: Array, values: Array, slopes: Array
-) -> list[tuple[Array, Array]]:
+    function: Callable[[Array], Sequence[Array]], x: Array, values: Array, slopes: Array
+) -> tuple[Array, Array]:
     """Find the same from values and slopes that are known already.
 
     Parameters
@@ -274,26 +266,17 @@ def extremes_among(
         As of `extremes`.
     x : (n, k) array
         Places in n intervals, as `places_between` gives them.
-    values, slopes : (m, n, k) arrays
-        What the functions are there.
+    values, slopes : (n, k) arrays
+        What the function is there.
 
     Returns
     -------
-    list of m (places, values)
+    places, values : arrays
     """
-    owner, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
-    numbers = np.arange(len(owner))
-    roots = bracketed_root(
-        lambda t: function(t)[1][owner, numbers],
-        x[piece, cell],
-        x[piece, cell + 1],
-        _FLAT * float((x[:, -1] - x[:, 0]).min()),
-    )
-    tops = function(roots)[0][owner, numbers] if roots.size else roots
-    found = []
-    for k in range(len(slopes)):
-        places = np.append(x[:, [0, -1]], roots[owner == k])
-        heights = np.append(values[k][:, [0, -1]], tops[owner == k])
-        order = np.argsort(places, kind="stable")
-        found.append((places[order], heights[order]))
-    return found
+    piece, cell = np.nonzero(slopes[:, :-1] * slopes[:, 1:] < 0.0)
+    width = _FLAT * float((x[:, -1] - x[:, 0]).min())
+    roots = bracketed_root(lambda t: function(t)[1], x[piece, cell], x[piece, cell + 1], width)
+    tops = function(roots)[0] if roots.size else roots
+    places = np.append(x[:, [0, -1]], roots)
+    order = np.argsort(places, kind="stable")
+    return places[order], np.append(values[:, [0, -1]], tops)[order]

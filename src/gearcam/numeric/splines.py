@@ -16,17 +16,12 @@ from typing import Final
 import numpy as np
 
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs
+from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
+from gearcam.numeric.fitting import longest_pieces, points_to_fit
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 DEGREE: Final = 3
-
-_AIM: Final = 0.97
-"""Part of the predicted length that the search tries: a little short, so that most succeed."""
-
-_LEAST_ERROR: Final = 1e-4
-"""Error in tolerances below which a length says nothing: the search grows tenfold at most."""
 
 _NEAR: Final = 0.05
 """The search stops where the longest fitting piece is known to this part of its length."""
@@ -74,44 +69,22 @@ def fit_spline(run: Run, tolerance: float) -> Spline:
     Raises
     ------
     ValueError
-        If the tolerance is not positive or the run has fewer than two different points.
+        If the tolerance is not positive, or the run is not finite or has fewer than two different
+        points.
     """
-    if not tolerance > 0:
-        raise ValueError(f"the tolerance must be positive, not {tolerance}")
-    p, t = as_complex(run.points), as_complex(run.tangents)
-    kept = np.concatenate([[True], np.diff(p) != 0.0])
-    p, t = p[kept], t[kept]
-    if len(p) < 2:
-        raise ValueError("a run needs at least two different points")
+    p, t = points_to_fit(run, tolerance)
     way = np.concatenate([[0.0], np.cumsum(hermite_arms(p, t))])
     last = len(p) - 1
-    ends, start, guess = [0], 0, last
-    while start < last:
-        end = _longest(p, t, way, start, guess, tolerance)
-        ends.append(end)
-        start, guess = end, end - start
-    index = np.array(ends)
+
+    def miss(start: int, end: int) -> tuple[float, None]:
+        return _error(p, t, way, start, end), None
+
+    pieces = longest_pieces(miss, lambda _: last, last, tolerance, 4, _NEAR)
+    index = np.array([0, *(end for end, _ in pieces)])
     arms = np.diff(way[index]) / 3.0
     out, into = p[index[:-1]] + arms * t[index[:-1]], p[index[1:]] - arms * t[index[1:]]
     poles = np.concatenate([p[:1], np.stack([out, into], axis=1).ravel(), p[-1:]])
     return Spline(poles=as_pairs(poles), breaks=way[index])
-
-
-def _longest(p: Plane, t: Plane, way: Array, start: int, guess: int, tolerance: float) -> int:
-    """Return the last point to which one cubic from `start` stays within the tolerance."""
-    low, high, rounds = start + 1, len(p) - 1, 0
-    trial = min(start + guess, high)
-    while high - low > _NEAR * (low - start):
-        rounds += 1
-        trial = min(max(trial, low + 1), high)
-        error = _error(p, t, way, start, trial)
-        if error <= tolerance:
-            low = trial
-        else:
-            high = trial - 1
-        growth = _AIM * (tolerance / max(error, _LEAST_ERROR * tolerance)) ** 0.25
-        trial = start + round(growth * (trial - start)) if rounds % 3 else (low + high + 1) // 2
-    return low
 
 
 def _error(p: Plane, t: Plane, way: Array, start: int, end: int) -> float:

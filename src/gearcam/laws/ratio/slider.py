@@ -98,11 +98,10 @@ def make_slide(shape: Function, rod: float, period: float) -> tuple[Slide, float
         If the slide does not go forth once and back once.
     """
 
-    def function(x: Array) -> tuple[Array, Array]:
-        value, slope = shape(Jet.variable(x, 1)).derivatives()
-        return value[None], slope[None]
+    def function(x: Array) -> list[Array]:
+        return shape(Jet.variable(x, 1)).derivatives()
 
-    ((places, values),) = extremes(function, [0.0, period])
+    places, values = extremes(function, [0.0, period])
     turns = _dead_centres(places, values, period, function)
     if len(turns) != 2:
         raise InfeasibleError(
@@ -125,15 +124,15 @@ def _dead_centres(
     places: Array,
     values: Array,
     period: float,
-    function: Callable[[Array], tuple[Array, Array]],
+    function: Callable[[Array], list[Array]],
 ) -> list[tuple[float, float]]:
     """Inner extremes, and the lobe's end where the slope changes its sign there too."""
     found = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]
     step = _BESIDE * period
-    before, after = function(np.array([period - step, step]))[1][0]
+    before, after = function(np.array([period - step, step]))[1]
     at_end = [x for x, _ in found if not step < x < period - step]
     if before * after < 0.0 and not at_end:
-        found.append((0.0, float(function(np.zeros(1))[0][0, 0])))
+        found.append((0.0, float(function(np.zeros(1))[0][0])))
     return found
 
 
