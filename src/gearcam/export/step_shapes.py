@@ -23,7 +23,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numeric.bulges import as_complex, bulge_pieces
+from gearcam.numeric.bulges import arc_centers, as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
 from gearcam.parts.body import Edge, Part
@@ -292,17 +292,13 @@ def _pieces(edge: Edge, tolerance: float) -> list[_Piece]:
 
 
 def _loop(shape: Loop) -> Iterator[_Piece]:
-    for start, chord, bulge in zip(
-        *bulge_pieces(shape.vertices, shape.bulges, closed=True), strict=True
-    ):
-        if abs(chord) <= RESOLUTION:
-            continue
-        half = 2.0 * math.atan(bulge)
-        if half == 0.0:
-            yield _line(complex(start), complex(start + chord))
+    start, chord, bends = bulge_pieces(shape.vertices, shape.bulges, closed=True)
+    for k in np.flatnonzero(np.abs(chord) > RESOLUTION):
+        if bends[k] == 0.0:
+            yield _line(complex(start[k]), complex(start[k] + chord[k]))
         else:
-            centre = start + 0.5 * chord * (1.0 + 1j / math.tan(half))
-            yield _circle(complex(centre), complex(start), 2.0 * half)
+            centre = arc_centers(start[k], chord[k], bends[k])
+            yield _circle(complex(centre), complex(start[k]), 4.0 * math.atan(bends[k]))
 
 
 def _circle(centre: complex, start: complex, sweep: float) -> _Piece:
