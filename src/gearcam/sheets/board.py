@@ -30,7 +30,6 @@ from gearcam.sheets.sheet import (
     LinearDimension,
     RoundDimension,
     Text,
-    arrow_head,
     as_drawn,
     text_box,
     text_width,
@@ -157,7 +156,6 @@ class Board:
         *,
         vertical: bool = False,
         prefix: str = "",
-        suffix: str = "",
     ) -> None:
         """Draw a distance along x or y.
 
@@ -169,14 +167,13 @@ class Board:
             y of the dimension line, x of a vertical one.
         vertical : bool
             Whether it is measured along y.
-        prefix, suffix : str
-            Before and after the number.
+        prefix : str
+            Before the number.
         """
         ends = np.array([first, second], dtype=np.float64)
         along = int(vertical)
         low, high = np.sort(ends[:, along])
-        label = prefix + decimal(float(high - low)) + suffix
-        wide = text_width(label) * self.unit
+        wide = text_width(prefix + decimal(float(high - low))) * self.unit
         place = np.full(2, at)
         place[1 - along] += (GAP + 0.5 * HEIGHT) * self.unit * (-1.0 if vertical else 1.0)
         place[along] = 0.5 * (low + high)
@@ -188,7 +185,7 @@ class Board:
         self._measure(
             LinearDimension(
                 first=ends[0], second=ends[1], line=line, place=place, vertical=vertical,
-                prefix=prefix, suffix=suffix,
+                prefix=prefix,
             )
         )  # fmt: skip
 
@@ -248,35 +245,29 @@ class Board:
         bool
             False if there is no room: nothing is drawn.
         """
-        made = RoundDimension(center=point, radius=0.1 * self.unit)
-        found = self._search(made, AROUND, _REACHES, text)
-        if found is None or found.knee is None:
+        made = RoundDimension(center=point, radius=0.1 * self.unit, words=text)
+        found = self._search(made, AROUND, _REACHES)
+        if found is None:
             return False
-        ends = np.array([found.edge, found.point(found.knee)])
-        left = bool(ends[1, 0] <= ends[0, 0])
-        wide = text_width(text) * self.unit
-        place = ends[1] + np.array([-0.5 * wide if left else 0.5 * wide, GAP * self.unit])
-        shelf = ends[1] + np.array([-wide if left else wide, 0.0])
-        self.draw(DIMENSION, Path(points=np.vstack([ends, shelf]), closed=False))
-        head = arrow_head(ends[0], (ends[0] - ends[1]) / np.hypot(*(ends[0] - ends[1])), self.unit)
-        self.draw(DIMENSION, Path(points=head[[1, 0, 2]], closed=False))
-        self.write(Text(text=text, place=place, anchor="middle"))
+        drawn = as_drawn(found, self.unit)
+        leader, shelf = drawn.lines
+        self.draw(DIMENSION, Path(points=np.vstack([leader, shelf[1:]]), closed=False))
+        self.draw(DIMENSION, Path(points=drawn.heads[0][[1, 0, 2]], closed=False))
+        self.write(drawn.text)
         return True
 
     def _free(self, made: RoundDimension) -> bool:
         low, high = text_box(as_drawn(made, self.unit).text, self.unit)
         return bool(self._empty(low[None, :], high[None, :])[0])
 
-    def _search(
-        self, made: RoundDimension, angles: Array, reaches: Array, label: str | None = None
-    ) -> RoundDimension | None:
+    def _search(self, made: RoundDimension, angles: Array, reaches: Array) -> RoundDimension | None:
         """Return the dimension with the best knee, None if its text has no room anywhere."""
         angle, reach = (axis.ravel() for axis in np.meshgrid(angles, reaches, indexing="ij"))
         spokes = np.column_stack([np.cos(angle), np.sin(angle)])
         knees = made.radius + reach * self.unit
         at = made.center + knees[:, None] * spokes
         left = reach * spokes[:, 0] <= 0.0
-        wide = text_width(label or made.label) * self.unit
+        wide = text_width(made.label) * self.unit
         low = np.column_stack([at[:, 0] - wide * left, at[:, 1]])
         high = low + np.array([wide, (HEIGHT + GAP) * self.unit])
         good = self._empty(low, high) & (knees > 0.0)
