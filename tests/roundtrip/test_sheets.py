@@ -151,8 +151,8 @@ def pair(phi: float = 0.3) -> Drawing:
     angle = np.linspace(0.0, 2 * np.pi, 400, endpoint=False)
     ring = 23.9 * np.column_stack([np.cos(angle), np.sin(angle)])
     part = plain()
-    poses = ((-phi, (0.0, 0.0)), (phi, (47.8, 0.0)))
-    return pair_drawing([part, part], 47.8, [ring, ring], poses=poses)
+    placements = ((-phi, (0.0, 0.0)), (phi, (47.8, 0.0)))
+    return pair_drawing([part, part], 47.8, [ring, ring], placements=placements)
 
 
 @pytest.fixture(scope="module")

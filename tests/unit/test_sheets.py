@@ -203,8 +203,8 @@ def circles(count: int = 360) -> list[np.ndarray]:
 
 def pair(phi: float = 0.2) -> Drawing:
     wheel = Part(name="g", contours=(gear_contour(30, 2.0, squash=(1.0, 1.0)),), width=5.0)
-    poses = ((-phi, (0.0, 0.0)), (phi, (60.0, 0.0)))
-    return pair_drawing([wheel, wheel], 60.0, circles(), poses=poses)
+    placements = ((-phi, (0.0, 0.0)), (phi, (60.0, 0.0)))
+    return pair_drawing([wheel, wheel], 60.0, circles(), placements=placements)
 
 
 def test_the_pitch_point_is_marked() -> None:
