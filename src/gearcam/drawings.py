@@ -111,11 +111,6 @@ class Drawing:
         """The outlines, in order."""
         return tuple(f.shape for f in self.features if isinstance(f.shape, Contour))
 
-    @property
-    def layers(self) -> tuple[str, ...]:
-        """The layers in use, in order of first use."""
-        return tuple(dict.fromkeys(feature.layer for feature in self.features))
-
 
 def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
     """Turn a shape about the origin, then shift it.
@@ -283,14 +278,14 @@ def wheel_drawing(part: Part, step: int = 0) -> Drawing:
 def pair_drawing(
     parts: Sequence[Part],
     center_distance: float,
-    centrodes: Sequence[Array] = (),
+    centrodes: Sequence[Path] = (),
     *,
-    closed: tuple[bool, bool] = (True, True),
     placements: tuple[Placement, Placement] | None = None,
 ) -> Drawing:
     """Draw the assembled pair.
 
-    Without placements it stands at phi1 = 0: wheel 1 as it is, wheel 2 shifted by the centre distance.
+    Without placements it stands at phi1 = 0: wheel 1 as it is, wheel 2 shifted by the centre
+    distance.
 
     Parameters
     ----------
@@ -298,10 +293,8 @@ def pair_drawing(
         Driver first.
     center_distance : float, mm
         Distance of the shafts; 0 for a rack, which has none.
-    centrodes : sequence of (n, 2) arrays, mm
+    centrodes : sequence of Path
         In the wheels' own frames, driver first; may be empty.
-    closed : (bool, bool)
-        Whether each centrode is closed.
     placements : two Placement, optional
         Turn, rad, and shift, mm, of each wheel.
 
@@ -321,8 +314,7 @@ def pair_drawing(
     features: list[Feature] = []
     for number, (part, stand) in enumerate(zip(parts, stands, strict=True), start=1):
         features += place(part_features(part), *stand, prefix=f"GEAR{number}_")
-    for points, stand, whole in zip(centrodes, stands, closed, strict=False):
-        path = Path(points=np.asarray(points, dtype=np.float64), closed=whole)
+    for path, stand in zip(centrodes, stands, strict=False):
         features += place([Feature(layer=CENTRODE, shape=path)], *stand)
     size = CROSS_SIZE * (center_distance or float(np.ptp(parts[0].contour.vertices)))
     for offset in offsets if center_distance else offsets[:1]:

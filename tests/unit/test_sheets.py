@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from gearcam.drawings import OUTLINE, Drawing, Feature, pair_drawing, placed
+from gearcam.drawings import OUTLINE, Drawing, Feature, Path, pair_drawing, placed
 from gearcam.numerals import decimal
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
@@ -196,9 +196,9 @@ def test_upright_texts_have_upright_boxes() -> None:
     assert high[1] - low[1] > high[0] - low[0]
 
 
-def circles(count: int = 360) -> list[np.ndarray]:
+def circles(count: int = 360) -> list[Path]:
     angle = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
-    return [30.0 * np.column_stack([np.cos(angle), np.sin(angle)])] * 2
+    return [Path(points=30.0 * np.column_stack([np.cos(angle), np.sin(angle)]))] * 2
 
 
 def pair(phi: float = 0.2) -> Drawing:

@@ -7,8 +7,8 @@ hubs and marks are cylinders and planes. The same parts give the same bytes: the
 
 Refused: no parts at all; solids that come out invalid (see `step_shapes`).
 
-Depends on drawings, parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT, only inside
-the functions: it is large, and an extra of the package.
+Depends on drawings, parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT,
+only inside the functions: it is large, and an extra of the package.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def step_bytes(items: Sequence[tuple[Part, Placement]], name: str, tolerance: fl
     Parameters
     ----------
     items : sequence of (Part, Placement)
-        One part, or those of an assembly, each at its place; a part that comes twice is one product.
+        One part, or those of an assembly, each at its place; one that comes twice is one product.
     name : str
         Of the assembly, and of the file without its ending.
     tolerance : float, mm

@@ -188,7 +188,7 @@ def _prism(
     outer: Sequence[_Piece], holes: Sequence[Sequence[_Piece]], low: float, high: float
 ) -> Any:
     """Return a plate between two heights, one side face for each piece; all run left around."""
-    floor = occt.gp_Pln(occt.gp_Pnt(0.0, 0.0, low), occt.gp_Dir(0.0, 0.0, 1.0))
+    floor = occt.gp_Pln(_point(0j, low), occt.gp_Dir(0.0, 0.0, 1.0))
     face = occt.BRepBuilderAPI_MakeFace(floor, _wire(outer, low), False)
     for hole in holes:
         face.Add(occt.TopoDS.Wire(_wire(hole, low).Reversed()))
@@ -206,10 +206,7 @@ def _prism(
 
 def _wire(pieces: Sequence[_Piece], height: float) -> Any:
     """Return the closed chain of pieces at a height, with one corner between neighbours."""
-    corners = [
-        occt.BRepBuilderAPI_MakeVertex(occt.gp_Pnt(p.start.real, p.start.imag, height)).Vertex()
-        for p in pieces
-    ]
+    corners = [occt.BRepBuilderAPI_MakeVertex(_point(p.start, height)).Vertex() for p in pieces]
     builder, wire, lift = occt.BRep_Builder(), occt.TopoDS_Wire(), occt.gp_Vec(0.0, 0.0, height)
     builder.MakeWire(wire)
     for piece, start, end in zip(pieces, corners, [*corners[1:], corners[0]], strict=True):
@@ -220,6 +217,10 @@ def _wire(pieces: Sequence[_Piece], height: float) -> Any:
         builder.Add(wire, edge.Edge())
     wire.Closed(True)
     return wire
+
+
+def _point(place: complex, height: float = 0.0) -> Any:
+    return occt.gp_Pnt(place.real, place.imag, height)
 
 
 def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
@@ -263,7 +264,7 @@ def _curve(spline: Spline, start: complex, end: complex) -> _Piece:
     poles, knots = occt.Array1_gp_Pnt(1, len(places)), occt.Array1_double(1, len(breaks))
     repeats = occt.Array1_int(1, len(breaks))
     for number, place in enumerate(places, start=1):
-        poles.SetValue(number, occt.gp_Pnt(place.real, place.imag, 0.0))
+        poles.SetValue(number, _point(place))
     for number, knot in enumerate(breaks, start=1):
         knots.SetValue(number, knot)
         repeats.SetValue(number, DEGREE + 1 if number in (1, len(breaks)) else DEGREE - 1)
@@ -273,9 +274,7 @@ def _curve(spline: Spline, start: complex, end: complex) -> _Piece:
 
 def _line(start: complex, end: complex) -> _Piece:
     way = end - start
-    curve = occt.Geom_Line(
-        occt.gp_Pnt(start.real, start.imag, 0.0), occt.gp_Dir(way.real, way.imag, 0.0)
-    )
+    curve = occt.Geom_Line(_point(start), occt.gp_Dir(way.real, way.imag, 0.0))
     return _Piece(curve=curve, first=0.0, last=abs(way), start=start)
 
 
@@ -305,7 +304,7 @@ def _circle(centre: complex, start: complex, sweep: float) -> _Piece:
     """Return an arc about a centre, to the right where the sweep, rad, is negative."""
     spoke = cmath.exp(1j * cmath.phase(start - centre))
     axes = occt.gp_Ax2(
-        occt.gp_Pnt(centre.real, centre.imag, 0.0),
+        _point(centre),
         occt.gp_Dir(0.0, 0.0, math.copysign(1.0, sweep)),
         occt.gp_Dir(spoke.real, spoke.imag, 0.0),
     )

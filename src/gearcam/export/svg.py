@@ -127,12 +127,8 @@ def _element(feature: Feature, pixel: float) -> str:
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
     wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == drawings.FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
-    inside = {
-        drawings.MARK: ink,
-        drawings.FOLLOWER: fill,
-        drawings.OUTLINE: fill,
-        drawings.PROFILE: fill,
-    }.get(feature.kind, GROUND)
+    fills = {drawings.MARK: ink, **dict.fromkeys((*drawings.OUTER, drawings.FOLLOWER), fill)}
+    inside = fills.get(feature.kind, GROUND)
     line = f'stroke="{ink}"'
     if feature.kind in drawings.DASHED:
         dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
@@ -187,7 +183,7 @@ def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
     parts = np.maximum(1, np.ceil(np.abs(half) / (0.25 * math.pi + _ROUNDING))).astype(np.int64)
     points, piece = divided(start, chord, bends, parts)
     with np.errstate(divide="ignore"):  # of straight pieces
-        radii = 0.5 * np.abs(chord) / np.abs(np.sin(half))
+        radii = (0.5 * np.abs(chord) / np.abs(np.sin(half))).tolist()
 
     def numbers(*values: float) -> str:
         return " ".join(decimal(value, decimals) for value in values)

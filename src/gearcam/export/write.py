@@ -78,12 +78,11 @@ def _write(folder: Path, files: Mapping[str, bytes], keep: bool) -> tuple[str, .
         stale = [name for name in before if name not in files]
         for name, content in files.items():
             change.stage(name, content)
-        for name in sorted(files, key=lambda name: name == SUMMARY):
-            if name == SUMMARY:
-                change.remove(stale)
+        for name in [name for name in files if name != SUMMARY]:
             change.replace(name)
-        if SUMMARY not in files:
-            change.remove(stale)
+        change.remove(stale)
+        if SUMMARY in files:
+            change.replace(SUMMARY)
     except BaseException:
         change.undo()
         for empty in reversed(made):

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -104,6 +104,7 @@ class Board:
         size = np.ceil((self.area[1] - self.area[0]) * self.scale / CELL).astype(int) + 1
         self._lines = np.zeros(size, dtype=bool)
         self._taken = np.zeros(size, dtype=bool)
+        self._step = 0.8 * CELL * self.unit
 
     @property
     def unit(self) -> float:
@@ -113,9 +114,8 @@ class Board:
     def draw(self, layer: str, shape: Shape) -> None:
         """Draw a `shape` on a `layer`."""
         self.features.append(Feature(layer=layer, shape=shape))
-        step = 0.8 * CELL * self.unit
-        for points, closed in chains(shape, 0.1 * step):
-            self._ink(_resampled(points, step, closed))
+        for points, closed in chains(shape, 0.1 * self._step):
+            self._ink(points, closed)
 
     def line(self, layer: str, start: tuple[float, float], end: tuple[float, float]) -> None:
         """Draw a straight line on a `layer` from `start` to `end`, mm of the part."""
@@ -189,42 +189,25 @@ class Board:
             )
         )  # fmt: skip
 
-    def round(
-        self,
-        center: Array,
-        radius: float,
-        *,
-        angles: Array | None = None,
-        diameter: bool = True,
-        prefix: str = "",
-        suffix: str = "",
-    ) -> bool:
+    def round(self, made: RoundDimension, angles: Array | None = None) -> bool:
         """Draw a diameter or radius where there is room.
 
         Parameters
         ----------
-        center : (2,) array, mm
-            Middle of the circle.
-        radius : float, mm
-            Of the circle.
+        made : RoundDimension
+            What it says; where its arrow and its knee are is found here.
         angles : (n,) array, rad, optional
             Directions in which the arrow may stand; any if left out.
-        diameter : bool
-            Whether the diameter is told.
-        prefix, suffix : str
-            Before and after the number.
 
         Returns
         -------
         bool
             False if there is no room: nothing is drawn, the table must tell it.
         """
-        words: dict[str, Any] = {"diameter": diameter, "prefix": prefix, "suffix": suffix}
-        made = RoundDimension(center=center, radius=radius, **words)
-        within = 2.0 * radius * self.scale - text_width(made.label)
+        within = 2.0 * made.radius * self.scale - text_width(made.label)
         found: RoundDimension | None = made
-        if not (diameter and angles is None and within > TIGHT and self._free(made)):
-            reaches = _REACHES if diameter else np.concatenate([_REACHES, -_REACHES])
+        if not (made.diameter and angles is None and within > TIGHT and self._free(made)):
+            reaches = _REACHES if made.diameter else np.concatenate([_REACHES, -_REACHES])
             found = self._search(made, AROUND if angles is None else angles, reaches)
         if found is not None:
             self._measure(found)
@@ -314,8 +297,8 @@ class Board:
         held = sums[k, m] - sums[i, m] - sums[k, j] + sums[i, j]
         return inside & also & (held == 0)
 
-    def _ink(self, points: Array) -> None:
-        cells, inside = self._cells(points)
+    def _ink(self, points: Array, closed: bool) -> None:
+        cells, inside = self._cells(_resampled(points, self._step, closed))
         self._lines[cells[inside, 0], cells[inside, 1]] = True
 
     def _take(self, text: Text) -> None:
@@ -329,5 +312,5 @@ class Board:
         self.dimensions.append(dimension)
         drawn = as_drawn(dimension, self.unit)
         for line in drawn.lines:
-            self._ink(_resampled(line, 0.8 * CELL * self.unit, closed=False))
+            self._ink(line, closed=False)
         self._take(drawn.text)

@@ -71,10 +71,9 @@ def pair_sheet(
         raise ValueError(f"{drawing.name}: nothing to draw")
     points = true_points(drawing.contours)
     low, high = points.min(axis=0), points.max(axis=0)
-    size = float(high[0] - low[0]), float(high[1] - low[1])
     below = FIRST_LEVEL + LEVEL * LEVELS
     room = np.array([LEFT, below]), np.array([RIGHT, ABOVE])
-    board = begin(size, room, low, len(facts) + 2)
+    board = begin(high - low, room, low, len(facts) + 2)
     shafts = (0.0, center_distance) if center_distance else (0.0,)
     _views(board, drawing, shafts)
     _sizes(board, points, center_distance, pitch_radius)

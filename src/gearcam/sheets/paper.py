@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gearcam.drawings import Feature, Path
 from gearcam.numerals import shown
@@ -66,7 +67,7 @@ def area_of(paper: str) -> Box:
     return low, np.array([wide - MARGIN - TABLE - PAD, tall - MARGIN - PAD])
 
 
-def choose(size: tuple[float, float], room: tuple[float, float], rows: int) -> tuple[str, float]:
+def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
     """Choose paper and scale.
 
     Parameters
@@ -88,11 +89,10 @@ def choose(size: tuple[float, float], room: tuple[float, float], rows: int) -> t
     ValueError
         If the views are too large for the smallest scale.
     """
-    found = []
+    size, room, found = np.asarray(size), np.asarray(room), []
     for paper, (_, tall) in PAPERS.items():
         low, high = area_of(paper)
-        free = high - low - np.array(room)
-        fits = [scale for scale in SCALES if (scale * np.array(size) <= free).all()]
+        fits = [scale for scale in SCALES if (scale * size <= high - low - room).all()]
         long = (rows + 1) * ROW > tall - 2 * MARGIN - BLOCK[1]
         if fits and not (long and paper == "A4"):
             found.append((paper, fits[0]))
@@ -101,12 +101,12 @@ def choose(size: tuple[float, float], room: tuple[float, float], rows: int) -> t
     return max(found, key=lambda one: min(one[1], 1.0))
 
 
-def begin(size: tuple[float, float], room: Box, low: Array, rows: int) -> Board:
+def begin(size: Array, room: Box, low: Array, rows: int) -> Board:
     """Begin a sheet: the views in the middle of their area.
 
     Parameters
     ----------
-    size : (float, float), mm
+    size : (2,) array, mm
         Width and height of all views together.
     room : (2,) array, (2,) array, mm of paper
         What dimensions take to the left and below, and to the right and above.
@@ -125,10 +125,9 @@ def begin(size: tuple[float, float], room: Box, low: Array, rows: int) -> Board:
     ValueError
         If the views are too large for the smallest scale.
     """
-    wide, tall = (room[0] + room[1]).tolist()
-    paper, scale = choose(size, (wide, tall), rows)
+    paper, scale = choose(size, room[0] + room[1], rows)
     first, last = area_of(paper)
-    idle = last - first - room[0] - room[1] - scale * np.array(size)
+    idle = last - first - room[0] - room[1] - scale * size
     corner = low - (first + room[0] + 0.5 * idle) / scale
     area = corner + first / scale, corner + last / scale
     return Board(scale=scale, area=area, paper=paper, corner=corner)

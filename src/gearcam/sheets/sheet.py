@@ -17,7 +17,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from gearcam.drawings import Feature
+from gearcam.drawings import OUTLINE, THROUGH, Feature
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 
@@ -31,6 +31,13 @@ HIDDEN: Final = "HIDDEN"
 FRAME: Final = "FRAME"
 EDGE: Final = "EDGE"
 """Layers beside those of drawings; EDGE holds visible edges that no cutter follows."""
+
+HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
+"""Kinds that are drawn thick."""
+
+THICK: Final = 0.5
+THIN: Final = 0.25
+"""Widths of lines, mm of paper."""
 
 HEIGHT: Final = 2.5
 """Height of the numbers, mm of paper."""

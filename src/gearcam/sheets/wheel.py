@@ -35,6 +35,7 @@ from gearcam.sheets.sheet import (
     GAP,
     HEIGHT,
     HIDDEN,
+    RoundDimension,
     Sheet,
     Text,
     fine,
@@ -67,10 +68,6 @@ class _Wheel:
     @property
     def high(self) -> Array:
         return self.points.max(axis=0)
-
-    @property
-    def hub(self) -> Hub:
-        return self.part.hub or Hub(diameter=0.0)
 
     @property
     def turns(self) -> bool:
@@ -116,8 +113,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     wheel = _Wheel(part=part, points=true_points(part.contours[-1:]))
     keyed = wheel.bore if isinstance(wheel.bore, Loop) else None
     shown = 2.0 * wheel.bore_radius if keyed else 0.0
-    wide, tall = (wheel.high - wheel.low).tolist()
-    size = wide + part.thickness + shown, tall
+    size = wheel.high - wheel.low + [part.thickness + shown, 0.0]
     levels = 1 + len(part.bosses) + (part.hub is not None)  # below the side view
     below = FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if keyed else 0.0)
@@ -161,7 +157,7 @@ def _front_view(board: Board, wheel: _Wheel) -> None:
 
 def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     """Draw the view from the left, its back at x = `left`."""
-    part, hub, unit = wheel.part, wheel.hub, board.unit
+    part, unit, hub = wheel.part, board.unit, wheel.part.hub or Hub(diameter=0.0)
     back, end = left + hub.back, left + part.thickness
     for layer in part.layers:
         low, high = back + layer.low, back + layer.high
@@ -239,7 +235,10 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
             _slot(board, opening.shape)
     for mark in part.marks:
         words = f", {decimal(mark.depth)} deep"
-        if not board.round(mark.center, 0.5 * mark.diameter, prefix="mark ", suffix=words):
+        made = RoundDimension(
+            center=mark.center, radius=0.5 * mark.diameter, prefix="mark ", suffix=words
+        )
+        if not board.round(made):
             board.rows.append(("mark", f"Ø{decimal(mark.diameter)}{words}"))
 
 
@@ -249,11 +248,9 @@ def _radii(board: Board, wheel: _Wheel) -> None:
     for place, words in ((int(reach.argmax()), "max"), (int(reach.argmin()), "min")):
         x, y = wheel.points[place].tolist()
         radius, ways = float(reach[place]), np.array([math.atan2(y, x)])
-        end = f" {words}"
-        if board.round(np.zeros(2), radius, angles=ways, diameter=False, suffix=end):
-            continue
+        made = RoundDimension(center=np.zeros(2), radius=radius, diameter=False, suffix=f" {words}")
         # a leader need not point to the axis
-        if not board.label(np.array([x, y]), f"R{decimal(radius)}{end}"):
+        if not (board.round(made, ways) or board.label(np.array([x, y]), made.label)):
             board.rows.append((f"{words}. radius from axis", decimal(radius)))
 
 
@@ -269,19 +266,21 @@ def _holes(board: Board, part: Part) -> None:
     singles = [one for group in groups.values() if not _even(group) for one in group]
     for group in patterns:
         _ring(board, group)
-    named = [(circle, f"H{k}") for k, circle in enumerate(singles, start=1)]
-    for circle, letter in named:
-        size = f"{letter} Ø{decimal(circle.diameter)}"
-        inside = circle.diameter * board.scale > text_width(size) + TIGHT
+    named = [
+        RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"H{k} ")
+        for k, one in enumerate(singles, start=1)
+    ]
+    for one in named:
+        inside = 2.0 * one.radius * board.scale > text_width(one.label) + TIGHT
         gap = (-CLEAR - GAP, HEIGHT + GAP + 2.0 * CLEAR) if inside else None
-        board.centre(circle.center, 0.5 * circle.diameter, gap)
-    for circle, letter in sorted(named, key=lambda one: -one[0].diameter):
-        board.round(circle.center, 0.5 * circle.diameter, prefix=f"{letter} ")
+        board.centre(one.center, one.radius, gap)
+    for one in sorted(named, key=lambda one: -one.radius):
+        board.round(one)
     for group in patterns:
         _pattern(board, group)
-    for circle, letter in named:
-        x, y = (decimal(value) for value in circle.center.tolist())
-        board.rows.append((f"{letter} Ø{decimal(circle.diameter)}", f"X {x}  Y {y}"))
+    for one in named:
+        x, y = (decimal(value) for value in one.center.tolist())
+        board.rows.append((one.label, f"X {x}  Y {y}"))
 
 
 def _even(circles: list[Circle]) -> bool:
@@ -308,12 +307,13 @@ def _pattern(board: Board, circles: list[Circle]) -> None:
     one, count = circles[0], len(circles)
     away = float(np.hypot(*one.center))
     first = math.atan2(*one.center[::-1])
-    board.round(one.center, 0.5 * one.diameter, angles=AROUND, prefix=f"{count} x ")
+    made = RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"{count} x ")
+    board.round(made, AROUND)
     # the arrow points at the circle between two holes
-    ring = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
-    board.round(np.zeros(2), away, angles=ring)
-    words = f"on Ø{decimal(2.0 * away)}, at {decimal(math.degrees(first))} deg"
-    board.rows.append((f"{count} x Ø{decimal(one.diameter)}", words))
+    between = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
+    ring = RoundDimension(center=np.zeros(2), radius=away)
+    board.round(ring, between)
+    board.rows.append((made.label, f"on {ring.label}, at {decimal(math.degrees(first))} deg"))
 
 
 def _slot(board: Board, shape: Loop) -> None:
@@ -325,7 +325,8 @@ def _slot(board: Board, shape: Loop) -> None:
     sweep = float(np.angle(corners[1:half] / corners[: half - 1]).sum())
     first = math.degrees(cmath.phase(complex(corners[0])))
     place = shape.vertices[[half - 1, half]].mean(axis=0)
-    if not board.round(place, 0.5 * width, diameter=False, prefix="slot "):
+    end = RoundDimension(center=place, radius=0.5 * width, diameter=False, prefix="slot ")
+    if not board.round(end):
         board.rows.append(("slot, width", decimal(width)))
     board.rows.append(("slot, mid radius", decimal(middle)))
     last = first + math.degrees(sweep)

@@ -71,20 +71,18 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
 
 
 def _pair_drawing(result: GearPairResult) -> Drawing:
-    from gearcam.drawings import pair_drawing
+    from gearcam.drawings import Path, pair_drawing
 
     lobes = result.law.lobes
     ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
     if result.pair.on_rack:
         ends[1] = result.centrode_angles()[-1]
-    centrodes = [
-        gear.centrode(np.linspace(0.0, end, 721)[: -1 if gear.toothing.closed else None])
-        for gear, end in zip(result.gears, ends, strict=True)
-    ]
-    closed = result.gear1.toothing.closed, result.gear2.toothing.closed
-    return pair_drawing(
-        result.parts, result.pair.shift, centrodes, closed=closed, placements=placements(result)
-    )
+    centrodes = []
+    for gear, end in zip(result.gears, ends, strict=True):
+        closed = gear.toothing.closed
+        turn = np.linspace(0.0, end, 721)[: -1 if closed else None]
+        centrodes.append(Path(points=gear.centrode(turn), closed=closed))
+    return pair_drawing(result.parts, result.pair.shift, centrodes, placements=placements(result))
 
 
 def placements(result: GearPairResult) -> tuple[Placement, Placement]:
