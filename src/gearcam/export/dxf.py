@@ -99,8 +99,7 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     bytes
         The file, UTF-8; the same for the same drawing.
     """
-    text = document_text(style.version, lambda document: _fill(document, drawing, style))
-    return text.encode("utf-8")
+    return document_text(style.version, lambda new: _fill(new, drawing, style)).encode("utf-8")
 
 
 def document_text(version: str, fill: Callable[[Document], None]) -> str:

@@ -145,16 +145,13 @@ def _measured(space: Modelspace, dimension: Dimension) -> None:
 
 
 def _round(space: Modelspace, dimension: RoundDimension, rest: dict[str, Any]) -> Any:
-    circle: dict[str, Any] = {"center": dimension.center.tolist(), "radius": dimension.radius}
+    rest |= {"center": dimension.center.tolist(), "radius": dimension.radius}
     if dimension.knee is None:
         angle = math.degrees(dimension.angle)
-        return space.add_diameter_dim(
-            angle=angle, override={"dimtix": 1, "dimtmove": 0}, **circle, **rest
-        )
+        return space.add_diameter_dim(angle=angle, override={"dimtix": 1, "dimtmove": 0}, **rest)
     rest["override"] = {"dimtih": 1, "dimtoh": 1}
     rest["location"] = dimension.point(dimension.knee).tolist()
-    add = space.add_diameter_dim if dimension.diameter else space.add_radius_dim
-    return add(**circle, **rest)
+    return (space.add_diameter_dim if dimension.diameter else space.add_radius_dim)(**rest)
 
 
 def _exploded(space: Modelspace, sheet: Sheet, drawn: DrawnDimension) -> None:
@@ -170,18 +167,13 @@ def _exploded(space: Modelspace, sheet: Sheet, drawn: DrawnDimension) -> None:
 def _text(space: Modelspace, sheet: Sheet, text: Text, layer: str) -> None:
     from ezdxf.enums import TextEntityAlignment
 
-    align = {
-        "start": TextEntityAlignment.LEFT,
-        "middle": TextEntityAlignment.CENTER,
-        "end": TextEntityAlignment.RIGHT,
-    }[text.anchor]
-    attributes = {"layer": layer, "style": STYLE}
+    align = TextEntityAlignment.CENTER if text.anchor == "middle" else TextEntityAlignment.LEFT
     # The format reads a caret and two percent signs as the beginning of a special character.
     words = text.text.replace("^", "^ ").replace("%%", "%%%%%%").replace("Ø", "%%c")
     made = space.add_text(
         words,
         height=text.height * sheet.unit,
         rotation=90.0 if text.upright else 0.0,
-        dxfattribs=attributes,
+        dxfattribs={"layer": layer, "style": STYLE},
     )
     made.set_placement(text.place.tolist(), align=align)

@@ -17,7 +17,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any, Final
 
@@ -26,7 +26,7 @@ import numpy as np
 from gearcam.numeric.bulges import arc_centers, as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
-from gearcam.parts.body import Edge, Part
+from gearcam.parts.body import Edge, Layer, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.solids import OVERSHOOT, SolidError, demand_volume
 
@@ -150,20 +150,18 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
     bosses = [boss for boss in part.bosses if (lowest if boss.low < 0.0 else topmost)]
     # what goes through a hub is cut at last: its face must not end where the plate does
     late = bosses[0].openings if bosses else ()
-    holes = [_pieces(o.shape, tolerance) for o in step.openings if o not in late]
-    body = _prism(_pieces(step.edge, tolerance), holes, step.low, step.high)
+    through = tuple(opening for opening in step.openings if opening not in late)
+    body = _prism(replace(step, openings=through), tolerance)
     if bosses:
-        hubs = [_prism(_pieces(boss.edge, tolerance), [], boss.low, boss.high) for boss in bosses]
+        hubs = [_prism(replace(boss, openings=()), tolerance) for boss in bosses]
         body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
     low = min(layer.low for layer in part.layers) - CLEARANCE
     high = max(layer.high for layer in part.layers) + CLEARANCE
-    cutters = [_prism(_pieces(opening.shape, tolerance), [], low, high) for opening in late]
+    cutters = [Layer(edge=opening.shape, low=low, high=high) for opening in late]
     if topmost:
-        cutters += [
-            _prism(_pieces(one.edge, tolerance), [], one.low, one.high + OVERSHOOT * one.height)
-            for one in part.pockets
-        ]
-    return _combined(occt.BRepAlgoAPI_Cut(), body, cutters) if cutters else body
+        cutters += [replace(one, high=one.high + OVERSHOOT * one.height) for one in part.pockets]
+    tools = [_prism(cutter, tolerance) for cutter in cutters]
+    return _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
 
 
 def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
@@ -184,17 +182,19 @@ def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
     return found[0]
 
 
-def _prism(
-    outer: Sequence[_Piece], holes: Sequence[Sequence[_Piece]], low: float, high: float
-) -> Any:
-    """Return a plate between two heights, one side face for each piece; all run left around."""
-    floor = occt.gp_Pln(_point(0j, low), occt.gp_Dir(0.0, 0.0, 1.0))
-    face = occt.BRepBuilderAPI_MakeFace(floor, _wire(outer, low), False)
+def _prism(layer: Layer, tolerance: float) -> Any:
+    """Return a layer as a solid, one side face for each piece; all run left around."""
+    floor = occt.gp_Pln(_point(0j, layer.low), occt.gp_Dir(0.0, 0.0, 1.0))
+    edge, *holes = (
+        _wire(_pieces(edge, tolerance), layer.low)
+        for edge in (layer.edge, *(opening.shape for opening in layer.openings))
+    )
+    face = occt.BRepBuilderAPI_MakeFace(floor, edge, False)
     for hole in holes:
-        face.Add(occt.TopoDS.Wire(_wire(hole, low).Reversed()))
+        face.Add(occt.TopoDS.Wire(hole.Reversed()))
     if not face.IsDone():
         raise SolidError("an outline encloses no face")
-    prism = occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, high - low)).Shape()
+    prism = occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, layer.height)).Shape()
     # swept curves become B-spline surfaces, which more programs read; planes and cylinders stay
     found = subshapes(
         occt.ShapeCustom.ConvertToBSpline_s(prism, True, False, False, False), "SOLID"

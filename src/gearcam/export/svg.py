@@ -129,13 +129,13 @@ def _element(feature: Feature, pixel: float) -> str:
     ink, fill = INKS[wheel], FILLS[wheel]
     fills = {drawings.MARK: ink, **dict.fromkeys((*drawings.OUTER, drawings.FOLLOWER), fill)}
     inside = fills.get(feature.kind, GROUND)
-    line = f'stroke="{ink}"'
-    if feature.kind in drawings.DASHED:
+    line, dashed = f'stroke="{ink}"', feature.kind in drawings.DASHED
+    if dashed:
         dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
         line = f'stroke="{CENTRODE_INK}" stroke-dasharray="{dash}"'
     elif isinstance(shape, Cross):
         line = f'stroke="{TEXT_INK}"'
-    if feature.kind in drawings.DASHED or isinstance(shape, Path | Cross):
+    if dashed or isinstance(shape, Path | Cross):
         inside = "none"
     style = f'class={name} fill="{inside}" {line}'
     match shape:

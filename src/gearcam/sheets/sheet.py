@@ -86,7 +86,7 @@ class Text:
         Of its base line.
     height : float, mm of paper
         Of its capitals.
-    anchor : {"start", "middle", "end"}
+    anchor : {"start", "middle"}
         Which point of the base line stands at `place`.
     upright : bool
         Whether it reads from below to above.
@@ -95,7 +95,7 @@ class Text:
     text: str
     place: Array
     height: float = HEIGHT
-    anchor: Literal["start", "middle", "end"] = "start"
+    anchor: Literal["start", "middle"] = "start"
     upright: bool = False
 
 
@@ -176,10 +176,8 @@ class RoundDimension:
     @property
     def label(self) -> str:
         """Its text."""
-        if self.words:
-            return self.words
         sign = "Ø" if self.diameter else "R"
-        return f"{self.prefix}{sign}{decimal(self.value)}{self.suffix}"
+        return self.words or f"{self.prefix}{sign}{decimal(self.value)}{self.suffix}"
 
     def point(self, distance: float) -> Array:
         """Return the point on the leader at a distance from the middle, (2,), mm."""
@@ -273,7 +271,7 @@ def text_box(text: Text, unit: float) -> Box:
         Its lower left and upper right corner, letters below the base line included.
     """
     wide, tall = text_width(text.text, text.height), text.height
-    start = {"start": 0.0, "middle": -0.5 * wide, "end": -wide}[text.anchor]
+    start = -0.5 * wide if text.anchor == "middle" else 0.0
     low, high = np.array([start, -0.25 * tall]), np.array([start + wide, tall])
     if text.upright:
         low, high = np.array([-tall, start]), np.array([0.25 * tall, start + wide])
