@@ -318,8 +318,7 @@ def pair_drawing(
         features += place([Feature(layer=CENTRODE, shape=path)], *stand)
     size = CROSS_SIZE * (center_distance or float(np.ptp(parts[0].contour.vertices)))
     for offset in offsets if center_distance else offsets[:1]:
-        cross = Cross(center=np.array(offset), size=size)
-        features.append(Feature(layer=CENTER, shape=cross))
+        features.append(Feature(layer=CENTER, shape=Cross(center=np.array(offset), size=size)))
     return Drawing(name="pair", features=tuple(features))
 
 

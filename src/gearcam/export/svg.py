@@ -79,9 +79,9 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     low, high = box(drawing.features)
     width = float(high[0] - low[0])
     margin, pixel = MARGIN * width, width / PIXELS
-    lines = [title, ", ".join(notes)]
-    size = min(20 * pixel, width / (GLYPH * max(1, *(len(line) for line in lines))))
-    caption = size * 1.4 * sum(1 for line in lines if line)
+    lines = [line for line in (title, ", ".join(notes)) if line]
+    size = min(20 * pixel, width / (GLYPH * max([1, *map(len, lines)])))
+    caption = size * 1.4 * len(lines)
     left, top = float(low[0]) - margin, -float(high[1]) - margin
     whole = width + 2 * margin
     tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
@@ -114,7 +114,7 @@ def svg_document(attributes: str, title: str, elements: Iterable[str]) -> bytes:
 
 def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
     made = []
-    for row, line in enumerate(line for line in lines if line):
+    for row, line in enumerate(lines):
         place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * row)}"'
         font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
         weight = ' font-weight="bold"' if row == 0 else ""
