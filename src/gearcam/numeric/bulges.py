@@ -79,7 +79,7 @@ def flatten_bulges(
 
 
 def arc_chords(chord: Plane, bends: Array, sagitta: float) -> Ints:
-    """Return how many chords each piece needs to keep within the `sagitta`, mm."""
+    """Return how many chords keep each piece within the `sagitta`, mm (see `bulge_pieces`)."""
     half = 2 * np.abs(np.arctan(bends))
     bent = half != 0
     radius = 0.5 * np.abs(chord[bent]) / np.sin(half[bent])
