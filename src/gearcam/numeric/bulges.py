@@ -128,9 +128,10 @@ def on_arcs(chord: Plane, bends: Array, share: Array) -> tuple[Plane, Plane]:
         From the beginning, and by the share.
     """
     half = 2 * np.arctan(bends)
-    length = chord / np.sinc(half / np.pi)
-    way = length * share * np.sinc(share * half / np.pi) * np.exp(1j * half * (share - 1))
-    return way, length * np.exp(1j * half * (2 * share - 1))
+    safe = np.where(half == 0, 1.0, half)
+    reach = np.where(half == 0, share, np.sin(share * safe) / np.sin(safe))
+    way = chord * (reach * np.exp(1j * half * (share - 1)))
+    return way, chord / np.sinc(half / np.pi) * np.exp(1j * half * (2 * share - 1))
 
 
 def arc_centers(start: Plane, chord: Plane, bends: Array) -> Plane:
