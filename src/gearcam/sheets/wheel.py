@@ -72,9 +72,11 @@ class _Wheel:
     @property
     def turns(self) -> bool:
         """Whether the axis lies within the outline: racks have none."""
-        from shapely import contains_xy
-
-        return bool(contains_xy(self.part.contours[-1].polygon, 0.0, 0.0))
+        corners = as_complex(self.part.contours[-1].vertices)
+        if not corners.all():
+            return False
+        turn = float(np.angle(np.roll(corners, -1) / corners).sum())
+        return abs(turn) > math.pi
 
     @property
     def bore(self) -> Edge | None:
