@@ -13,6 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from gearcam.drawings import Drawing
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.body import Opening
 from gearcam.parts.shapes import Circle
@@ -159,3 +160,8 @@ def square_contour(side: float, tolerance: float = 1e-3) -> Contour:
 def bore(diameter: float) -> tuple[Opening, ...]:
     """A round bore about the origin."""
     return (Opening(kind="BORE", shape=Circle(center=np.zeros(2), diameter=diameter), name="bore"),)
+
+
+def layers(drawing: Drawing) -> list[str]:
+    """The layers in use, in order of first use."""
+    return list(dict.fromkeys(feature.layer for feature in drawing.features))

@@ -256,7 +256,7 @@ def _new(kind: str, file: str | None, process: str | None) -> None:
 def _migrate(files: list[str]) -> None:
     """Rewrite design files with keys that are no longer known; comments stay."""
     from gearcam.designs.migrate import migrate
-    from gearcam.export.rewrite import rewrite
+    from gearcam.export.write import rewrite
 
     def one(file: str) -> int:
         content, changes = migrate(file)

@@ -80,8 +80,10 @@ class Cross:
 
 Shape = Contour | Circle | Loop | Path | Cross
 
-Pose = tuple[float, tuple[float, float]]
+Placement = tuple[float, tuple[float, float]]
 """Turn about the own origin, rad, then shift, mm."""
+
+UNMOVED: Final[Placement] = (0.0, (0.0, 0.0))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -109,11 +111,6 @@ class Drawing:
         """The outlines, in order."""
         return tuple(f.shape for f in self.features if isinstance(f.shape, Contour))
 
-    @property
-    def layers(self) -> tuple[str, ...]:
-        """The layers in use, in order of first use."""
-        return tuple(dict.fromkeys(feature.layer for feature in self.features))
-
 
 def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
     """Turn a shape about the origin, then shift it.
@@ -132,7 +129,7 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
     Contour or Circle or Loop or Path or Cross
         The same object where nothing moves.
     """
-    if angle == 0 and offset == (0.0, 0.0):
+    if (angle, offset) == UNMOVED:
         return shape
     turn, shift = cmath.exp(1j * angle), complex(*offset)
 
@@ -281,15 +278,14 @@ def wheel_drawing(part: Part, step: int = 0) -> Drawing:
 def pair_drawing(
     parts: Sequence[Part],
     center_distance: float,
-    centrodes: Sequence[Array] = (),
+    centrodes: Sequence[Path] = (),
     *,
-    name: str = "pair",
-    closed: tuple[bool, bool] = (True, True),
-    poses: tuple[Pose, Pose] | None = None,
+    placements: tuple[Placement, Placement] | None = None,
 ) -> Drawing:
     """Draw the assembled pair.
 
-    Without poses it stands at phi1 = 0: wheel 1 as it is, wheel 2 shifted by the centre distance.
+    Without placements it stands at phi1 = 0: wheel 1 as it is, wheel 2 shifted by the centre
+    distance.
 
     Parameters
     ----------
@@ -297,13 +293,9 @@ def pair_drawing(
         Driver first.
     center_distance : float, mm
         Distance of the shafts; 0 for a rack, which has none.
-    centrodes : sequence of (n, 2) arrays, mm
+    centrodes : sequence of Path
         In the wheels' own frames, driver first; may be empty.
-    name : str
-        The drawing's name.
-    closed : (bool, bool)
-        Whether each centrode is closed.
-    poses : two Pose, optional
+    placements : two Placement, optional
         Turn, rad, and shift, mm, of each wheel.
 
     Returns
@@ -318,18 +310,16 @@ def pair_drawing(
     if len(parts) != 2 or len(centrodes) not in (0, 2):
         raise ValueError("a pair takes two parts, and two centrodes or none")
     offsets = ((0.0, 0.0), (float(center_distance), 0.0))
-    stands = poses or ((0.0, offsets[0]), (0.0, offsets[1]))
+    stands = placements or ((0.0, offsets[0]), (0.0, offsets[1]))
     features: list[Feature] = []
-    for number, (part, pose) in enumerate(zip(parts, stands, strict=True), start=1):
-        features += place(part_features(part), *pose, prefix=f"GEAR{number}_")
-    for points, pose, whole in zip(centrodes, stands, closed, strict=False):
-        path = Path(points=np.asarray(points, dtype=np.float64), closed=whole)
-        features += place([Feature(layer=CENTRODE, shape=path)], *pose)
+    for number, (part, stand) in enumerate(zip(parts, stands, strict=True), start=1):
+        features += place(part_features(part), *stand, prefix=f"GEAR{number}_")
+    for path, stand in zip(centrodes, stands, strict=False):
+        features += place([Feature(layer=CENTRODE, shape=path)], *stand)
     size = CROSS_SIZE * (center_distance or float(np.ptp(parts[0].contour.vertices)))
     for offset in offsets if center_distance else offsets[:1]:
-        cross = Cross(center=np.array(offset), size=size)
-        features.append(Feature(layer=CENTER, shape=cross))
-    return Drawing(name=name, features=tuple(features))
+        features.append(Feature(layer=CENTER, shape=Cross(center=np.array(offset), size=size)))
+    return Drawing(name="pair", features=tuple(features))
 
 
 def cam_drawing(
@@ -360,9 +350,10 @@ def cam_drawing(
     Drawing
         Named as the part.
     """
-    features = list(place(part_features(part, outline=PROFILE), angle, (0.0, 0.0)))
+    turning = list(part_features(part, outline=PROFILE))
     if pitch is not None:
-        features += place([Feature(layer=PITCH, shape=pitch)], angle, (0.0, 0.0))
+        turning.append(Feature(layer=PITCH, shape=pitch))
+    features = list(place(turning, angle, (0.0, 0.0)))
     circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
     features.append(Feature(layer=PRIME, shape=circle))
     features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]

@@ -163,10 +163,8 @@ def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:
 
 def _mesh(body: Manifold) -> Mesh:
     raw = body.to_mesh64()
-    vertices = np.array(raw.vert_properties, dtype=np.float64).reshape(
-        -1, raw.vert_properties.shape[-1]
-    )
-    return Mesh(vertices=vertices[:, :3], triangles=np.array(raw.tri_verts, dtype=np.int64))
+    vertices = np.array(raw.vert_properties[:, :3], dtype=np.float64)
+    return Mesh(vertices=vertices, triangles=np.array(raw.tri_verts, dtype=np.int64))
 
 
 @singledispatch

@@ -15,11 +15,12 @@ from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.math import bulge_to_arc
 
 from gearcam.drawings import Drawing, pair_drawing, wheel_drawing
+from gearcam.drawings import Path as Chain
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
-from helpers_contour import bore, gear_contour, square_contour
+from helpers_contour import bore, gear_contour, layers, square_contour
 
 TOLERANCE = 1e-3
 
@@ -41,7 +42,7 @@ def part() -> Part:
 
 @pytest.fixture(scope="module")
 def pair(part: Part) -> Drawing:
-    centrode = part.contour.vertices[::50] * 0.9
+    centrode = Chain(points=part.contour.vertices[::50] * 0.9)
     return pair_drawing([part, part], 95.0, [centrode, centrode])
 
 
@@ -98,7 +99,7 @@ def test_the_pair_file_has_a_layer_per_feature_and_its_extents(pair: Drawing) ->
         "CENTRODE": ["LWPOLYLINE", "LWPOLYLINE"],
         "CENTER": ["LINE"] * 4,
     }
-    colours = [document.layers.get(layer).color for layer in pair.layers]
+    colours = [document.layers.get(layer).color for layer in layers(pair)]
     assert colours == [7, 5, 1, 7, 5, 1, 3, 8]
     assert document.layers.get("CENTRODE").dxf.linetype == "DASHED"
     widest = max(contour.vertices[:, 0].max() for contour in pair.contours)

@@ -137,7 +137,7 @@ def test_a_chain_with_a_gap_is_refused() -> None:
 
 def test_a_pair_of_splines_is_measured_wheel_by_wheel() -> None:
     part = wheel()
-    drawing = pair_drawing([part, part], 95.0, poses=((-0.4, (0.0, 0.0)), (0.3, (95.0, 0.0))))
+    drawing = pair_drawing([part, part], 95.0, placements=((-0.4, (0.0, 0.0)), (0.3, (95.0, 0.0))))
     data = dxf_bytes(drawing, DxfStyle(tolerance=TOLERANCE, curves="splines"))
     assert measure_dxf(data, drawing.contours) <= TOLERANCE
     assert measure_dxf(data, drawing.contours[::-1]) > 10

@@ -20,6 +20,7 @@ from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 import gearcam
 from gearcam.drawings import Drawing, pair_drawing
+from gearcam.drawings import Path as Chain
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
@@ -149,10 +150,10 @@ def wheel(request: pytest.FixtureRequest) -> tuple[Part, list[float], Sheet]:
 
 def pair(phi: float = 0.3) -> Drawing:
     angle = np.linspace(0.0, 2 * np.pi, 400, endpoint=False)
-    ring = 23.9 * np.column_stack([np.cos(angle), np.sin(angle)])
+    ring = Chain(points=23.9 * np.column_stack([np.cos(angle), np.sin(angle)]))
     part = plain()
-    poses = ((-phi, (0.0, 0.0)), (phi, (47.8, 0.0)))
-    return pair_drawing([part, part], 47.8, [ring, ring], poses=poses)
+    placements = ((-phi, (0.0, 0.0)), (phi, (47.8, 0.0)))
+    return pair_drawing([part, part], 47.8, [ring, ring], placements=placements)
 
 
 @pytest.fixture(scope="module")

@@ -17,9 +17,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gearcam.drawings import UNMOVED
 from gearcam.errors import GearcamError, MissingExtraError
 from gearcam.export import step, step_shapes
-from gearcam.export.step import Placed, step_bytes
+from gearcam.export.step import step_bytes
 from gearcam.numeric.contour import Run
 from gearcam.numeric.splines import Spline, fit_spline
 from gearcam.parts.body import Hub, Mark, Opening, Part
@@ -44,7 +45,7 @@ TOLERANCE = 1e-5
 
 
 def written(part: Part, tolerance: float = TOLERANCE) -> bytes:
-    return step_bytes([Placed(part=part)], part.name, tolerance)
+    return step_bytes([(part, UNMOVED)], part.name, tolerance)
 
 
 def read(part: Part, tolerance: float = TOLERANCE) -> StepSolid:
@@ -236,9 +237,7 @@ def test_an_assembly_puts_parts_where_they_belong() -> None:
     one, two = plate(disc_contour(20.0)), plate(square_contour(40.0), openings=(hole,))
     two = replace(two, name="gear2")
     angle, offset = 0.7, (80.0, -3.0)
-    data = step_bytes(
-        [Placed(part=one), Placed(part=two, angle=angle, offset=offset)], "pair", TOLERANCE
-    )
+    data = step_bytes([(one, UNMOVED), (two, (angle, offset))], "pair", TOLERANCE)
     still, turned = read_step(data)
     assert (still.name, turned.name) == ("gear1", "gear2")
     products = [each.split(",")[0] for each in entities(data)["PRODUCT"]]
@@ -252,17 +251,17 @@ def test_an_assembly_puts_parts_where_they_belong() -> None:
     assert turned.bounds - [*offset, 3.0] == pytest.approx(box, abs=1e-6)
     assert turned.volume == pytest.approx(two.volume, rel=1e-12)
     # one part for itself is moved just so, without an assembly
-    alone = step_bytes([Placed(part=two, angle=angle, offset=offset)], "gear2", TOLERANCE)
+    alone = step_bytes([(two, (angle, offset))], "gear2", TOLERANCE)
     assert "NEXT_ASSEMBLY_USAGE_OCCURRENCE" not in entities(alone)
     assert read_step(alone)[0].center == pytest.approx(turned.center, abs=1e-10)
     # the control: turned the other way it is elsewhere
-    wrong = step_bytes([Placed(part=two, angle=-angle, offset=offset)], "gear2", TOLERANCE)
+    wrong = step_bytes([(two, (-angle, offset))], "gear2", TOLERANCE)
     assert read_step(wrong)[0].center != pytest.approx(turned.center, abs=0.1)
 
 
 def test_a_part_that_comes_twice_is_one_product() -> None:
     part = plate(square_contour(40.0))
-    data = step_bytes([Placed(part=part), Placed(part=part, offset=(50.0, 0.0))], "row", 1e-5)
+    data = step_bytes([(part, UNMOVED), (part, (0.0, (50.0, 0.0)))], "row", 1e-5)
     assert len(entities(data)["MANIFOLD_SOLID_BREP"]) == 1
     assert len(entities(data)["PRODUCT"]) == 2
     assert [solid.center[0] for solid in read_step(data)] == pytest.approx([0.0, 50.0], abs=1e-9)
@@ -274,7 +273,7 @@ def test_a_part_that_comes_twice_is_one_product() -> None:
 def test_names_of_every_kind(name: str) -> None:
     part = replace(plate(square_contour(40.0)), name=name)
     other = replace(part, name=f"{name}2")
-    data = step_bytes([Placed(part=part), Placed(part=other)], name, TOLERANCE)
+    data = step_bytes([(part, UNMOVED), (other, UNMOVED)], name, TOLERANCE)
     assert (rb"\X4\000003A9" in data) is (name[0] == "Ω")
     assert [solid.name for solid in read_step(data)] == [name, f"{name}2"]
     assert b"gearcam-" not in data
@@ -291,20 +290,20 @@ def test_the_same_parts_give_the_same_bytes() -> None:
     )
     assert written(steps) == written(steps)
     square = plate(square_contour(30.0))
-    items = [Placed(part=square), Placed(part=square, offset=(50.0, 0.0))]
+    items = [(square, UNMOVED), (square, (0.0, (50.0, 0.0)))]
     first = step_bytes(items, "pair", TOLERANCE)
     # the kernel counts assemblies through the process: past nine a number gets longer
     assert all(step_bytes(items, "pair", TOLERANCE) == first for _ in range(50))
     uses = entities(first)["NEXT_ASSEMBLY_USAGE_OCCURRENCE"]
     assert [use.split(",")[0] for use in uses] == ["'1'", "'2'"]
     # the control: what changes is seen
-    assert step_bytes([items[0], replace(items[1], angle=1e-6)], "pair", TOLERANCE) != first
+    assert step_bytes([items[0], (square, (1e-6, (50.0, 0.0)))], "pair", TOLERANCE) != first
 
 
 def test_without_numbering_the_bytes_would_change(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(step, "_USE", re.compile("nothing of the kind"))
     part = plate(square_contour(40.0))
-    items = [Placed(part=part), Placed(part=part, offset=(50.0, 0.0))]
+    items = [(part, UNMOVED), (part, (0.0, (50.0, 0.0)))]
     assert step_bytes(items, "pair", TOLERANCE) != step_bytes(items, "pair", TOLERANCE)
 
 
@@ -325,7 +324,7 @@ def test_nothing_is_printed_and_nothing_is_left(
     for variable in ("TMPDIR", "TMP", "TEMP"):
         monkeypatch.setenv(variable, str(tmp_path))
     part = plate(gear_contour(12, 5.0), openings=bore(8.0))
-    read_step(step_bytes([Placed(part=part), Placed(part=part)], "pair", TOLERANCE))
+    read_step(step_bytes([(part, UNMOVED), (part, UNMOVED)], "pair", TOLERANCE))
     for broken in (b"", b"no STEP", written(part)[:5000]):
         with pytest.raises(ValueError, match="no STEP file"):
             read_step(broken)

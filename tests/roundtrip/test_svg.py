@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam.drawings import Drawing, pair_drawing
+from gearcam.drawings import Drawing, Path, pair_drawing
 from gearcam.export.svg import svg_bytes
 from gearcam.numeric.bulges import distances
 from gearcam.parts.body import Part
@@ -25,7 +25,7 @@ SPACE = {"s": "http://www.w3.org/2000/svg"}
 def drawing() -> Drawing:
     contour = gear_contour(36, 5.0, squash=(1.0, 0.7))
     angle = np.linspace(0, 2 * np.pi, 400, endpoint=False)
-    centrode = np.column_stack([90 * np.cos(angle), 63 * np.sin(angle)])
+    centrode = Path(points=np.column_stack([90 * np.cos(angle), 63 * np.sin(angle)]))
     parts = [
         Part(
             name=f"gear{k + 1}", contours=(contour,), openings=bore(40.0), width=50.0,

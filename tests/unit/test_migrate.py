@@ -13,7 +13,7 @@ from gearcam.cli import main
 from gearcam.designs import load, loads
 from gearcam.designs.migrate import migrate
 from gearcam.errors import DesignError, Problem, WriteError
-from gearcam.export.rewrite import rewrite
+from gearcam.export.write import rewrite
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from helpers_cam_files import ROLLER

@@ -16,7 +16,7 @@ from gearcam.parts.body import Mark, Part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.shapes import Loop
 from gearcam.quantities import params_of
-from helpers_contour import bore, gear_contour, square_contour
+from helpers_contour import bore, gear_contour, layers, square_contour
 
 
 def reverse(contour: Contour) -> Contour:
@@ -46,7 +46,7 @@ def test_a_part_without_bore_has_none() -> None:
     part = Part(name="plate", contours=(square_contour(30.0),), width=8.0)
     assert part.steps[0].moments.area == pytest.approx(900, rel=1e-14)
     assert len(part.region.interiors) == 0
-    assert wheel_drawing(part).layers == ("OUTLINE",)
+    assert layers(wheel_drawing(part)) == ["OUTLINE"]
 
 
 def test_wrong_parts_are_refused() -> None:
@@ -133,7 +133,7 @@ def test_placing_turns_then_shifts() -> None:
 def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:
     contour = gear_contour(8, 3.0)
     part = Part(name="g", contours=(contour,), openings=bore(6.0), width=5.0)
-    centrode = np.array([[12.0, 0.0], [0.0, 9.0], [-12.0, 0.0]])
+    centrode = Path(points=np.array([[12.0, 0.0], [0.0, 9.0], [-12.0, 0.0]]))
     drawing = pair_drawing([part, part], 24.0, [centrode, centrode])
     first, second = drawing.contours
     assert second.vertices - first.vertices == pytest.approx(
@@ -141,9 +141,9 @@ def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:
     )
     paths = [f.shape for f in drawing.features if isinstance(f.shape, Path)]
     assert paths[1].points[0].tolist() == [36.0, 0.0]
-    assert drawing.layers == (
+    assert layers(drawing) == [
         "GEAR1_OUTLINE", "GEAR1_BORE", "GEAR2_OUTLINE", "GEAR2_BORE", "CENTRODE", "CENTER",
-    )  # fmt: skip
+    ]  # fmt: skip
     with pytest.raises(ValueError, match="two parts"):
         pair_drawing([part], 24.0)
 

@@ -24,6 +24,7 @@ from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data, svg_document
 from gearcam.numerals import decimal, shown
 from gearcam.numeric.arcs import fit_closed
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import Circle, Loop
 
@@ -80,12 +81,12 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
     told = f"; the paths are moved by half a kerf of {shown(kerf)} mm" if kerf else ""
     # of the paths y = 0 is the sheet's upper edge
-    shift = complex(-float(low[0]), -float(high[1]))
+    shift = -np.array([low[0], high[1]])
     words = f"<desc>1:1 in mm: engrave what is blue, then cut what is red{told}</desc>"
     return svg_document(size, title, [words, *_groups(kept, shift, decimals)])
 
 
-def _groups(kept: Sequence[Feature], shift: complex, decimals: int) -> Iterator[str]:
+def _groups(kept: Sequence[Feature], shift: Array, decimals: int) -> Iterator[str]:
     for name, kinds, colour in GROUPS:
         inside = [one for one in kept if one.kind in kinds]
         if inside:
@@ -96,20 +97,19 @@ def _groups(kept: Sequence[Feature], shift: complex, decimals: int) -> Iterator[
             yield "</g>"
 
 
-def _data(feature: Feature, shift: complex, decimals: int) -> str:
+def _data(feature: Feature, shift: Array, decimals: int) -> str:
     """Return the path data of a feature that is shifted."""
-    by = [shift.real, shift.imag]
     match feature.shape:
         case Contour() as contour:
             vertices, bulges = fit_closed(contour.runs, CURVE_PART * contour.tolerance)
-            return arc_data(vertices + by, bulges, decimals)
+            return arc_data(vertices + shift, bulges, decimals)
         case Circle(center=center, diameter=diameter):
             sides = center + 0.5 * diameter * np.array([[1.0, 0.0], [-1.0, 0.0]])
-            return arc_data(sides + by, np.ones(2), decimals)
+            return arc_data(sides + shift, np.ones(2), decimals)
         case Loop(vertices=vertices, bulges=bulges):
-            return arc_data(vertices + by, bulges, decimals)
+            return arc_data(vertices + shift, bulges, decimals)
         case Path(points=points):
-            steps = (f"{decimal(x, decimals)} {decimal(-y, decimals)}" for x, y in points + by)
+            steps = (f"{decimal(x, decimals)} {decimal(-y, decimals)}" for x, y in points + shift)
             return f"M{'L'.join(steps)}"
         case shape:
             raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")

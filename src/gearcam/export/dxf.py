@@ -44,11 +44,11 @@ CURVE_PART: Final = 0.96
 dense points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
 
 COLORS: Final = {
-    drawings.OUTLINE: 7, drawings.BORE: 5, drawings.HOLE: 4, drawings.SLOT: 6, drawings.INNER: 7,
-    drawings.MARK: 1, drawings.CENTRODE: 3, drawings.CENTER: 8, drawings.PROFILE: 7,
-    drawings.PITCH: 3, drawings.PRIME: 8, drawings.FOLLOWER: 8, drawings.TOOL: 1,
+    drawings.BORE: 5, drawings.HOLE: 4, drawings.SLOT: 6, drawings.MARK: 1, drawings.TOOL: 1,
+    drawings.CENTRODE: 3, drawings.PITCH: 3, drawings.CENTER: 8, drawings.PRIME: 8,
+    drawings.FOLLOWER: 8,
 }  # fmt: skip
-"""Colour numbers: 7 black or white, blue, cyan, magenta, red, green, 8 grey."""
+"""Colour numbers: blue, cyan, magenta, red, green, 8 grey; all others are 7, black or white."""
 
 MILLIMETRES: Final = 4
 """$INSUNITS."""
@@ -99,8 +99,7 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     bytes
         The file, UTF-8; the same for the same drawing.
     """
-    text = document_text(style.version, lambda document: _fill(document, drawing, style))
-    return text.encode("utf-8")
+    return document_text(style.version, lambda new: _fill(new, drawing, style)).encode("utf-8")
 
 
 def document_text(version: str, fill: Callable[[Document], None]) -> str:
@@ -175,12 +174,11 @@ def add_shape(space: Modelspace, shape: Shape, attributes: dict[str, Any], style
             vertices, bulges = fit_closed(shape.runs, CURVE_PART * style.tolerance)
             _polyline(space, vertices, bulges, attributes, style)
         case Contour(vertices=vertices):
-            _polyline(space, vertices, np.zeros(len(vertices)), attributes, style)
+            _polyline(space, vertices, 0.0, attributes, style)
         case Loop():
             _polyline(space, shape.vertices, shape.bulges, attributes, style)
         case Path():
-            straight = np.zeros(len(shape.points))
-            _polyline(space, shape.points, straight, attributes, style, closed=shape.closed)
+            _polyline(space, shape.points, 0.0, attributes, style, closed=shape.closed)
         case Circle():
             space.add_circle(shape.center.tolist(), 0.5 * shape.diameter, dxfattribs=attributes)
         case Cross():
@@ -192,18 +190,16 @@ def add_shape(space: Modelspace, shape: Shape, attributes: dict[str, Any], style
 def _polyline(
     space: Modelspace,
     vertices: Array,
-    bulges: Array,
+    bulges: Array | float,
     attributes: dict[str, Any],
     style: DxfStyle,
     *,
     closed: bool = True,
 ) -> None:
     """Add a polyline of the kind that the version knows."""
-    rows = np.column_stack([vertices, bulges]).tolist()
-    if style.version == "R12":
-        space.add_polyline2d(rows, format="xyb", close=closed, dxfattribs=attributes)
-    else:
-        space.add_lwpolyline(rows, format="xyb", close=closed, dxfattribs=attributes)
+    rows = np.column_stack([vertices, np.broadcast_to(bulges, len(vertices))]).tolist()
+    add = space.add_polyline2d if style.version == "R12" else space.add_lwpolyline
+    add(rows, format="xyb", close=closed, dxfattribs=attributes)
 
 
 def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]:

@@ -60,11 +60,9 @@ def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     """
     from trimesh.exchange.stl import export_stl
 
-    scene = _scene({body: _single(mesh, body) for body, mesh in bodies.items()})
     # each body for itself: joined, two that touch would share edges and be open
-    triangles = b"".join(
-        export_stl(body)[HEADER_LENGTH + COUNT_LENGTH :] for body in scene.geometry.values()
-    )
+    files = (export_stl(body) for body in _scene(bodies).geometry.values())
+    triangles = b"".join(file[HEADER_LENGTH + COUNT_LENGTH :] for file in files)
     count = len(triangles) // TRIANGLE_LENGTH
     # "solid" at the start would announce the text form.
     label = f"gearcam {name} (mm)".encode("ascii", "replace")[:HEADER_LENGTH]
@@ -76,27 +74,28 @@ def threemf_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     """Return a 3MF in millimetres; each body is an object of its name (see `stl_bytes`)."""
     from trimesh.exchange.threemf import export_3MF
 
-    for body, mesh in bodies.items():
-        _require(mesh, body)
-    return _repeatable(export_3MF(_scene(bodies)), name)
+    return _repeatable(export_3MF(_scene(bodies, single=False)), name)
 
 
 def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     """Return a GLB in millimetres; each body is a node and mesh of its name (see `stl_bytes`)."""
     from trimesh.exchange.gltf import export_glb
 
-    scene = _scene({body: _single(mesh, body) for body, mesh in bodies.items()})
+    scene = _scene(bodies)
     scene.metadata |= {"units": "mm", "name": name}
     return bytes(export_glb(scene, include_normals=False))
 
 
-def _scene(bodies: Mapping[str, Mesh]) -> Scene:
+def _scene(bodies: Mapping[str, Mesh], *, single: bool = True) -> Scene:
+    """Return closed bodies, in single precision or as they are."""
     from trimesh import Scene, Trimesh
 
     scene = Scene()
     for name, mesh in bodies.items():
+        _require(mesh, name)
+        kept = _single(mesh, name) if single else mesh
         body = Trimesh(
-            vertices=mesh.vertices, faces=mesh.triangles, process=False, metadata={"name": name}
+            vertices=kept.vertices, faces=kept.triangles, process=False, metadata={"name": name}
         )
         scene.add_geometry(body, node_name=name, geom_name=name)
     return scene
@@ -109,7 +108,6 @@ def _require(mesh: Mesh, name: str, when: str = "") -> None:
 
 def _single(mesh: Mesh, name: str) -> Mesh:
     """Round a mesh to single precision, join what falls together, drop what folds."""
-    _require(mesh, name)
     rounded = mesh.vertices.astype(np.float32).astype(np.float64)
     places, index = np.unique(rounded, axis=0, return_inverse=True)
     triangles = index.reshape(-1)[mesh.triangles]

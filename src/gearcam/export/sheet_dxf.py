@@ -14,22 +14,23 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.drawings import DASHED, OUTLINE, THROUGH
+from gearcam.drawings import DASHED
 from gearcam.export import dxf
 from gearcam.export.dxf import COLORS, DxfStyle
 from gearcam.sheets.sheet import (
     ARROW,
     CENTERLINE,
     DIMENSION,
-    EDGE,
-    FRAME,
     GAP,
     GLYPH,
+    HEAVY,
     HEIGHT,
     HIDDEN,
     LEAST_GAP,
     PAST,
     TEXT,
+    THICK,
+    THIN,
     Dimension,
     DrawnDimension,
     LinearDimension,
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
     from ezdxf.layouts.layout import Modelspace
 
-SHEET_COLORS: Final = {DIMENSION: 2, TEXT: 7, CENTERLINE: 8, HIDDEN: 8, FRAME: 7, EDGE: 7}
+SHEET_COLORS: Final = {DIMENSION: 2, CENTERLINE: 8, HIDDEN: 8}
 """Colour numbers: dimensions yellow, hidden and centre lines grey, the rest black or white."""
 
 LINETYPES: Final = {
@@ -52,12 +53,8 @@ LINETYPES: Final = {
 }
 """Lengths of the pattern, its dashes and gaps, mm of paper."""
 
-HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
-"""Kinds that are drawn thick."""
-
-THICK: Final = 50
-THIN: Final = 25
-"""Line weights, hundredths of a millimetre."""
+LINETYPE_OF: Final = {**dict.fromkeys((*DASHED, HIDDEN), "DASHED"), CENTERLINE: "CENTER"}
+"""Line types by kind; all others are continuous."""
 
 STYLE: Final = "SHEET"
 """Name of the styles of texts and dimensions."""
@@ -106,11 +103,10 @@ def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
         document.linetypes.add(name, [unit * length for length in pattern], description=words)
     kinds = {feature.layer: feature.kind for feature in sheet.features}
     for layer, kind in {**kinds, DIMENSION: DIMENSION, TEXT: TEXT}.items():
-        made = document.layers.add(
-            layer, color=(COLORS | SHEET_COLORS).get(kind, 7), linetype=_linetype(kind)
-        )
+        color, linetype = (COLORS | SHEET_COLORS).get(kind, 7), LINETYPE_OF.get(kind, "Continuous")
+        made = document.layers.add(layer, color=color, linetype=linetype)
         if style.version != "R12":
-            made.dxf.lineweight = THICK if kind in HEAVY else THIN
+            made.dxf.lineweight = round(100 * (THICK if kind in HEAVY else THIN))
     document.styles.add(STYLE, font="arial.ttf", dxfattribs={"width": GLYPH})
     low = sheet.corner.tolist()
     high = (sheet.corner + [unit * side for side in sheet.size]).tolist()
@@ -127,12 +123,6 @@ def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
     }  # fmt: skip
     for name, value in values.items():
         made.set_dxf_attrib(name, value)
-
-
-def _linetype(kind: str) -> str:
-    if kind in (*DASHED, HIDDEN):
-        return "DASHED"
-    return "CENTER" if kind == CENTERLINE else "Continuous"
 
 
 def _measured(space: Modelspace, dimension: Dimension) -> None:
@@ -155,16 +145,13 @@ def _measured(space: Modelspace, dimension: Dimension) -> None:
 
 
 def _round(space: Modelspace, dimension: RoundDimension, rest: dict[str, Any]) -> Any:
-    circle: dict[str, Any] = {"center": dimension.center.tolist(), "radius": dimension.radius}
+    rest |= {"center": dimension.center.tolist(), "radius": dimension.radius}
     if dimension.knee is None:
         angle = math.degrees(dimension.angle)
-        return space.add_diameter_dim(
-            angle=angle, override={"dimtix": 1, "dimtmove": 0}, **circle, **rest
-        )
+        return space.add_diameter_dim(angle=angle, override={"dimtix": 1, "dimtmove": 0}, **rest)
     rest["override"] = {"dimtih": 1, "dimtoh": 1}
     rest["location"] = dimension.point(dimension.knee).tolist()
-    add = space.add_diameter_dim if dimension.diameter else space.add_radius_dim
-    return add(**circle, **rest)
+    return (space.add_diameter_dim if dimension.diameter else space.add_radius_dim)(**rest)
 
 
 def _exploded(space: Modelspace, sheet: Sheet, drawn: DrawnDimension) -> None:
@@ -180,18 +167,13 @@ def _exploded(space: Modelspace, sheet: Sheet, drawn: DrawnDimension) -> None:
 def _text(space: Modelspace, sheet: Sheet, text: Text, layer: str) -> None:
     from ezdxf.enums import TextEntityAlignment
 
-    align = {
-        "start": TextEntityAlignment.LEFT,
-        "middle": TextEntityAlignment.CENTER,
-        "end": TextEntityAlignment.RIGHT,
-    }[text.anchor]
-    attributes = {"layer": layer, "style": STYLE}
+    align = TextEntityAlignment.CENTER if text.anchor == "middle" else TextEntityAlignment.LEFT
     # The format reads a caret and two percent signs as the beginning of a special character.
     words = text.text.replace("^", "^ ").replace("%%", "%%%%%%").replace("Ø", "%%c")
     made = space.add_text(
         words,
         height=text.height * sheet.unit,
         rotation=90.0 if text.upright else 0.0,
-        dxfattribs=attributes,
+        dxfattribs={"layer": layer, "style": STYLE},
     )
     made.set_placement(text.place.tolist(), align=align)

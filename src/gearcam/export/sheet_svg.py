@@ -14,18 +14,11 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
-from gearcam.drawings import CENTRODE, OUTLINE, THROUGH, Circle, Feature, chains
+from gearcam.drawings import CENTRODE, Circle, Feature, chains
 from gearcam.export.svg import svg_document
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
-from gearcam.sheets.sheet import CENTERLINE, EDGE, HIDDEN, DrawnDimension, Sheet, Text
-
-THICK: Final = 0.5
-THIN: Final = 0.25
-"""Line widths, mm."""
-
-HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
-"""Kinds that are drawn thick."""
+from gearcam.sheets.sheet import CENTERLINE, HEAVY, HIDDEN, THICK, THIN, Sheet, Text
 
 DASHES: Final = {HIDDEN: "3 1.5", CENTRODE: "4 1.5", CENTERLINE: "8 1.5 1 1.5"}
 """Dashes and gaps, mm."""
@@ -51,10 +44,14 @@ def sheet_svg(sheet: Sheet) -> bytes:
         *(_feature(sheet, feature) for feature in sheet.features),
         "</g>",
         f'<g fill="none" stroke="{INK}" stroke-width="{THIN}">',
-        *(_dimension(sheet, one) for one in drawn),
+        *(f'<path class="dimension" d="{_data(sheet, *one.lines)}"/>' for one in drawn),
         "</g>",
         f'<g fill="{INK}" stroke="none">',
-        *(_head(sheet, head) for one in drawn for head in one.heads),
+        *(
+            f'<path class="arrow" d="{_data(sheet, head)}Z"/>'
+            for one in drawn
+            for head in one.heads
+        ),
         "</g>",
         f"<g {font}>",
         *(_text(sheet, one.text, "dimension") for one in drawn),
@@ -81,25 +78,18 @@ def _feature(sheet: Sheet, feature: Feature) -> str:
         radius = decimal(0.5 * circle.diameter * sheet.scale)
         return f'<circle {style} cx="{decimal(x)}" cy="{decimal(y)}" r="{radius}"/>'
     drawn = chains(feature.shape, SAGITTA / sheet.scale)
-    data = "".join(_data(sheet, points, closed=closed) for points, closed in drawn)
+    data = "".join(_data(sheet, points) + "Z" * closed for points, closed in drawn)
     return f'<path {style} d="{data}"/>'
 
 
-def _data(sheet: Sheet, points: Array, *, closed: bool) -> str:
-    """Path data; neighbours that fall together are written once."""
-    page = np.round(_on_page(sheet, points), 2)
-    kept = np.append(True, (np.diff(page, axis=0) != 0.0).any(axis=1))
-    steps = " ".join(f"{decimal(x)} {decimal(y)}" for x, y in page[kept].tolist())
-    return f"M{steps}" + ("Z" if closed else "")
-
-
-def _dimension(sheet: Sheet, one: DrawnDimension) -> str:
-    data = "".join(_data(sheet, line, closed=False) for line in one.lines)
-    return f'<path class="dimension" d="{data}"/>'
-
-
-def _head(sheet: Sheet, head: Array) -> str:
-    return f'<path class="arrow" d="{_data(sheet, head, closed=True)}"/>'
+def _data(sheet: Sheet, *chains_of_points: Array) -> str:
+    """Path data of open chains; neighbours that fall together are written once."""
+    data = ""
+    for points in chains_of_points:
+        page = np.round(_on_page(sheet, points), 2)
+        kept = np.append(True, (np.diff(page, axis=0) != 0.0).any(axis=1))
+        data += "M" + " ".join(f"{decimal(x)} {decimal(y)}" for x, y in page[kept].tolist())
+    return data
 
 
 def _text(sheet: Sheet, text: Text, name: str) -> str:

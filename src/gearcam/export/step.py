@@ -7,8 +7,8 @@ hubs and marks are cylinders and planes. The same parts give the same bytes: the
 
 Refused: no parts at all; solids that come out invalid (see `step_shapes`).
 
-Depends on parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT, only inside
-the functions: it is large, and an extra of the package.
+Depends on drawings, parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT,
+only inside the functions: it is large, and an extra of the package.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.drawings import Placement
 from gearcam.errors import MissingExtraError
 from gearcam.export.step_shapes import occt, solids_of
 from gearcam.parts.body import Part
@@ -48,32 +48,13 @@ _TOKEN: Final = re.compile(r"'(gearcam-\d+)'")
 """What the kernel is given for a name."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Placed:
-    """A part at its place.
-
-    Parameters
-    ----------
-    part : Part
-        The part, in its own frame.
-    angle : float, rad
-        Turn about z, counter-clockwise.
-    offset : (float, float), mm
-        Shift after the turn.
-    """
-
-    part: Part
-    angle: float = 0.0
-    offset: tuple[float, float] = (0.0, 0.0)
-
-
-def step_bytes(items: Sequence[Placed], name: str, tolerance: float) -> bytes:
+def step_bytes(items: Sequence[tuple[Part, Placement]], name: str, tolerance: float) -> bytes:
     """Write parts as STEP.
 
     Parameters
     ----------
-    items : sequence of Placed
-        One part, or those of an assembly; a part that comes twice is one product.
+    items : sequence of (Part, Placement)
+        One part, or those of an assembly, each at its place; one that comes twice is one product.
     name : str
         Of the assembly, and of the file without its ending.
     tolerance : float, mm
@@ -96,7 +77,7 @@ def step_bytes(items: Sequence[Placed], name: str, tolerance: float) -> bytes:
     _require()
     if not items:
         raise ValueError("a STEP file needs a part")
-    parts = dict.fromkeys(item.part for item in items)
+    parts = dict.fromkeys(part for part, _ in items)
     texts = dict.fromkeys([f"{name}.step", name, *(part.name for part in parts)])
     tokens = {text: f"gearcam-{number}" for number, text in enumerate(texts)}
     with _silent(), _document() as document:
@@ -163,7 +144,7 @@ def _joined(solids: Sequence[Any]) -> Any:
 
 def _fill(
     document: Any,
-    items: Sequence[Placed],
+    items: Sequence[tuple[Part, Placement]],
     shapes: Mapping[Part, Any],
     name: str,
     names: Mapping[str, str],
@@ -171,28 +152,26 @@ def _fill(
     """Put the shapes into the document: one where it stands, more as an assembly."""
     tool = occt.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     if len(items) == 1:
-        (item,) = items
+        ((part, placement),) = items
         # a shape with a location would be written as an assembly: its points are moved instead
-        moved = occt.BRepBuilderAPI_Transform(shapes[item.part], _motion(item), True).Shape()
-        _call(tool.AddShape(moved, False), names[item.part.name])
+        moved = occt.BRepBuilderAPI_Transform(shapes[part], _motion(*placement), True).Shape()
+        _call(tool.AddShape(moved, False), names[part.name])
         return
     root = tool.NewShape()
     _call(root, name)
     labels = {part: tool.AddShape(shape, False) for part, shape in shapes.items()}
     for part, label in labels.items():
         _call(label, names[part.name])
-    for item in items:
-        place = occt.TopLoc_Location(_motion(item))
-        _call(tool.AddComponent(root, labels[item.part], place), names[item.part.name])
+    for part, placement in items:
+        place = occt.TopLoc_Location(_motion(*placement))
+        _call(tool.AddComponent(root, labels[part], place), names[part.name])
     tool.UpdateAssemblies()
 
 
-def _motion(item: Placed) -> Any:
+def _motion(angle: float, offset: tuple[float, float]) -> Any:
     turn, shift = occt.gp_Trsf(), occt.gp_Trsf()
-    turn.SetRotation(
-        occt.gp_Ax1(occt.gp_Pnt(0.0, 0.0, 0.0), occt.gp_Dir(0.0, 0.0, 1.0)), item.angle
-    )
-    shift.SetTranslation(occt.gp_Vec(*item.offset, 0.0))
+    turn.SetRotation(occt.gp_Ax1(occt.gp_Pnt(0.0, 0.0, 0.0), occt.gp_Dir(0.0, 0.0, 1.0)), angle)
+    shift.SetTranslation(occt.gp_Vec(*offset, 0.0))
     return shift * turn
 
 

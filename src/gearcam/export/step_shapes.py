@@ -17,16 +17,16 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numeric.bulges import as_complex, bulge_pieces
+from gearcam.numeric.bulges import arc_centers, as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_spline
-from gearcam.parts.body import Edge, Part
+from gearcam.parts.body import Edge, Layer, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.solids import OVERSHOOT, SolidError, demand_volume
 
@@ -150,20 +150,18 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
     bosses = [boss for boss in part.bosses if (lowest if boss.low < 0.0 else topmost)]
     # what goes through a hub is cut at last: its face must not end where the plate does
     late = bosses[0].openings if bosses else ()
-    holes = [_pieces(o.shape, tolerance) for o in step.openings if o not in late]
-    body = _prism(_pieces(step.edge, tolerance), holes, step.low, step.high)
+    through = tuple(opening for opening in step.openings if opening not in late)
+    body = _prism(replace(step, openings=through), tolerance)
     if bosses:
-        hubs = [_prism(_pieces(boss.edge, tolerance), [], boss.low, boss.high) for boss in bosses]
+        hubs = [_prism(replace(boss, openings=()), tolerance) for boss in bosses]
         body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
     low = min(layer.low for layer in part.layers) - CLEARANCE
     high = max(layer.high for layer in part.layers) + CLEARANCE
-    cutters = [_prism(_pieces(opening.shape, tolerance), [], low, high) for opening in late]
+    cutters = [Layer(edge=opening.shape, low=low, high=high) for opening in late]
     if topmost:
-        cutters += [
-            _prism(_pieces(one.edge, tolerance), [], one.low, one.high + OVERSHOOT * one.height)
-            for one in part.pockets
-        ]
-    return _combined(occt.BRepAlgoAPI_Cut(), body, cutters) if cutters else body
+        cutters += [replace(one, high=one.high + OVERSHOOT * one.height) for one in part.pockets]
+    tools = [_prism(cutter, tolerance) for cutter in cutters]
+    return _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
 
 
 def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
@@ -184,17 +182,19 @@ def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
     return found[0]
 
 
-def _prism(
-    outer: Sequence[_Piece], holes: Sequence[Sequence[_Piece]], low: float, high: float
-) -> Any:
-    """Return a plate between two heights, one side face for each piece; all run left around."""
-    floor = occt.gp_Pln(occt.gp_Pnt(0.0, 0.0, low), occt.gp_Dir(0.0, 0.0, 1.0))
-    face = occt.BRepBuilderAPI_MakeFace(floor, _wire(outer, low), False)
+def _prism(layer: Layer, tolerance: float) -> Any:
+    """Return a layer as a solid, one side face for each piece; all run left around."""
+    floor = occt.gp_Pln(_point(0j, layer.low), occt.gp_Dir(0.0, 0.0, 1.0))
+    edge, *holes = (
+        _wire(_pieces(edge, tolerance), layer.low)
+        for edge in (layer.edge, *(opening.shape for opening in layer.openings))
+    )
+    face = occt.BRepBuilderAPI_MakeFace(floor, edge, False)
     for hole in holes:
-        face.Add(occt.TopoDS.Wire(_wire(hole, low).Reversed()))
+        face.Add(occt.TopoDS.Wire(hole.Reversed()))
     if not face.IsDone():
         raise SolidError("an outline encloses no face")
-    prism = occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, high - low)).Shape()
+    prism = occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, layer.height)).Shape()
     # swept curves become B-spline surfaces, which more programs read; planes and cylinders stay
     found = subshapes(
         occt.ShapeCustom.ConvertToBSpline_s(prism, True, False, False, False), "SOLID"
@@ -206,10 +206,7 @@ def _prism(
 
 def _wire(pieces: Sequence[_Piece], height: float) -> Any:
     """Return the closed chain of pieces at a height, with one corner between neighbours."""
-    corners = [
-        occt.BRepBuilderAPI_MakeVertex(occt.gp_Pnt(p.start.real, p.start.imag, height)).Vertex()
-        for p in pieces
-    ]
+    corners = [occt.BRepBuilderAPI_MakeVertex(_point(p.start, height)).Vertex() for p in pieces]
     builder, wire, lift = occt.BRep_Builder(), occt.TopoDS_Wire(), occt.gp_Vec(0.0, 0.0, height)
     builder.MakeWire(wire)
     for piece, start, end in zip(pieces, corners, [*corners[1:], corners[0]], strict=True):
@@ -220,6 +217,10 @@ def _wire(pieces: Sequence[_Piece], height: float) -> Any:
         builder.Add(wire, edge.Edge())
     wire.Closed(True)
     return wire
+
+
+def _point(place: complex, height: float = 0.0) -> Any:
+    return occt.gp_Pnt(place.real, place.imag, height)
 
 
 def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
@@ -263,7 +264,7 @@ def _curve(spline: Spline, start: complex, end: complex) -> _Piece:
     poles, knots = occt.Array1_gp_Pnt(1, len(places)), occt.Array1_double(1, len(breaks))
     repeats = occt.Array1_int(1, len(breaks))
     for number, place in enumerate(places, start=1):
-        poles.SetValue(number, occt.gp_Pnt(place.real, place.imag, 0.0))
+        poles.SetValue(number, _point(place))
     for number, knot in enumerate(breaks, start=1):
         knots.SetValue(number, knot)
         repeats.SetValue(number, DEGREE + 1 if number in (1, len(breaks)) else DEGREE - 1)
@@ -273,9 +274,7 @@ def _curve(spline: Spline, start: complex, end: complex) -> _Piece:
 
 def _line(start: complex, end: complex) -> _Piece:
     way = end - start
-    curve = occt.Geom_Line(
-        occt.gp_Pnt(start.real, start.imag, 0.0), occt.gp_Dir(way.real, way.imag, 0.0)
-    )
+    curve = occt.Geom_Line(_point(start), occt.gp_Dir(way.real, way.imag, 0.0))
     return _Piece(curve=curve, first=0.0, last=abs(way), start=start)
 
 
@@ -292,24 +291,20 @@ def _pieces(edge: Edge, tolerance: float) -> list[_Piece]:
 
 
 def _loop(shape: Loop) -> Iterator[_Piece]:
-    for start, chord, bulge in zip(
-        *bulge_pieces(shape.vertices, shape.bulges, closed=True), strict=True
-    ):
-        if abs(chord) <= RESOLUTION:
-            continue
-        half = 2.0 * math.atan(bulge)
-        if half == 0.0:
-            yield _line(complex(start), complex(start + chord))
+    start, chord, bends = bulge_pieces(shape.vertices, shape.bulges, closed=True)
+    for k in np.flatnonzero(np.abs(chord) > RESOLUTION):
+        if bends[k] == 0.0:
+            yield _line(complex(start[k]), complex(start[k] + chord[k]))
         else:
-            centre = start + 0.5 * chord * (1.0 + 1j / math.tan(half))
-            yield _circle(complex(centre), complex(start), 2.0 * half)
+            centre = arc_centers(start[k], chord[k], bends[k])
+            yield _circle(complex(centre), complex(start[k]), 4.0 * math.atan(bends[k]))
 
 
 def _circle(centre: complex, start: complex, sweep: float) -> _Piece:
     """Return an arc about a centre, to the right where the sweep, rad, is negative."""
     spoke = cmath.exp(1j * cmath.phase(start - centre))
     axes = occt.gp_Ax2(
-        occt.gp_Pnt(centre.real, centre.imag, 0.0),
+        _point(centre),
         occt.gp_Dir(0.0, 0.0, math.copysign(1.0, sweep)),
         occt.gp_Dir(spoke.real, spoke.imag, 0.0),
     )

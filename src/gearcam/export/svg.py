@@ -9,7 +9,6 @@ Depends on drawings; shapely only inside the functions.
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterable, Sequence
 from functools import partial
@@ -22,7 +21,7 @@ from gearcam import drawings
 from gearcam.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.bulges import bulge_pieces, divided
 
 THINNING: Final = 0.005
 """Largest distance, mm, by which thinning may move a line of the picture."""
@@ -80,9 +79,9 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     low, high = box(drawing.features)
     width = float(high[0] - low[0])
     margin, pixel = MARGIN * width, width / PIXELS
-    lines = [title, ", ".join(notes)]
-    size = min(20 * pixel, width / (GLYPH * max(1, *(len(line) for line in lines))))
-    caption = size * 1.4 * sum(1 for line in lines if line)
+    lines = [line for line in (title, ", ".join(notes)) if line]
+    size = min(20 * pixel, width / (GLYPH * max([1, *map(len, lines)])))
+    caption = size * 1.4 * len(lines)
     left, top = float(low[0]) - margin, -float(high[1]) - margin
     whole = width + 2 * margin
     tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
@@ -115,7 +114,7 @@ def svg_document(attributes: str, title: str, elements: Iterable[str]) -> bytes:
 
 def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
     made = []
-    for row, line in enumerate(line for line in lines if line):
+    for row, line in enumerate(lines):
         place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * row)}"'
         font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
         weight = ' font-weight="bold"' if row == 0 else ""
@@ -128,19 +127,15 @@ def _element(feature: Feature, pixel: float) -> str:
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
     wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == drawings.FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
-    inside = {
-        drawings.MARK: ink,
-        drawings.FOLLOWER: fill,
-        drawings.OUTLINE: fill,
-        drawings.PROFILE: fill,
-    }.get(feature.kind, GROUND)
-    line = f'stroke="{ink}"'
-    if feature.kind in drawings.DASHED:
+    fills = {drawings.MARK: ink, **dict.fromkeys((*drawings.OUTER, drawings.FOLLOWER), fill)}
+    inside = fills.get(feature.kind, GROUND)
+    line, dashed = f'stroke="{ink}"', feature.kind in drawings.DASHED
+    if dashed:
         dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
         line = f'stroke="{CENTRODE_INK}" stroke-dasharray="{dash}"'
     elif isinstance(shape, Cross):
         line = f'stroke="{TEXT_INK}"'
-    if feature.kind in drawings.DASHED or isinstance(shape, Path | Cross):
+    if dashed or isinstance(shape, Path | Cross):
         inside = "none"
     style = f'class={name} fill="{inside}" {line}'
     match shape:
@@ -183,17 +178,19 @@ def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
         No arc is longer than a quarter of a circle: a reader finds the centre of a half circle from
         a rounded radius with few digits.
     """
-    points, steps = as_complex(vertices), []
-    ends = np.roll(points, -1)
-    for start, end, bulge in zip(points.tolist(), ends.tolist(), bulges.tolist(), strict=True):
-        half = 2.0 * math.atan(bulge)  # half of the arc's angle
-        count = max(1, math.ceil(abs(half) / (0.25 * math.pi + _ROUNDING)))
-        radius = decimal(0.5 * abs(end - start) / abs(math.sin(half)), decimals) if half else ""
-        for k in range(1, count + 1):
-            part = math.sin(half * k / count) / math.sin(half) if half else 1.0
-            place = start + (end - start) * part * cmath.exp(1j * half * (k / count - 1.0))
-            # y is turned downwards: what turns left stays so for the eye, which SVG calls 0
-            arc = f"A{radius} {radius} 0 0 {int(bulge < 0.0)} " if half else "L"
-            steps.append(f"{arc}{decimal(place.real, decimals)} {decimal(-place.imag, decimals)}")
-    x, y = points[0].real, -points[0].imag
-    return f"M{decimal(x, decimals)} {decimal(y, decimals)}{''.join(steps)}Z"
+    start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
+    half = 2.0 * np.arctan(bends)
+    parts = np.maximum(1, np.ceil(np.abs(half) / (0.25 * math.pi + _ROUNDING))).astype(np.int64)
+    points, piece = divided(start, chord, bends, parts)
+    with np.errstate(divide="ignore"):  # of straight pieces
+        radii = (0.5 * np.abs(chord) / np.abs(np.sin(half))).tolist()
+
+    def numbers(*values: float) -> str:
+        return " ".join(decimal(value, decimals) for value in values)
+
+    steps = []
+    for k, end in zip(piece.tolist(), np.roll(points, -1).tolist(), strict=True):
+        # y is turned downwards: what turns left stays so for the eye, which SVG calls 0
+        arc = f"A{numbers(radii[k], radii[k])} 0 0 {int(bends[k] < 0.0)} " if bends[k] else "L"
+        steps.append(arc + numbers(end.real, -end.imag))
+    return f"M{numbers(start[0].real, -start[0].imag)}{''.join(steps)}Z"

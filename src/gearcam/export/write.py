@@ -5,6 +5,9 @@ are they moved into place; files that the *previous summary* lists and this buil
 are *stale* and removed, so that nobody cuts one; the new summary comes last. What stood there
 before is kept until then and put back if anything fails, an interruption included.
 
+One file of the user's is *rewritten* in the same way: beside it, then into its place, with its
+permissions; of a link the file that it leads to is rewritten.
+
 Refused: names that are not plain, a folder that is a file, and whatever the disk refuses.
 
 Depends on errors only.
@@ -78,12 +81,11 @@ def _write(folder: Path, files: Mapping[str, bytes], keep: bool) -> tuple[str, .
         stale = [name for name in before if name not in files]
         for name, content in files.items():
             change.stage(name, content)
-        for name in sorted(files, key=lambda name: name == SUMMARY):
-            if name == SUMMARY:
-                change.remove(stale)
+        for name in [name for name in files if name != SUMMARY]:
             change.replace(name)
-        if SUMMARY not in files:
-            change.remove(stale)
+        change.remove(stale)
+        if SUMMARY in files:
+            change.replace(SUMMARY)
     except BaseException:
         change.undo()
         for empty in reversed(made):
@@ -179,8 +181,7 @@ class _Change:
             raise IsADirectoryError(errno.EISDIR, "a folder is in the way", str(target))
         self.staged[name] = self._spare()
         try:
-            with self.staged[name].open("xb") as stream:
-                stream.write(content)
+            self.staged[name].write_bytes(content)
         except OSError as error:
             raise OSError(error.errno, error.strerror, str(target)) from error
 
@@ -232,3 +233,31 @@ def _copy(source: Path, target: Path) -> None:
         os.link(source, target, follow_symlinks=False)
     except (OSError, NotImplementedError):
         shutil.copy2(source, target, follow_symlinks=False)
+
+
+def rewrite(file: str | os.PathLike[str], content: bytes) -> None:
+    """Give an existing file another content.
+
+    Parameters
+    ----------
+    file : path
+        Its name.
+    content : bytes
+        What it shall hold.
+
+    Raises
+    ------
+    WriteError
+        If the disk refuses; the file is as it was then.
+    """
+    target = Path(file).resolve()
+    spare = target.with_name(f"{TEMPORARY}{uuid.uuid4().hex}.tmp")
+    try:
+        spare.write_bytes(content)
+        shutil.copymode(target, spare)
+        spare.replace(target)
+    except OSError as error:
+        raise WriteError(f"cannot write to {file}: {error.strerror or error}") from error
+    finally:
+        with suppress(OSError):
+            spare.unlink()

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 
 BLOCK = 24
 """Points whose distances are computed together."""
@@ -72,27 +72,71 @@ def flatten_bulges(
         Points on the arcs, the vertices among them.
     """
     start, chord, bends = bulge_pieces(vertices, bulges, closed)
-    half = 2 * np.arctan(bends)
-    bent = half != 0
-    radius = 0.5 * np.abs(chord[bent] / np.sin(half[bent]))
-    # Sagitta of a chord over the angle w: r*(1 - cos(w/2)) = 2*r*sin(w/4)^2.
-    widest = 4 * np.arcsin(np.minimum(np.sqrt(sagitta / (2 * radius)), 1.0))
-    count = np.ones(len(start), dtype=int)
-    count[bent] = np.ceil(2 * np.abs(half[bent]) / widest).astype(int)
-    count = np.maximum(count, least)
-    index = np.repeat(np.arange(len(start)), count)
-    part = (np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)) / count[index]
-    points = start[index] + chord[index] * _along(half[index], part)
+    points, _ = divided(start, chord, bends, np.maximum(arc_chords(chord, bends, sagitta), least))
     if not closed:
         points = np.append(points, as_complex(vertices)[-1])
     return as_pairs(points)
 
 
-def _along(half: Array, part: Array) -> Plane:
-    """Return the place on an arc over the chord from 0 to 1 that turns by ``2 * half``."""
+def arc_chords(chord: Plane, bends: Array, sagitta: float) -> Ints:
+    """Return how many chords keep each piece within the `sagitta`, mm (see `bulge_pieces`)."""
+    half = 2 * np.abs(np.arctan(bends))
+    bent = half != 0
+    radius = 0.5 * np.abs(chord[bent]) / np.sin(half[bent])
+    # Sagitta of a chord over the angle w: r*(1 - cos(w/2)) = 2*r*sin(w/4)^2.
+    widest = 4 * np.arcsin(np.minimum(np.sqrt(sagitta / (2 * radius)), 1.0))
+    count = np.ones(len(half), dtype=np.int64)
+    count[bent] = np.ceil(2 * half[bent] / widest)
+    return count
+
+
+def divided(start: Plane, chord: Plane, bends: Array, count: Ints) -> tuple[Plane, Ints]:
+    """Return places that divide each piece evenly into a `count` of parts, and their pieces.
+
+    Parameters
+    ----------
+    start, chord, bends : (n,) arrays
+        Of the pieces (see `bulge_pieces`).
+    count : (n,) int array
+        Of parts.
+
+    Returns
+    -------
+    points : (m,) complex array, mm
+        The beginning of each part.
+    piece : (m,) int array
+        The number of the piece that it is of.
+    """
+    piece = np.repeat(np.arange(len(start)), count)
+    share = (np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)) / count[piece]
+    return start[piece] + on_arcs(chord[piece], bends[piece], share)[0], piece
+
+
+def on_arcs(chord: Plane, bends: Array, share: Array) -> tuple[Plane, Plane]:
+    """Return places on arcs.
+
+    Parameters
+    ----------
+    chord, bends : arrays, mm and 1
+        Of the arcs (see `bulge_pieces`).
+    share : array
+        Of each arc's length, from 0 to 1.
+
+    Returns
+    -------
+    way, slope : complex arrays, mm
+        From the beginning, and by the share.
+    """
+    half = 2 * np.arctan(bends)
     safe = np.where(half == 0, 1.0, half)
-    reach = np.where(half == 0, part, np.sin(part * safe) / np.sin(safe))
-    return reach * np.exp(1j * half * (part - 1))
+    reach = np.where(half == 0, share, np.sin(share * safe) / np.sin(safe))
+    way = chord * (reach * np.exp(1j * half * (share - 1)))
+    return way, chord / np.sinc(half / np.pi) * np.exp(1j * half * (2 * share - 1))
+
+
+def arc_centers(start: Plane, chord: Plane, bends: Array) -> Plane:
+    """Return the centres of arcs, complex, mm (see `bulge_pieces`); none is straight."""
+    return start + 0.5 * chord * (1 + 0.5j * (1 / bends - bends))
 
 
 def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Plane, Plane, Array]:

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_complex, bulge_pieces
+from gearcam.numeric.bulges import as_complex, bulge_pieces, on_arcs
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 _ON_ARC: Final = 16
@@ -75,15 +75,9 @@ def arc_moments(vertices: Array, bulges: Array) -> Moments:
         Exact to rounding.
     """
     start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
-    half = 2.0 * np.arctan(bends)
-    scale = np.where(half == 0.0, 1.0, half / np.where(half == 0.0, 1.0, np.sin(half)))
     place, weight = _gauss(_ON_ARC)
-    # P(t) = start + chord*sin(t*h)/sin(h)*exp(i*h*(t - 1)); P'(t) = chord*h/sin(h)*exp(i*h*(2t-1))
-    t, h = place[:, None], half[None, :]
-    share = t * np.sinc(t * h / np.pi) * scale
-    points = start + chord * share * np.exp(1j * h * (t - 1.0))
-    speed = chord * scale * np.exp(1j * h * (2.0 * t - 1.0))
-    return _integrate(points, speed, weight)
+    way, speed = on_arcs(chord, bends, place[:, None])
+    return _integrate(start + way, speed, weight)
 
 
 def curve_moments(points: Array, tangents: Array) -> Moments:

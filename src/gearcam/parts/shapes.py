@@ -17,7 +17,14 @@ from typing import Final
 import numpy as np
 
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import as_pairs, bulge_pieces, flatten_bulges
+from gearcam.numeric.bulges import (
+    arc_centers,
+    arc_chords,
+    as_pairs,
+    bulge_pieces,
+    flatten_bulges,
+    on_arcs,
+)
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.moments import Moments, arc_moments
 
@@ -119,10 +126,8 @@ class Loop:
         start, chord, bends = bulge_pieces(self.vertices, self.bulges, closed=True)
         bent = bends != 0.0
         start, chord, bends = start[bent], chord[bent], bends[bent]
-        half = 2.0 * np.arctan(bends)
-        center = start + 0.5 * chord * (1.0 + 1j / np.tan(half))
-        away = np.abs(center)
-        radius = 0.5 * np.abs(chord / np.sin(half))
+        center = arc_centers(start, chord, bends)
+        away, radius = np.abs(center), np.abs(center - start)
         toward = np.divide(center, away, out=np.ones_like(center), where=away > 0.0)
         # an arc that turns left lies to the right of its chord
         side = (np.conj(chord) * (center + radius * toward - start)).imag * bends
@@ -150,14 +155,12 @@ class Loop:
         )
 
     def _runs(self, sagitta: float) -> Iterator[Run]:
-        for start, chord, bend in zip(
-            *bulge_pieces(self.vertices, self.bulges, closed=True), strict=True
-        ):
-            ends = as_pairs(np.array([start, start + chord]))
-            points = flatten_bulges(ends, np.array([bend]), sagitta, closed=False)
-            turns = 2.0 * math.atan(bend) * np.linspace(-1.0, 1.0, len(points))
-            tangents = chord / abs(chord) * np.exp(1j * turns)
-            yield Run(points=points, tangents=as_pairs(tangents))
+        pieces = bulge_pieces(self.vertices, self.bulges, closed=True)
+        counts = arc_chords(*pieces[1:], sagitta)
+        for start, chord, bend, count in zip(*pieces, counts, strict=True):
+            way, slope = on_arcs(chord, bend, np.linspace(0.0, 1.0, count + 1))
+            way[-1] = chord
+            yield Run(points=as_pairs(start + way), tangents=as_pairs(slope / np.abs(slope)))
 
 
 def frozen(values: object) -> Array:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -30,7 +30,6 @@ from gearcam.sheets.sheet import (
     LinearDimension,
     RoundDimension,
     Text,
-    arrow_head,
     as_drawn,
     text_box,
     text_width,
@@ -105,6 +104,7 @@ class Board:
         size = np.ceil((self.area[1] - self.area[0]) * self.scale / CELL).astype(int) + 1
         self._lines = np.zeros(size, dtype=bool)
         self._taken = np.zeros(size, dtype=bool)
+        self._step = 0.8 * CELL * self.unit
 
     @property
     def unit(self) -> float:
@@ -114,9 +114,8 @@ class Board:
     def draw(self, layer: str, shape: Shape) -> None:
         """Draw a `shape` on a `layer`."""
         self.features.append(Feature(layer=layer, shape=shape))
-        step = 0.8 * CELL * self.unit
-        for points, closed in chains(shape, 0.1 * step):
-            self._ink(_resampled(points, step, closed))
+        for points, closed in chains(shape, 0.1 * self._step):
+            self._ink(points, closed)
 
     def line(self, layer: str, start: tuple[float, float], end: tuple[float, float]) -> None:
         """Draw a straight line on a `layer` from `start` to `end`, mm of the part."""
@@ -157,7 +156,6 @@ class Board:
         *,
         vertical: bool = False,
         prefix: str = "",
-        suffix: str = "",
     ) -> None:
         """Draw a distance along x or y.
 
@@ -169,14 +167,13 @@ class Board:
             y of the dimension line, x of a vertical one.
         vertical : bool
             Whether it is measured along y.
-        prefix, suffix : str
-            Before and after the number.
+        prefix : str
+            Before the number.
         """
         ends = np.array([first, second], dtype=np.float64)
         along = int(vertical)
         low, high = np.sort(ends[:, along])
-        label = prefix + decimal(float(high - low)) + suffix
-        wide = text_width(label) * self.unit
+        wide = text_width(prefix + decimal(float(high - low))) * self.unit
         place = np.full(2, at)
         place[1 - along] += (GAP + 0.5 * HEIGHT) * self.unit * (-1.0 if vertical else 1.0)
         place[along] = 0.5 * (low + high)
@@ -188,46 +185,29 @@ class Board:
         self._measure(
             LinearDimension(
                 first=ends[0], second=ends[1], line=line, place=place, vertical=vertical,
-                prefix=prefix, suffix=suffix,
+                prefix=prefix,
             )
         )  # fmt: skip
 
-    def round(
-        self,
-        center: Array,
-        radius: float,
-        *,
-        angles: Array | None = None,
-        diameter: bool = True,
-        prefix: str = "",
-        suffix: str = "",
-    ) -> bool:
+    def round(self, made: RoundDimension, angles: Array | None = None) -> bool:
         """Draw a diameter or radius where there is room.
 
         Parameters
         ----------
-        center : (2,) array, mm
-            Middle of the circle.
-        radius : float, mm
-            Of the circle.
+        made : RoundDimension
+            What it says; where its arrow and its knee are is found here.
         angles : (n,) array, rad, optional
             Directions in which the arrow may stand; any if left out.
-        diameter : bool
-            Whether the diameter is told.
-        prefix, suffix : str
-            Before and after the number.
 
         Returns
         -------
         bool
             False if there is no room: nothing is drawn, the table must tell it.
         """
-        words: dict[str, Any] = {"diameter": diameter, "prefix": prefix, "suffix": suffix}
-        made = RoundDimension(center=center, radius=radius, **words)
-        within = 2.0 * radius * self.scale - text_width(made.label)
+        within = 2.0 * made.radius * self.scale - text_width(made.label)
         found: RoundDimension | None = made
-        if not (diameter and angles is None and within > TIGHT and self._free(made)):
-            reaches = _REACHES if diameter else np.concatenate([_REACHES, -_REACHES])
+        if not (made.diameter and angles is None and within > TIGHT and self._free(made)):
+            reaches = _REACHES if made.diameter else np.concatenate([_REACHES, -_REACHES])
             found = self._search(made, AROUND if angles is None else angles, reaches)
         if found is not None:
             self._measure(found)
@@ -248,35 +228,29 @@ class Board:
         bool
             False if there is no room: nothing is drawn.
         """
-        made = RoundDimension(center=point, radius=0.1 * self.unit)
-        found = self._search(made, AROUND, _REACHES, text)
-        if found is None or found.knee is None:
+        made = RoundDimension(center=point, radius=0.1 * self.unit, words=text)
+        found = self._search(made, AROUND, _REACHES)
+        if found is None:
             return False
-        ends = np.array([found.edge, found.point(found.knee)])
-        left = bool(ends[1, 0] <= ends[0, 0])
-        wide = text_width(text) * self.unit
-        place = ends[1] + np.array([-0.5 * wide if left else 0.5 * wide, GAP * self.unit])
-        shelf = ends[1] + np.array([-wide if left else wide, 0.0])
-        self.draw(DIMENSION, Path(points=np.vstack([ends, shelf]), closed=False))
-        head = arrow_head(ends[0], (ends[0] - ends[1]) / np.hypot(*(ends[0] - ends[1])), self.unit)
-        self.draw(DIMENSION, Path(points=head[[1, 0, 2]], closed=False))
-        self.write(Text(text=text, place=place, anchor="middle"))
+        drawn = as_drawn(found, self.unit)
+        leader, shelf = drawn.lines
+        self.draw(DIMENSION, Path(points=np.vstack([leader, shelf[1:]]), closed=False))
+        self.draw(DIMENSION, Path(points=drawn.heads[0][[1, 0, 2]], closed=False))
+        self.write(drawn.text)
         return True
 
     def _free(self, made: RoundDimension) -> bool:
         low, high = text_box(as_drawn(made, self.unit).text, self.unit)
         return bool(self._empty(low[None, :], high[None, :])[0])
 
-    def _search(
-        self, made: RoundDimension, angles: Array, reaches: Array, label: str | None = None
-    ) -> RoundDimension | None:
+    def _search(self, made: RoundDimension, angles: Array, reaches: Array) -> RoundDimension | None:
         """Return the dimension with the best knee, None if its text has no room anywhere."""
         angle, reach = (axis.ravel() for axis in np.meshgrid(angles, reaches, indexing="ij"))
         spokes = np.column_stack([np.cos(angle), np.sin(angle)])
         knees = made.radius + reach * self.unit
         at = made.center + knees[:, None] * spokes
         left = reach * spokes[:, 0] <= 0.0
-        wide = text_width(label or made.label) * self.unit
+        wide = text_width(made.label) * self.unit
         low = np.column_stack([at[:, 0] - wide * left, at[:, 1]])
         high = low + np.array([wide, (HEIGHT + GAP) * self.unit])
         good = self._empty(low, high) & (knees > 0.0)
@@ -323,8 +297,8 @@ class Board:
         held = sums[k, m] - sums[i, m] - sums[k, j] + sums[i, j]
         return inside & also & (held == 0)
 
-    def _ink(self, points: Array) -> None:
-        cells, inside = self._cells(points)
+    def _ink(self, points: Array, closed: bool) -> None:
+        cells, inside = self._cells(_resampled(points, self._step, closed))
         self._lines[cells[inside, 0], cells[inside, 1]] = True
 
     def _take(self, text: Text) -> None:
@@ -338,5 +312,5 @@ class Board:
         self.dimensions.append(dimension)
         drawn = as_drawn(dimension, self.unit)
         for line in drawn.lines:
-            self._ink(_resampled(line, 0.8 * CELL * self.unit, closed=False))
+            self._ink(line, closed=False)
         self._take(drawn.text)

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import CENTER, CENTRODE, Circle, Cross, Drawing, Path
+from gearcam.drawings import CENTER, Circle, Drawing
 from gearcam.numeric.arrays import Array
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.extent import true_points
@@ -40,8 +40,7 @@ def pair_sheet(
     facts: Mapping[str, str],
     title: str,
     *,
-    pitch_radius: float | None = None,
-    names: tuple[str, str] = ("gear1", "gear2"),
+    pitch_radius: float,
 ) -> Sheet:
     """Draw the sheet of the assembled pair.
 
@@ -55,11 +54,8 @@ def pair_sheet(
         Rows of the parameter table.
     title : str
         First line of the title block.
-    pitch_radius : float, optional, mm
-        Distance of the pitch point from the driver's axis, dimensioned; if left out, the point is
-        found on the drawn centrode, and only marked.
-    names : (str, str)
-        What the wheels are called.
+    pitch_radius : float, mm
+        Distance of the pitch point from the driver's axis.
 
     Returns
     -------
@@ -75,19 +71,17 @@ def pair_sheet(
         raise ValueError(f"{drawing.name}: nothing to draw")
     points = true_points(drawing.contours)
     low, high = points.min(axis=0), points.max(axis=0)
-    size = float(high[0] - low[0]), float(high[1] - low[1])
     below = FIRST_LEVEL + LEVEL * LEVELS
     room = np.array([LEFT, below]), np.array([RIGHT, ABOVE])
-    board = begin(size, room, low, len(facts) + 2)
-    _views(board, drawing, (0.0, center_distance) if center_distance else (0.0,))
+    board = begin(high - low, room, low, len(facts) + 2)
+    shafts = (0.0, center_distance) if center_distance else (0.0,)
+    _views(board, drawing, shafts)
     _sizes(board, points, center_distance, pitch_radius)
-    place = _pitch_point(drawing) if pitch_radius is None else np.array([pitch_radius, 0.0])
-    if place is not None:
-        board.draw(CENTERLINE, Circle(center=place, diameter=POINT * board.unit))
-        board.label(place, "pitch point")
-    for shaft, name in zip((0.0, center_distance), names, strict=True):
-        if shaft or name == names[0]:
-            board.label(np.array([shaft, 0.0]), name)
+    place = np.array([pitch_radius, 0.0])
+    board.draw(CENTERLINE, Circle(center=place, diameter=POINT * board.unit))
+    board.label(place, "pitch point")
+    for number, shaft in enumerate(shafts, start=1):
+        board.label(np.array([shaft, 0.0]), f"gear{number}")
     tolerance = max(contour.tolerance for contour in drawing.contours)
     notes = [
         f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
@@ -99,7 +93,7 @@ def pair_sheet(
 
 def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
     for feature in drawing.features:
-        if feature.kind != CENTER and not isinstance(feature.shape, Cross):
+        if feature.kind != CENTER:
             board.draw(feature.layer, feature.shape)
     over, outlines = OVERHANG * board.unit, [one.vertices for one in drawing.contours]
     for shaft, outline in zip(shafts, outlines, strict=False):
@@ -109,29 +103,13 @@ def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
     board.line(CENTERLINE, (float(xs.min()) - over, 0.0), (float(xs.max()) + over, 0.0))
 
 
-def _sizes(board: Board, points: Array, center_distance: float, pitch_radius: float | None) -> None:
+def _sizes(board: Board, points: Array, center_distance: float, pitch_radius: float) -> None:
     """Draw the linear dimensions: pitch radius, centre distance, largest sizes."""
     unit = board.unit
     left, low, right, high = points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
     levels = [float(low[1]) - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
-    if pitch_radius is not None:
-        board.linear((0.0, 0.0), (pitch_radius, 0.0), levels.pop(0))
+    board.linear((0.0, 0.0), (pitch_radius, 0.0), levels.pop(0))
     if center_distance:
         board.linear((0.0, 0.0), (center_distance, 0.0), levels.pop(0))
     board.linear(left, right, levels.pop(0))
     board.linear(low, high, float(left[0]) - FIRST_LEVEL * unit, vertical=True)
-
-
-def _pitch_point(drawing: Drawing) -> Array | None:
-    """Return where the first centrode crosses the line of centres, on the mate's side."""
-    for feature in drawing.features:
-        if feature.kind == CENTRODE and isinstance(feature.shape, Path):
-            points = feature.shape.points
-            if feature.shape.closed:
-                points = np.vstack([points, points[:1]])
-            (x, u), (y, v) = points[:-1].T, points[1:].T
-            crosses = np.flatnonzero((u <= 0.0) != (v <= 0.0))
-            at = x[crosses] - u[crosses] * (y - x)[crosses] / (v - u)[crosses]
-            ahead = at[at > 0.0]
-            return np.array([ahead.min(), 0.0]) if len(ahead) else None
-    return None

@@ -11,10 +11,10 @@ Depends on drawings and sheets.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gearcam.drawings import Feature, Path
 from gearcam.numerals import shown
@@ -55,19 +55,9 @@ PROJECTION: Final = "first angle"
 """The view from the left stands on the right."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Format:
-    """A `paper` and a `scale`, millimetres of paper over millimetres of the part."""
-
-    paper: str
-    scale: float
-
-    @property
-    def words(self) -> str:
-        """The scale as it is written, such as 1:2."""
-        if self.scale >= 1.0:
-            return f"{shown(self.scale)}:1"
-        return f"1:{shown(1.0 / self.scale)}"
+def scale_words(scale: float) -> str:
+    """Return a `scale` as it is written, such as 1:2."""
+    return f"{shown(scale)}:1" if scale >= 1.0 else f"1:{shown(1.0 / scale)}"
 
 
 def area_of(paper: str) -> Box:
@@ -77,7 +67,7 @@ def area_of(paper: str) -> Box:
     return low, np.array([wide - MARGIN - TABLE - PAD, tall - MARGIN - PAD])
 
 
-def choose(size: tuple[float, float], room: tuple[float, float], rows: int) -> Format:
+def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
     """Choose paper and scale.
 
     Parameters
@@ -91,33 +81,32 @@ def choose(size: tuple[float, float], room: tuple[float, float], rows: int) -> F
 
     Returns
     -------
-    Format
+    str, float
+        The paper, and millimetres of paper over millimetres of the part.
 
     Raises
     ------
     ValueError
         If the views are too large for the smallest scale.
     """
-    found = []
+    size, room, found = np.asarray(size), np.asarray(room), []
     for paper, (_, tall) in PAPERS.items():
         low, high = area_of(paper)
-        free = high - low - np.array(room)
-        fits = [scale for scale in SCALES if (scale * np.array(size) <= free).all()]
+        fits = [scale for scale in SCALES if (scale * size <= high - low - room).all()]
         long = (rows + 1) * ROW > tall - 2 * MARGIN - BLOCK[1]
         if fits and not (long and paper == "A4"):
-            found.append(Format(paper=paper, scale=fits[0]))
+            found.append((paper, fits[0]))
     if not found:
         raise ValueError(f"views of {shown(size[0])} x {shown(size[1])} mm fit on no sheet")
-    true = [one for one in found if one.scale >= 1.0]
-    return true[0] if true else max(found, key=lambda one: one.scale)
+    return max(found, key=lambda one: min(one[1], 1.0))
 
 
-def begin(size: tuple[float, float], room: Box, low: Array, rows: int) -> Board:
+def begin(size: Array, room: Box, low: Array, rows: int) -> Board:
     """Begin a sheet: the views in the middle of their area.
 
     Parameters
     ----------
-    size : (float, float), mm
+    size : (2,) array, mm
         Width and height of all views together.
     room : (2,) array, (2,) array, mm of paper
         What dimensions take to the left and below, and to the right and above.
@@ -136,13 +125,12 @@ def begin(size: tuple[float, float], room: Box, low: Array, rows: int) -> Board:
     ValueError
         If the views are too large for the smallest scale.
     """
-    wide, tall = (room[0] + room[1]).tolist()
-    form = choose(size, (wide, tall), rows)
-    first, last = area_of(form.paper)
-    idle = last - first - room[0] - room[1] - form.scale * np.array(size)
-    corner = low - (first + room[0] + 0.5 * idle) / form.scale
-    area = corner + first / form.scale, corner + last / form.scale
-    return Board(scale=form.scale, area=area, paper=form.paper, corner=corner)
+    paper, scale = choose(size, room[0] + room[1], rows)
+    first, last = area_of(paper)
+    idle = last - first - room[0] - room[1] - scale * size
+    corner = low - (first + room[0] + 0.5 * idle) / scale
+    area = corner + first / scale, corner + last / scale
+    return Board(scale=scale, area=area, paper=paper, corner=corner)
 
 
 def finish(
@@ -165,91 +153,79 @@ def finish(
     -------
     Sheet
     """
-    size, corner = PAPERS[board.paper], board.corner
-    form = Format(paper=board.paper, scale=board.scale)
-    rows = (*facts.items(), *board.rows)
-    pen = _Pen(corner=corner, unit=board.unit, lines=[], texts=[])
+    size, rows = PAPERS[board.paper], (*facts.items(), *board.rows)
     left, right, top = BINDING, size[0] - MARGIN, size[1] - MARGIN
-    pen.chain([(left, MARGIN), (right, MARGIN), (right, top), (left, top)], closed=True)
-    _table(pen, rows, (right - TABLE, top))
-    _block(pen, form, (name, title), (right - BLOCK[0], MARGIN))
+    _chain(board, [(left, MARGIN), (right, MARGIN), (right, top), (left, top)], closed=True)
+    _table(board, rows, (right - TABLE, top))
+    _block(board, (name, title), (right - BLOCK[0], MARGIN))
     high = MARGIN + BLOCK[1]
     wide = right - BLOCK[0] - left - 2 * INSET
-    height = min([HEIGHT, *(wide / (GLYPH * len(note)) for note in notes if note)])
+    height = min(HEIGHT, wide / (GLYPH * max(len(note) for note in notes)))
     for number, note in enumerate(notes, start=1):
-        pen.write(note, (left + INSET, high - 1.8 * HEIGHT * number), wide, height)
+        _write(board, note, (left + INSET, high - 1.8 * HEIGHT * number), wide, height)
     return Sheet(
         name=name,
         title=title,
-        paper=form.paper,
+        paper=board.paper,
         size=size,
-        scale=form.scale,
-        corner=corner,
-        features=(*board.features, *pen.lines),
+        scale=board.scale,
+        corner=board.corner,
+        features=tuple(board.features),
         dimensions=tuple(board.dimensions),
-        texts=(*board.texts, *pen.texts),
+        texts=tuple(board.texts),
         rows=rows,
-        notes=tuple(notes),
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _Pen:
-    """Writes in millimetres of paper."""
-
-    corner: Array
-    unit: float
-    lines: list[Feature]
-    texts: list[Text]
-
-    def chain(self, points: Sequence[tuple[float, float]], *, closed: bool = False) -> None:
-        placed = self.corner + self.unit * np.array(points)
-        self.lines.append(Feature(layer=FRAME, shape=Path(points=placed, closed=closed)))
-
-    def write(
-        self, text: str, place: tuple[float, float], wide: float, height: float = HEIGHT
-    ) -> None:
-        """Write a line, smaller if it is longer than its room; line breaks become blanks."""
-        text = " ".join(text.split())
-        if text:
-            height = min(height, wide / (GLYPH * len(text)))
-            at = self.corner + self.unit * np.array(place)
-            self.texts.append(Text(text=text, place=at, height=height))
+def _chain(board: Board, points: Sequence[tuple[float, float]], *, closed: bool = False) -> None:
+    """Draw lines of the frame, mm of paper."""
+    placed = board.corner + board.unit * np.array(points)
+    board.features.append(Feature(layer=FRAME, shape=Path(points=placed, closed=closed)))
 
 
-def _table(pen: _Pen, rows: Sequence[tuple[str, str]], corner: tuple[float, float]) -> None:
+def _write(
+    board: Board, text: str, place: tuple[float, float], wide: float, height: float = HEIGHT
+) -> None:
+    """Write a line, smaller if it is longer than its room; line breaks become blanks."""
+    text = " ".join(text.split())
+    if text:
+        height = min(height, wide / (GLYPH * len(text)))
+        at = board.corner + board.unit * np.array(place)
+        board.texts.append(Text(text=text, place=at, height=height))
+
+
+def _table(board: Board, rows: Sequence[tuple[str, str]], corner: tuple[float, float]) -> None:
     """Draw the table down from its upper left corner; long ones have lower rows."""
     (left, top), right = corner, corner[0] + TABLE
     if not rows:
         return
     row = min(ROW, (top - MARGIN - BLOCK[1]) / len(rows))
     low = top - row * len(rows)
-    pen.chain([(left, top), (left, low), (right, low)])
-    pen.chain([(left + LABELS, top), (left + LABELS, low)])
+    _chain(board, [(left, top), (left, low), (right, low)])
+    _chain(board, [(left + LABELS, top), (left + LABELS, low)])
     for number, (label, value) in enumerate(rows, start=1):
         base = top - row * number
         if number < len(rows):
-            pen.chain([(left, base), (right, base)])
+            _chain(board, [(left, base), (right, base)])
         height, up = min(HEIGHT, 0.5 * row), base + 0.27 * row
-        pen.write(label, (left + INSET, up), LABELS - 2 * INSET, height)
-        pen.write(value, (left + LABELS + INSET, up), TABLE - LABELS - 2 * INSET, height)
+        _write(board, label, (left + INSET, up), LABELS - 2 * INSET, height)
+        _write(board, value, (left + LABELS + INSET, up), TABLE - LABELS - 2 * INSET, height)
 
 
-def _block(pen: _Pen, form: Format, words: tuple[str, str], corner: tuple[float, float]) -> None:
+def _block(board: Board, words: tuple[str, str], corner: tuple[float, float]) -> None:
     """Draw the title block up from its lower left corner."""
-    (left, low), row = corner, BLOCK[1] / 3.0
-    name, title = words
+    (left, low), row, (name, title) = corner, BLOCK[1] / 3.0, words
     cells = [
         (0.0, 2, BLOCK[0], "title", title, 4.0),
         (0.0, 1, 100.0, "drawing", name, 3.0),
-        (100.0, 1, 50.0, "scale", form.words, 3.0),
+        (100.0, 1, 50.0, "scale", scale_words(board.scale), 3.0),
         (0.0, 0, 50.0, "units", "mm, deg", 3.0),
         (50.0, 0, 50.0, "projection", PROJECTION, 3.0),
-        (100.0, 0, 50.0, "paper", form.paper, 3.0),
+        (100.0, 0, 50.0, "paper", board.paper, 3.0),
     ]
     for across, up, wide, label, value, height in cells:
         x, y = left + across, low + row * up
-        pen.chain([(x, y), (x, y + row), (x + wide, y + row)])
-        pen.write(label, (x + INSET, y + row - SMALL - 0.8), wide - 2 * INSET, SMALL)
+        _chain(board, [(x, y), (x, y + row), (x + wide, y + row)])
+        _write(board, label, (x + INSET, y + row - SMALL - 0.8), wide - 2 * INSET, SMALL)
         indent = 15.0
-        pen.write(value, (x + indent, y + 0.28 * row), wide - indent - INSET, height)
+        _write(board, value, (x + indent, y + 0.28 * row), wide - indent - INSET, height)

@@ -17,7 +17,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from gearcam.drawings import Feature
+from gearcam.drawings import OUTLINE, THROUGH, Feature
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 
@@ -31,6 +31,13 @@ HIDDEN: Final = "HIDDEN"
 FRAME: Final = "FRAME"
 EDGE: Final = "EDGE"
 """Layers beside those of drawings; EDGE holds visible edges that no cutter follows."""
+
+HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
+"""Kinds that are drawn thick."""
+
+THICK: Final = 0.5
+THIN: Final = 0.25
+"""Widths of lines, mm of paper."""
 
 HEIGHT: Final = 2.5
 """Height of the numbers, mm of paper."""
@@ -79,7 +86,7 @@ class Text:
         Of its base line.
     height : float, mm of paper
         Of its capitals.
-    anchor : {"start", "middle", "end"}
+    anchor : {"start", "middle"}
         Which point of the base line stands at `place`.
     upright : bool
         Whether it reads from below to above.
@@ -88,7 +95,7 @@ class Text:
     text: str
     place: Array
     height: float = HEIGHT
-    anchor: Literal["start", "middle", "end"] = "start"
+    anchor: Literal["start", "middle"] = "start"
     upright: bool = False
 
 
@@ -148,6 +155,8 @@ class RoundDimension:
         inside its circle, with its text at the middle.
     prefix, suffix : str
         Before and after the number.
+    words : str
+        What is written instead of all that; the leader points to a place then, not to a circle.
     """
 
     center: Array
@@ -157,6 +166,7 @@ class RoundDimension:
     knee: float | None = None
     prefix: str = ""
     suffix: str = ""
+    words: str = ""
 
     @property
     def value(self) -> float:
@@ -164,14 +174,10 @@ class RoundDimension:
         return 2.0 * self.radius if self.diameter else self.radius
 
     @property
-    def sign(self) -> str:
-        """The sign before the number."""
-        return "Ø" if self.diameter else "R"
-
-    @property
     def label(self) -> str:
         """Its text."""
-        return f"{self.prefix}{self.sign}{decimal(self.value)}{self.suffix}"
+        sign = "Ø" if self.diameter else "R"
+        return self.words or f"{self.prefix}{sign}{decimal(self.value)}{self.suffix}"
 
     def point(self, distance: float) -> Array:
         """Return the point on the leader at a distance from the middle, (2,), mm."""
@@ -221,8 +227,6 @@ class Sheet:
         All texts but those of dimensions.
     rows : tuple of (str, str)
         The parameter table: label and value.
-    notes : tuple of str
-        Beside the title block.
     """
 
     name: str
@@ -235,7 +239,6 @@ class Sheet:
     dimensions: tuple[Dimension, ...]
     texts: tuple[Text, ...]
     rows: tuple[tuple[str, str], ...]
-    notes: tuple[str, ...]
 
     @property
     def unit(self) -> float:
@@ -268,7 +271,7 @@ def text_box(text: Text, unit: float) -> Box:
         Its lower left and upper right corner, letters below the base line included.
     """
     wide, tall = text_width(text.text, text.height), text.height
-    start = {"start": 0.0, "middle": -0.5 * wide, "end": -wide}[text.anchor]
+    start = -0.5 * wide if text.anchor == "middle" else 0.0
     low, high = np.array([start, -0.25 * tall]), np.array([start + wide, tall])
     if text.upright:
         low, high = np.array([-tall, start]), np.array([0.25 * tall, start + wide])
@@ -318,26 +321,22 @@ def arrow_head(tip: Array, way: Array, unit: float) -> Array:
 
 def _linear(dimension: LinearDimension, unit: float) -> DrawnDimension:
     along = int(dimension.vertical)
-    feet = [point.copy() for point in (dimension.first, dimension.second)]
-    lines = []
-    for foot, point in zip(feet, (dimension.first, dimension.second), strict=True):
-        foot[1 - along] = dimension.line[1 - along]
-        away = foot - point
-        length = float(np.hypot(*away))
+    way = np.eye(2)[along]
+    lines, feet = [], []
+    for point in (dimension.first, dimension.second):
+        foot = np.where(way, point, dimension.line)
+        feet.append(foot)
+        length = float(np.hypot(*(foot - point)))
         if length > LEAST_GAP * unit:
-            away = away / length
-            lines.append(np.array([point + LEAST_GAP * unit * away, foot + PAST * unit * away]))
+            away = (foot - point) / length * unit
+            lines.append(np.array([point + LEAST_GAP * away, foot + PAST * away]))
     low, high = sorted(feet, key=lambda foot: float(foot[along]))
-    way = np.zeros(2)
-    way[along] = 1.0
     inwards = dimension.value < ARROW_ROOM * unit
-    start, end = low, high
-    if inwards:
-        start, end = low - TAIL * unit * way, high + TAIL * unit * way
+    tail = TAIL * unit * way if inwards else 0.0
+    start, end = low - tail, high + tail
     half = 0.5 * text_width(dimension.label) * unit
-    if float(dimension.place[along]) > float(high[along]):
-        end = end.copy()
-        end[along] = max(float(end[along]), float(dimension.place[along]) + half)
+    if dimension.place[along] > high[along]:
+        end[along] = max(end[along], dimension.place[along] + half)
     turn = -1.0 if inwards else 1.0
     base = dimension.place.copy()
     base[1 - along] += 0.5 * HEIGHT * unit * (1.0 if dimension.vertical else -1.0)

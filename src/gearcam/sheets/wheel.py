@@ -19,9 +19,10 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import INNER, part_features, placed, reach
+from gearcam.drawings import BORE, HOLE, INNER, SLOT, part_features, placed, reach
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
@@ -34,6 +35,7 @@ from gearcam.sheets.sheet import (
     GAP,
     HEIGHT,
     HIDDEN,
+    RoundDimension,
     Sheet,
     Text,
     fine,
@@ -53,44 +55,11 @@ SAME: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Bore:
-    """The bore: its radius, how far keyway or flat is from the axis, and in which direction."""
-
-    radius: float
-    floor: float = 0.0
-    half: float = 0.0
-    angle: float = 0.0
-    flat: bool = False
-    shape: Loop | None = None
-
-
-def _bore(part: Part) -> _Bore | None:
-    """Read the bore's sizes from its shape."""
-    shape = next((one.shape for one in part.openings if one.kind == "BORE"), None)
-    if isinstance(shape, Circle):
-        return _Bore(radius=0.5 * shape.diameter)
-    if not isinstance(shape, Loop):
-        return None
-    corners = shape.vertices @ np.array([1.0, 1j])
-    floor = corners[[-1, -2]] if len(corners) == 5 else corners[[0, -1]]
-    middle = complex(floor.mean())
-    return _Bore(
-        radius=float(abs(corners[0])),
-        floor=abs(middle),
-        half=0.5 * float(abs(floor[1] - floor[0])),
-        angle=cmath.phase(middle),
-        flat=len(corners) != 5,
-        shape=shape,
-    )
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
 class _Wheel:
     """A part and what its sheet needs to know of it; its points are on the true curve."""
 
     part: Part
     points: Array
-    bore: _Bore | None
 
     @property
     def low(self) -> Array:
@@ -101,22 +70,24 @@ class _Wheel:
         return self.points.max(axis=0)
 
     @property
-    def hub(self) -> Hub:
-        return self.part.hub or Hub(diameter=0.0)
-
-    @property
     def turns(self) -> bool:
         """Whether the axis lies within the outline: racks have none."""
-        corners = self.part.contours[-1].vertices @ np.array([1.0, 1j])
-        if not np.abs(corners).all():
+        corners = as_complex(self.part.contours[-1].vertices)
+        if not corners.all():
             return False
         turn = float(np.angle(np.roll(corners, -1) / corners).sum())
         return abs(turn) > math.pi
 
     @property
-    def levels(self) -> int:
-        """Linear dimensions below the side view."""
-        return 1 + (self.hub.front > 0.0) + (self.hub.back > 0.0) + (self.part.hub is not None)
+    def bore(self) -> Edge | None:
+        return next((one.shape for one in self.part.openings if one.kind == BORE), None)
+
+    @property
+    def bore_radius(self) -> float:
+        """Of a bore with a keyway or a flat: that of its arc; 0 without a bore."""
+        if isinstance(self.bore, Loop):
+            return float(np.hypot(*self.bore.vertices[0]))
+        return 0.5 * self.bore.diameter if isinstance(self.bore, Circle) else 0.0
 
 
 def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
@@ -141,22 +112,22 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     ValueError
         If the part is too large for the smallest scale.
     """
-    wheel = _Wheel(part=part, points=true_points(part.contours[-1:]), bore=_bore(part))
-    bore = wheel.bore
-    shown = 2.0 * bore.radius if bore is not None and bore.shape is not None else 0.0
-    wide, tall = (wheel.high - wheel.low).tolist()
-    size = wide + part.thickness + shown, tall
-    below = FIRST_LEVEL + LEVEL * wheel.levels
-    across = BETWEEN + RIGHT + (BORE_ROOM if shown else 0.0)
+    wheel = _Wheel(part=part, points=true_points(part.contours[-1:]))
+    keyed = wheel.bore if isinstance(wheel.bore, Loop) else None
+    shown = 2.0 * wheel.bore_radius if keyed else 0.0
+    size = wheel.high - wheel.low + [part.thickness + shown, 0.0]
+    levels = 1 + len(part.bosses) + (part.hub is not None)  # below the side view
+    below = FIRST_LEVEL + LEVEL * levels
+    across = BETWEEN + RIGHT + (BORE_ROOM if keyed else 0.0)
     rows = len(facts) + len(part.openings) + 2
     room = np.array([LEFT, below]), np.array([across, ABOVE])
     board = begin(size, room, wheel.low, rows)
     _front_view(board, wheel)
     side = float(wheel.high[0]) + BETWEEN * board.unit
     _side_view(board, wheel, side)
-    if shown and bore is not None:
+    if keyed:
         right = side + part.thickness + (RIGHT + 0.5 * BORE_ROOM) * board.unit
-        _bore_view(board, bore, np.array([right + bore.radius, 0.0]))
+        _bore_view(board, keyed, right)
     _callouts(board, wheel)
     about = " R, X, Y and angles from the axis." if wheel.turns else ""
     notes = [
@@ -188,7 +159,7 @@ def _front_view(board: Board, wheel: _Wheel) -> None:
 
 def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     """Draw the view from the left, its back at x = `left`."""
-    part, hub, unit = wheel.part, wheel.hub, board.unit
+    part, unit, hub = wheel.part, board.unit, wheel.part.hub or Hub(diameter=0.0)
     back, end = left + hub.back, left + part.thickness
     for layer in part.layers:
         low, high = back + layer.low, back + layer.high
@@ -200,9 +171,9 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     if wheel.turns:
         over = OVERHANG * unit
         board.line(CENTERLINE, (left - over, 0.0), (end + over, 0.0))
-    if wheel.bore is not None:
-        for y in (-wheel.bore.radius, wheel.bore.radius):
-            board.line(HIDDEN, (left, y), (end, y))
+    radius = wheel.bore_radius
+    for y in (-radius, radius) if radius else ():
+        board.line(HIDDEN, (left, y), (end, y))
     base = float(wheel.low[1])
     lengths = [(back, back + part.width)]
     lengths += [(back + boss.low, back + boss.high) for boss in part.bosses]
@@ -212,8 +183,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
         at = base - (FIRST_LEVEL + LEVEL * level) * unit
         board.linear((low, y[0]), (high, y[1]), at)
     level = 0
-    if wheel.bore is not None and wheel.bore.shape is None:
-        radius = wheel.bore.radius
+    if isinstance(wheel.bore, Circle):
         at = end + FIRST_LEVEL * unit
         board.linear((end, -radius), (end, radius), at, vertical=True, prefix="Ø")
         level = 1
@@ -236,26 +206,24 @@ def _rectangle(board: Board, low: tuple[float, float], high: tuple[float, float]
         board.line(EDGE, start, end)
 
 
-def _bore_view(board: Board, bore: _Bore, place: Array) -> None:
-    """Draw the bore once more about a `place`, its keyway or flat at the top."""
-    if bore.shape is None:
-        return
-    unit, (x, y) = board.unit, place.tolist()
-    board.draw(EDGE, placed(bore.shape, 0.5 * math.pi - bore.angle, (x, y)))
-    board.centre(place, max(bore.radius, bore.floor))
-    first, top = FIRST_LEVEL * unit, y + bore.floor
-    below = y - bore.radius - first
-    board.linear((x - bore.radius, y), (x + bore.radius, y), below, prefix="Ø")
-    if not bore.flat:
-        high = max(top, y + bore.radius) + first
-        board.linear((x - bore.half, top), (x + bore.half, top), high)
-    at = x - bore.radius - first
-    board.linear((x, y - bore.radius), (x - bore.half, top), at, vertical=True)
-    words = f"bore, {'flat' if bore.flat else 'keyway'} turned up"
+def _bore_view(board: Board, bore: Loop, left: float) -> None:
+    """Draw a bore right of x = `left` about the axis, its keyway or flat at the top."""
+    corners = as_complex(bore.vertices)
+    kind, floor = ("keyway", corners[-2:]) if len(corners) == 5 else ("flat", corners[[0, -1]])
+    radius, middle = float(abs(corners[0])), complex(floor.mean())
+    unit, x, top, direction = board.unit, left + radius, abs(middle), cmath.phase(middle)
+    board.draw(EDGE, placed(bore, 0.5 * math.pi - direction, (x, 0.0)))
+    board.centre(np.array([x, 0.0]), max(radius, top))
+    first = FIRST_LEVEL * unit
+    below = -radius - first
+    board.linear((x - radius, 0.0), (x + radius, 0.0), below, prefix="Ø")
+    half = 0.5 * float(abs(floor[1] - floor[0]))
+    if kind == "keyway":
+        board.linear((x - half, top), (x + half, top), max(top, radius) + first)
+    board.linear((x, -radius), (x - half, top), x - radius - first, vertical=True)
     line = np.array([x, below - 5.0 * unit - HEIGHT * unit])
-    board.write(Text(text=words, place=line, anchor="middle"))
-    kind = "flat" if bore.flat else "keyway"
-    board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(bore.angle))} deg"))
+    board.write(Text(text=f"bore, {kind} turned up", place=line, anchor="middle"))
+    board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(direction))} deg"))
 
 
 def _callouts(board: Board, wheel: _Wheel) -> None:
@@ -265,11 +233,14 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
     if wheel.turns:
         _radii(board, wheel)
     for opening in part.openings:
-        if opening.kind == "SLOT" and isinstance(opening.shape, Loop):
+        if opening.kind == SLOT and isinstance(opening.shape, Loop):
             _slot(board, opening.shape)
     for mark in part.marks:
         words = f", {decimal(mark.depth)} deep"
-        if not board.round(mark.center, 0.5 * mark.diameter, prefix="mark ", suffix=words):
+        made = RoundDimension(
+            center=mark.center, radius=0.5 * mark.diameter, prefix="mark ", suffix=words
+        )
+        if not board.round(made):
             board.rows.append(("mark", f"Ø{decimal(mark.diameter)}{words}"))
 
 
@@ -279,11 +250,9 @@ def _radii(board: Board, wheel: _Wheel) -> None:
     for place, words in ((int(reach.argmax()), "max"), (int(reach.argmin()), "min")):
         x, y = wheel.points[place].tolist()
         radius, ways = float(reach[place]), np.array([math.atan2(y, x)])
-        end = f" {words}"
-        if board.round(np.zeros(2), radius, angles=ways, diameter=False, suffix=end):
-            continue
+        made = RoundDimension(center=np.zeros(2), radius=radius, diameter=False, suffix=f" {words}")
         # a leader need not point to the axis
-        if not board.label(np.array([x, y]), f"R{decimal(radius)}{end}"):
+        if not (board.round(made, ways) or board.label(np.array([x, y]), made.label)):
             board.rows.append((f"{words}. radius from axis", decimal(radius)))
 
 
@@ -291,7 +260,7 @@ def _holes(board: Board, part: Part) -> None:
     """Draw the centre lines of all holes, then tell their sizes, large ones first."""
     groups: dict[tuple[int, int], list[Circle]] = {}
     for opening in part.openings:
-        if opening.kind == "HOLE" and isinstance(opening.shape, Circle):
+        if opening.kind == HOLE and isinstance(opening.shape, Circle):
             circle, away = opening.shape, float(np.hypot(*opening.shape.center))
             key = round(circle.diameter / SAME), round(away / SAME)
             groups.setdefault(key, []).append(circle)
@@ -299,19 +268,21 @@ def _holes(board: Board, part: Part) -> None:
     singles = [one for group in groups.values() if not _even(group) for one in group]
     for group in patterns:
         _ring(board, group)
-    named = [(circle, f"H{k}") for k, circle in enumerate(singles, start=1)]
-    for circle, letter in named:
-        size = f"{letter} Ø{decimal(circle.diameter)}"
-        inside = circle.diameter * board.scale > text_width(size) + TIGHT
+    named = [
+        RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"H{k} ")
+        for k, one in enumerate(singles, start=1)
+    ]
+    for one in named:
+        inside = 2.0 * one.radius * board.scale > text_width(one.label) + TIGHT
         gap = (-CLEAR - GAP, HEIGHT + GAP + 2.0 * CLEAR) if inside else None
-        board.centre(circle.center, 0.5 * circle.diameter, gap)
-    for circle, letter in sorted(named, key=lambda one: -one[0].diameter):
-        board.round(circle.center, 0.5 * circle.diameter, prefix=f"{letter} ")
+        board.centre(one.center, one.radius, gap)
+    for one in sorted(named, key=lambda one: -one.radius):
+        board.round(one)
     for group in patterns:
         _pattern(board, group)
-    for circle, letter in named:
-        x, y = (decimal(value) for value in circle.center.tolist())
-        board.rows.append((f"{letter} Ø{decimal(circle.diameter)}", f"X {x}  Y {y}"))
+    for one in named:
+        x, y = (decimal(value) for value in one.center.tolist())
+        board.rows.append((one.label, f"X {x}  Y {y}"))
 
 
 def _even(circles: list[Circle]) -> bool:
@@ -338,25 +309,26 @@ def _pattern(board: Board, circles: list[Circle]) -> None:
     one, count = circles[0], len(circles)
     away = float(np.hypot(*one.center))
     first = math.atan2(*one.center[::-1])
-    board.round(one.center, 0.5 * one.diameter, angles=AROUND, prefix=f"{count} x ")
+    made = RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"{count} x ")
+    board.round(made, AROUND)
     # the arrow points at the circle between two holes
-    ring = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
-    board.round(np.zeros(2), away, angles=ring)
-    words = f"on Ø{decimal(2.0 * away)}, at {decimal(math.degrees(first))} deg"
-    board.rows.append((f"{count} x Ø{decimal(one.diameter)}", words))
+    between = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
+    ring = RoundDimension(center=np.zeros(2), radius=away)
+    board.round(ring, between)
+    board.rows.append((made.label, f"on {ring.label}, at {decimal(math.degrees(first))} deg"))
 
 
 def _slot(board: Board, shape: Loop) -> None:
     """Tell the width of a slot along an arc about the axis, and where its middle line ends."""
-    corners = shape.vertices @ np.array([1.0, 1j])
+    corners = as_complex(shape.vertices)
     half = len(corners) // 2
     radii = np.abs(corners[[0, half]])
     middle, width = float(radii.mean()), float(radii[0] - radii[1])
     sweep = float(np.angle(corners[1:half] / corners[: half - 1]).sum())
     first = math.degrees(cmath.phase(complex(corners[0])))
-    end = corners[[half - 1, half]].mean()
-    place = np.array([end.real, end.imag])
-    if not board.round(place, 0.5 * width, diameter=False, prefix="slot "):
+    place = shape.vertices[[half - 1, half]].mean(axis=0)
+    end = RoundDimension(center=place, radius=0.5 * width, diameter=False, prefix="slot ")
+    if not board.round(end):
         board.rows.append(("slot, width", decimal(width)))
     board.rows.append(("slot, mid radius", decimal(middle)))
     last = first + math.degrees(sweep)

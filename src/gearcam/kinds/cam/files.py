@@ -143,10 +143,11 @@ def _picture(result: CamResult, _: Measured) -> Files:
 
 
 def _step(result: CamResult, _: Measured) -> Files:
-    from gearcam.export.step import Placed, step_bytes
+    from gearcam.drawings import UNMOVED
+    from gearcam.export.step import step_bytes
 
     tolerance = STEP_PART * result.profile.tolerance
-    return {f"{STEM}.step": step_bytes([Placed(part=result.part)], STEM, tolerance)}
+    return {f"{STEM}.step": step_bytes([(result.part, UNMOVED)], STEM, tolerance)}
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:

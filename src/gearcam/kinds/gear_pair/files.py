@@ -22,7 +22,7 @@ from gearcam.export.shared import (
 from gearcam.numerals import shown
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing, Pose
+    from gearcam.drawings import Drawing, Placement
     from gearcam.export.dxf import DxfStyle
     from gearcam.kinds.gear_pair.build import GearPairResult
 
@@ -71,23 +71,21 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
 
 
 def _pair_drawing(result: GearPairResult) -> Drawing:
-    from gearcam.drawings import pair_drawing
+    from gearcam.drawings import Path, pair_drawing
 
     lobes = result.law.lobes
     ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
     if result.pair.on_rack:
         ends[1] = result.centrode_angles()[-1]
-    centrodes = [
-        gear.centrode(np.linspace(0.0, end, 721)[: -1 if gear.toothing.closed else None])
-        for gear, end in zip(result.gears, ends, strict=True)
-    ]
-    closed = result.gear1.toothing.closed, result.gear2.toothing.closed
-    return pair_drawing(
-        result.parts, result.pair.shift, centrodes, name=PAIR, closed=closed, poses=poses(result)
-    )
+    centrodes = []
+    for gear, end in zip(result.gears, ends, strict=True):
+        closed = gear.toothing.closed
+        turn = np.linspace(0.0, end, 721)[: -1 if closed else None]
+        centrodes.append(Path(points=gear.centrode(turn), closed=closed))
+    return pair_drawing(result.parts, result.pair.shift, centrodes, placements=placements(result))
 
 
-def poses(result: GearPairResult) -> tuple[Pose, Pose]:
+def placements(result: GearPairResult) -> tuple[Placement, Placement]:
     """Return how the wheels of a `result` stand when assembled: wheel 1 turned by -phi1."""
     phi1 = result.design.output.pose
     phi2 = float(result.law.phi2(np.array(phi1)))
@@ -124,17 +122,15 @@ def _inspection(result: GearPairResult, _: Measured) -> Files:
 
 
 def _steps(result: GearPairResult, _: Measured) -> Files:
-    from gearcam.export.step import Placed, step_bytes
+    from gearcam.drawings import UNMOVED
+    from gearcam.export.step import step_bytes
 
     tolerance = STEP_PART * result.gear1.profile.tolerance
     files = {
-        f"{part.name}.step": step_bytes([Placed(part=part)], part.name, tolerance)
+        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance)
         for part in result.parts
     }
-    placed = [
-        Placed(part=part, angle=angle, offset=offset)
-        for part, (angle, offset) in zip(result.parts, poses(result), strict=True)
-    ]
+    placed = list(zip(result.parts, placements(result), strict=True))
     return files | {f"{PAIR}.step": step_bytes(placed, PAIR, tolerance)}
 
 
@@ -145,7 +141,7 @@ def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
     }
     placed = {
         name: mesh.placed(*pose)
-        for (name, mesh), pose in zip(solids.items(), poses(result), strict=True)
+        for (name, mesh), pose in zip(solids.items(), placements(result), strict=True)
     }
     return files | {f"{PAIR}.{kind}": mesh_bytes(placed, kind, PAIR)}
 
