@@ -141,7 +141,7 @@ def test_the_drawn_pair_does_not_overlap_at_any_angle() -> None:
         made = GearPairResult(replace(profile("ellipse").design, output=output))
         drawn = ezdxf.read(io.StringIO(made.files("dxf")["pair.dxf"].decode())).modelspace()
         one, two = (
-            Polygon([place[:2] for line in drawn.query(f'POLYLINE[layer=="{layer}"]')
+            Polygon([(place.x, place.y) for line in drawn.query(f'POLYLINE[layer=="{layer}"]')
                      for place in line.points()])
             for layer in ("GEAR1_OUTLINE", "GEAR2_OUTLINE")
         )  # fmt: skip

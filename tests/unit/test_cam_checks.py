@@ -208,7 +208,11 @@ def steep_face() -> Lost:
     low, high = mp.findroot(miss, (mp.radians(25), mp.radians(70)))
     corner = touched(low)
     # where the follower should go as fast as it goes while it rests on the corner
-    worst = mp.findroot(lambda t: speed(t) - (corner * mp.expj(t)).real, (mp.radians(40), mp.radians(50)), solver="anderson")
+    worst = mp.findroot(
+        lambda t: speed(t) - (corner * mp.expj(t)).real,
+        (mp.radians(40), mp.radians(50)),
+        solver="anderson",
+    )
     loss = height(worst) - (corner * mp.expj(worst)).imag
     first, second, c, d, at = (float(mp.degrees(x)) for x in (*ends, low, high, worst))
     return Lost((first, second), (c, d), at, float(loss))

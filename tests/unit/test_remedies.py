@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import gearcam
-from gearcam.advice import Remedies
+from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
 from gearcam.console import remedy_lines
 from gearcam.errors import DesignError, InfeasibleError
@@ -152,6 +152,17 @@ def test_a_search_that_takes_too_long_is_given_up_and_says_so(folder: Path) -> N
     assert found.gave_up
     assert not found.found
     assert [*remedy_lines(found)] == ["the search for a remedy was given up after 0 s"]
+
+
+def test_what_was_tried_is_told_only_where_nothing_was_found() -> None:
+    remedy = Remedy(changes={"pair.teeth": [30, 30]}, design=None)  # type: ignore[arg-type]
+    found = Remedies(found=(remedy,), tried=("pair.teeth",))
+    assert [*remedy_lines(found)] == [
+        "built without errors with one of these:",
+        "  pair.teeth = [30, 30]",
+    ]
+    (line,) = remedy_lines(Remedies(tried=("pair.teeth", "law.eccentricity")))
+    assert line == "no remedy was found by changing pair.teeth, law.eccentricity"
 
 
 def test_a_refusal_comes_without_a_search(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
