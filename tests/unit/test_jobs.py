@@ -6,7 +6,6 @@ import csv
 import json
 import math
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -144,32 +143,6 @@ def test_a_summary_holds_what_is_promised(tmp_path: Path) -> None:
     for finding in summary["findings"]:
         assert {"code", "severity", "message"} <= set(finding)
         assert set(finding) <= {"code", "severity", "message", "value", "limit", "unit", "where"}
-
-
-def test_a_summary_tells_the_bore_of_the_wheel_that_has_one() -> None:
-    one, two = small(bores=(8.0, 0.0)).facts.document["gears"]
-    assert one["bore_diameter_mm"] == 8.0
-    assert "bore_diameter_mm" not in two
-
-
-def test_a_summary_is_read_by_people_in_any_language(tmp_path: Path) -> None:
-    """Letters beyond ASCII stand in the file as they are."""
-    written = replace_name(small(), "Förderer").write(tmp_path, files=["csv"])
-    text = (written.directory / "summary.json").read_text("utf-8")
-    assert '"name": "Förderer"' in text
-
-
-def replace_name(made: GearPairResult, name: str) -> GearPairResult:
-    return GearPairResult(replace(made.design, name=name))
-
-
-def test_centrodes_are_told_until_both_wheels_close() -> None:
-    """720 points for each turn of the driver: two turns where it turns twice for once."""
-    whole = small().centrode_angles()
-    assert (len(whole), whole[-1]) == (721, pytest.approx(2 * math.pi))
-    law = Ellipse(eccentricity=0.1, lobes=(1, 2))
-    twice = small(law=law, teeth=(20, 40)).centrode_angles()
-    assert (len(twice), twice[-1]) == (1441, pytest.approx(4 * math.pi))
 
 
 def test_a_summary_is_json_without_nan_and_reads_back_the_same() -> None:
