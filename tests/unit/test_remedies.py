@@ -15,7 +15,7 @@ import pytest
 import gearcam
 from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
-from gearcam.console import remedy_lines
+from gearcam.console import remedy_lines, wrapped
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.gears.bound import contact_bound
 from gearcam.gears.checks import Subject, largest_module
@@ -163,6 +163,15 @@ def test_what_was_tried_is_told_only_where_nothing_was_found() -> None:
     ]
     (line,) = remedy_lines(Remedies(tried=("pair.teeth", "law.eccentricity")))
     assert line == "no remedy was found by changing pair.teeth, law.eccentricity"
+
+
+def test_a_path_longer_than_a_line_is_not_broken() -> None:
+    path = "/".join(["folder-with-hyphens"] * 8)
+    assert wrapped(f"is not in {path} today").splitlines() == [
+        "    is not in",
+        f"    {path}",
+        "    today",
+    ]
 
 
 def test_a_refusal_comes_without_a_search(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
