@@ -42,3 +42,8 @@ def test_centrodes_are_told_until_both_wheels_close() -> None:
     law = Ellipse(eccentricity=0.1, lobes=(1, 2))
     twice = small(law=law, teeth=(20, 40)).centrode_angles()
     assert (len(twice), twice[-1]) == (1441, pytest.approx(4 * math.pi))
+
+
+def test_whole_numbers_from_python_make_the_hash_of_the_same_file() -> None:
+    hashes = {job(Ellipse(eccentricity=0.2), (22, 22), module=m).design_hash for m in (2, 2.0)}
+    assert len(hashes) == 1
