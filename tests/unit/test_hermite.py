@@ -27,7 +27,7 @@ def test_quintics_are_given_back_power_by_power() -> None:
     assert found.shape == (3, 6)
     for start, row in zip(x[:-1], found, strict=True):
         moved = exact(Polynomial([start, 1.0]))
-        np.testing.assert_allclose(row, moved.coef, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(row, np.array(moved.coef), rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("turn", [0.2, -0.2])
@@ -38,8 +38,9 @@ def test_the_arms_of_an_arc_are_its_length_and_its_cubic_misses_it_by_h_to_the_f
     worst = []
     for count in (8, 16):
         angle = np.linspace(0.3, 0.3 + 8.0 * turn, count + 1)
-        points = 2.0 + 1j + 5.0 * np.exp(1j * angle)
-        tangents = np.sign(turn) * 1j * np.exp(1j * angle)
+        away = np.exp(1j * angle).astype(np.complex128)
+        points = np.asarray(2.0 + 1j + 5.0 * away, dtype=np.complex128)
+        tangents = np.asarray(np.sign(turn) * 1j * away, dtype=np.complex128)
         length = 5.0 * np.abs(np.diff(angle))
         np.testing.assert_allclose(hermite_arms(points, tangents), length, rtol=1e-12)
         step = np.repeat(np.arange(count), 9)

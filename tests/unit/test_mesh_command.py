@@ -204,7 +204,9 @@ def test_settings_from_python_meet_the_same_rules() -> None:
 
 def test_a_study_without_a_beginning_begins_at_zero() -> None:
     """Ends just above 0 are taken, an end at 0 is not."""
-    assert loads(TEXT.replace("36", "0.5")).meshing.end == pytest.approx(math.radians(0.5))
+    design = loads(TEXT.replace("36", "0.5"))
+    assert isinstance(design, GearPairDesign)
+    assert design.meshing.end == pytest.approx(math.radians(0.5))
     with pytest.raises(DesignError, match="ends at 0 deg before it begins"):
         loads(TEXT.replace("36", "0"))
 
