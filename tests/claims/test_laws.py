@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,5 +115,19 @@ def test_continuity_is_as_claimed_and_seen_from_both_sides(claim: LawClaim) -> N
 
 
 @pytest.mark.parametrize("claim", CLAIMS)
-def test_the_error_estimate_is_small_and_not_zero(claim: LawClaim) -> None:
-    assert 0.0 < built(claim).error < 1e-13
+def test_the_error_estimate_covers_what_is_missed(claim: LawClaim) -> None:
+    """The closed form tells the true error; both are within a rounding of the closed form."""
+    law = built(claim)
+    for phi, driven in claim.driven.items():
+        assert abs(float(law.phi2(phi)) - driven) <= law.error + np.spacing(driven)
+    assert law.error < 1e-13
+
+
+@pytest.mark.parametrize("claim", CLAIMS)
+def test_the_error_estimate_sees_a_wrong_integral(claim: LawClaim) -> None:
+    """Control: off by a constant, or integrated from another ratio, 1e-9 rad each."""
+    law = built(claim)
+    off = replace(law, driven=law.driven.shifted(1e-9))
+    assert off.error == pytest.approx(1e-9, rel=1e-3)
+    steeper = replace(law, ratio=law.ratio.shifted(1e-9 / law.period))
+    assert steeper.error == pytest.approx(1e-9, rel=1e-3)

@@ -20,8 +20,9 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers, pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.meshing.study import Meshing, Setup, mount, run, study
+from gearcam.meshing.study import Meshing, mount, run, study
 from gearcam.tolerances import DEFAULT
+from helpers_meshing import moved
 from helpers_pairs import job, profile
 
 NAILS = ("nail_machine_two_phase", "nail_machine_three_phase")
@@ -36,24 +37,6 @@ def full_turn(name: str, overclosure: float) -> Meshing:
 
 def codes(meshing: Meshing) -> dict[str, str]:
     return {found.code: found.severity for found in run_checks(KIND, meshing, {})}
-
-
-def moved(setup: Setup, tooth: int, by: float) -> Setup:
-    """The pair with a tooth of the driver moved along the pitch curve, outline and flanks."""
-    halves, count = setup.turning.driver, setup.turning.driver.count
-    angle = by / float(np.abs(setup.turning.rolling.tracks[0].frames(np.array([0.0])).p[0]))
-    points = halves.points.copy()
-    for half in (2 * tooth - 2, (2 * tooth - 3) % count):
-        points[halves.starts[half] : halves.starts[half + 1]] *= np.exp(1j * angle)
-    driver = replace(halves, points=points)
-    sf = setup.pairs[DRIVE].flanks[0].sf.copy()
-    sf[[tooth - 1, count // 2 + tooth - 1]] += by
-    pairs = {
-        side: replace(found, flanks=(replace(found.flanks[0], sf=sf), found.flanks[1]))
-        for side, found in setup.pairs.items()
-    }
-    turning = replace(setup.turning, driver=driver)
-    return replace(setup, pairs=pairs, turning=turning)
 
 
 @pytest.mark.parametrize("name", NAILS)

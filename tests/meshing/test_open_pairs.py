@@ -245,7 +245,7 @@ def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(
     pairs = flank_pairs(made(name).gears, side)
     toothing = pairs.toothings[0]
     j = 4
-    number = int(pairs._flank(1, np.array([j]))[0])
+    (number,) = np.flatnonzero(pairs.flanks[0].sf == pairs.place(1, np.array([j])))
     sf = pairs.flanks[0].sf.copy()
     phi = toothing.track.angle(sf[number : number + 1])
     sf[number] += side * 0.02

@@ -12,6 +12,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+import ezdxf
 import numpy as np
 import pytest
 
@@ -135,11 +136,14 @@ def test_a_pair_that_is_not_turned_stands_elsewhere() -> None:
 def test_the_drawn_pair_does_not_overlap_at_any_angle() -> None:
     from shapely import Polygon
 
-    from gearcam.kinds.gear_pair.files import _pair_drawing
-
     for degrees in (0.0, 77.7, 180.0, 301.0):
-        output = PairOutputSpec(files=("dxf",), pose=math.radians(degrees))
+        output = PairOutputSpec(files=("dxf",), dxf_curves="lines", pose=math.radians(degrees))
         made = GearPairResult(replace(profile("ellipse").design, output=output))
-        one, two = (Polygon(shape.vertices) for shape in _pair_drawing(made).contours)
+        drawn = ezdxf.read(io.StringIO(made.files("dxf")["pair.dxf"].decode())).modelspace()
+        one, two = (
+            Polygon([(place.x, place.y) for line in drawn.query(f'POLYLINE[layer=="{layer}"]')
+                     for place in line.points()])
+            for layer in ("GEAR1_OUTLINE", "GEAR2_OUTLINE")
+        )  # fmt: skip
         assert one.intersection(two).area < 0.01
         assert one.distance(two) < 1e-3

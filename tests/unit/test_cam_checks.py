@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -167,23 +168,76 @@ def test_a_trimmed_cam_is_not_called_sharp_too() -> None:
     assert len(findings(made, "undercut")) == 2
 
 
+class Lost(NamedTuple):
+    """Angles in degrees, from the beginning of a rise, and the loss in mm."""
+
+    undercut: tuple[float, float]
+    rests: tuple[float, float]
+    worst: float
+    loss: float
+
+
+def steep_face() -> Lost:
+    """A face on 10 mm cycloidal in 60 degrees and a dwell, base 20 mm, by mpmath.
+
+    Undercut where ``h + h'' < 0``. The face touches ``(h' + i*h)*exp(-i*theta)``: the corner is
+    where this curve meets itself, and what rests on a corner P stands at ``Im(P*exp(i*theta))``.
+    """
+    mp: Any = mpmath.MPContext()
+    mp.dps = 30
+    width = mp.pi / 3
+
+    def height(t: Any) -> Any:
+        wave = mp.sin(2 * mp.pi * t / width) / (2 * mp.pi)
+        return 20 + 10 * (t / width - wave) if t < width else mp.mpf(30)
+
+    def speed(t: Any) -> Any:
+        return 10 / width * (1 - mp.cos(2 * mp.pi * t / width)) if t < width else mp.mpf(0)
+
+    def room(t: Any) -> Any:
+        return height(t) + 20 * mp.pi / width**2 * mp.sin(2 * mp.pi * t / width)
+
+    def touched(t: Any) -> Any:
+        return mp.mpc(speed(t), height(t)) * mp.expj(-t)
+
+    def miss(low: Any, high: Any) -> list[Any]:
+        found = touched(low) - touched(high)
+        return [found.real, found.imag]
+
+    ends = [mp.findroot(room, mp.radians(guess)) for guess in (35, 56)]
+    low, high = mp.findroot(miss, (mp.radians(25), mp.radians(70)))
+    corner = touched(low)
+    # where the follower should go as fast as it goes while it rests on the corner
+    worst = mp.findroot(
+        lambda t: speed(t) - (corner * mp.expj(t)).real,
+        (mp.radians(40), mp.radians(50)),
+        solver="anderson",
+    )
+    loss = height(worst) - (corner * mp.expj(worst)).imag
+    first, second, c, d, at = (float(mp.degrees(x)) for x in (*ends, low, high, worst))
+    return Lost((first, second), (c, d), at, float(loss))
+
+
 def test_undercut_names_its_angles_and_its_loss() -> None:
+    """On the rise as computed by hand, on the return from 150 to 210 degrees its image."""
     made = cam("flat", "cycloidal", 10.0, STEEP, base_radius=20.0)
     found = findings(made, "undercut")
     assert [one.severity for one in found] == ["error", "error"]
-    for one, corner, loss, (low, high) in zip(
-        found, made.corners, made.lost, made.undercut, strict=True
+    exact = steep_face()
+    (a, b), (c, d) = exact.undercut, exact.rests
+    returning = ((210.0 - b, 210.0 - a), (210.0 - d, 210.0 - c), 210.0 - exact.worst)
+    for one, ((a, b), (c, d), worst) in zip(
+        found, ((exact.undercut, exact.rests, exact.worst), returning), strict=True
     ):
-        degrees = [math.degrees(v) for v in (low, high, corner.before, corner.after)]
-        a, b, c, d = (f"{value:.6g} deg" for value in degrees)
-        assert f"undercut from {a} to {b}." in one.message
-        assert f"rests from {c} to {d}" in one.message
-        assert f"loses up to {loss.value:.4g} mm of lift" in one.message
-        assert one.where == f"at {math.degrees(loss.theta):.6g} deg"
-        assert (one.value, one.limit, one.unit) == (loss.value, 0.01, "mm")
-    allowed = findings(made, "undercut", lost_lift=made.shortfall * (1 + 1e-9))
+        assert f"undercut from {a:.6g} deg to {b:.6g} deg." in one.message
+        assert f"rests from {c:.6g} deg to {d:.6g} deg" in one.message
+        assert f"loses up to {exact.loss:.4g} mm of lift" in one.message
+        assert one.where == f"at {worst:.6g} deg"
+        assert one.value == pytest.approx(exact.loss, rel=1e-9)
+        assert (one.limit, one.unit) == (0.01, "mm")
+    allowed = findings(made, "undercut", lost_lift=exact.loss * (1 + 1e-9))
     assert [one.severity for one in allowed] == ["warning", "warning"]
-    one_more = findings(made, "undercut", lost_lift=made.shortfall * (1 - 1e-9))
+    one_more = findings(made, "undercut", lost_lift=exact.loss * (1 - 1e-9))
     assert "error" in [one.severity for one in one_more]
     assert findings(cam("flat"), "undercut") == []
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from mpmath import ellipe
 
 from gearcam.findings import CHECKS, Finding
 from gearcam.gears.centrode_checks import remote_cutter
@@ -40,13 +41,13 @@ def swing(smallest: float) -> GearPairResult:
 
 
 def bending(radius_in_modules: float) -> GearPairResult:
-    """An ellipse's smallest radius is a(1 - e^2); the module follows from the perimeter."""
-    made = job(Ellipse(eccentricity=0.8), (30, 30))
-    current = made.gear1.toothing.track.convex.radius / made.pair.module
+    """An ellipse's smallest radius is a(1 - e^2); the module follows from the perimeter 4aE(e)."""
+    e = 0.8
+    radius = (1 - e * e) / (4 * float(ellipe(e * e)) / (math.pi * 30))
     return job(
-        Ellipse(eccentricity=0.8),
+        Ellipse(eccentricity=e),
         (30, 30),
-        limits={"convex_radius": 2.5 * current / radius_in_modules},
+        limits={"convex_radius": 2.5 * radius / radius_in_modules},
     )
 
 
@@ -255,11 +256,16 @@ def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:
 
 
 def test_the_fewest_teeth_without_undercut_are_named() -> None:
-    """With the fewest teeth there is no undercut, with one less there is, and so they are named."""
-    law = Ellipse(eccentricity=0.5)
+    """With the fewest teeth there is no undercut, with one less there is, and so they are named.
+
+    m = rho_min*sin(alpha)^2 with the sharpest radius a(1 - e^2) and the perimeter 4aE(e) = pi*m*z.
+    """
+    e = 0.5
+    law = Ellipse(eccentricity=e)
+    exact = 4 * float(ellipe(e * e)) / (math.pi * (1 - e * e) * math.sin(math.radians(20)) ** 2)
+    teeth = math.ceil(exact)
     found = codes(job(law, (18, 18)))["undercut"]
-    assert found.limit is not None
-    teeth = int(found.limit)
+    assert found.limit == teeth == 22
     assert "undercut" not in codes(job(law, (teeth, teeth)))
     assert "undercut" in codes(job(law, (teeth - 1, teeth - 1)))
     assert f"[{teeth}, {teeth}]" in found.message

@@ -74,3 +74,20 @@ def test_a_good_design_shows_ten_lines_at_most(name: str) -> None:
 def test_names_say_their_units(name: str) -> None:
     facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
     assert all(one.unit for one in facts.quantities() if one.name.endswith(("_mm", "_deg")))
+
+
+def test_an_extent_is_both_ends_in_another_unit() -> None:
+    assert extent(0.2, 0.5, 10.0) == {"min": 2.0, "max": 5.0}
+    assert extent(-3.0, 4.0) == {"min": -3.0, "max": 4.0}
+
+
+def test_a_cam_shows_both_pressure_angles_and_a_sliding_face_none() -> None:
+    """A face that slides across its own travel is pushed along it: its pressure angle is 0."""
+    names = {}
+    for name in ("plate_cam_offset_roller", "flat_follower"):
+        facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
+        names[name] = {one.meaning for one in facts.shown() if "pressure" in one.meaning}
+    assert names == {
+        "plate_cam_offset_roller": {"pressure angle, rise", "pressure angle, return"},
+        "flat_follower": set(),
+    }

@@ -13,10 +13,13 @@ import gearcam
 from gearcam.cli import main
 from gearcam.designs import loads
 from gearcam.errors import DesignError
+from gearcam.gears.contact import FlankPairs
 from gearcam.kinds.gear_pair import build as gear_pair
 from gearcam.kinds.gear_pair.commands import with_meshing
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.meshing import study as room
+from gearcam.meshing.contact import Contacts
+from gearcam.numeric.arrays import Array
 
 TEXT = """
 kind = "gear-pair"
@@ -159,14 +162,14 @@ def test_the_files_of_a_build_stay_and_a_build_removes_the_rows(design: str) -> 
 def test_an_interruption_keeps_the_steps_done(
     design: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    natural = room._block
+    natural = room.contacts
 
-    def stop(setup: room.Setup, phi1: room.Array, first: int) -> room.Block:
-        if first:
+    def stop(pairs: FlankPairs, phi1: Array) -> Contacts:
+        if phi1[0] > 0.0:  # of the second block
             raise KeyboardInterrupt
-        return natural(setup, phi1, first)
+        return natural(pairs, phi1)
 
-    monkeypatch.setattr(room, "_block", stop)
+    monkeypatch.setattr(room, "contacts", stop)
     monkeypatch.setattr(room, "BLOCK", 5)
     code, folder = run(design)
     assert code == 130
@@ -184,7 +187,7 @@ def test_an_interruption_before_the_first_step_writes_nothing(
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(room, "_block", stop)
+    monkeypatch.setattr(room, "first_touch", stop)
     code, folder = run(design)
     assert code == 130
     assert not folder.exists()
@@ -197,6 +200,15 @@ def test_settings_from_python_meet_the_same_rules() -> None:
     assert design.meshing.steps == 12
     with pytest.raises(DesignError, match=r"meshing\.overclosure_deg"):
         with_meshing(design, {"overclosure_deg": 2})
+
+
+def test_a_study_without_a_beginning_begins_at_zero() -> None:
+    """Ends just above 0 are taken, an end at 0 is not."""
+    design = loads(TEXT.replace("36", "0.5"))
+    assert isinstance(design, GearPairDesign)
+    assert design.meshing.end == pytest.approx(math.radians(0.5))
+    with pytest.raises(DesignError, match="ends at 0 deg before it begins"):
+        loads(TEXT.replace("36", "0"))
 
 
 def test_progress_is_told(design: str) -> None:

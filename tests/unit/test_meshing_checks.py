@@ -18,8 +18,10 @@ from gearcam.meshing.checks import KIND, clearances, spans
 from gearcam.meshing.drive_checks import contact_ratio
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
+from helpers_meshing import moved
 from helpers_pairs import job, profile
 
+ALPHA = math.radians(20.0)
 FEW = MeshingSpec(steps=24, end=math.radians(36.0))
 
 
@@ -152,8 +154,33 @@ def test_contact_off_the_flanks() -> None:
 
 
 def test_a_tooth_that_lags_leaves_arcs_without_contact_but_no_interference() -> None:
-    meshing = run(mount(job(Constant(), (20, 20), module=2.0).gears, FEW))
-    assert np.all(meshing.every("interferes") == 0)
+    """Tooth 1 of the driver 20 um behind its place, and the same pair as it should be.
+
+    The driven wheel lags where tooth 1 would carry alone, 2 - contact ratio pitches long; at the
+    ends of this arc the edges of its neighbours drive, between them tooth 1 at its 20 um.
+    """
+    reach = math.sqrt(11.0**2 - (10.0 * math.cos(ALPHA)) ** 2) - 10.0 * math.sin(ALPHA)
+    contact_ratio = 2.0 * reach / (math.pi * math.cos(ALPHA))
+    spec = MeshingSpec(start=math.radians(-18.0), end=math.radians(18.0), steps=360)
+    setup = mount(job(Constant(), (20, 20), module=2.0, backlash=0.05).gears, spec)
+    whole, broken = run(setup), run(moved(setup, 1, 0.02))
+    # half the backlash is taken up first
+    lags = [-20.0 * meshing.every("lead") - 0.025 for meshing in (whole, broken)]
+    assert np.abs(lags[0]).max() < 1e-9
+    assert not whole.every("edge").any()
+    late = lags[1] > 1e-9
+    assert late.sum() * 0.1 == pytest.approx((2.0 - contact_ratio) * 18.0, abs=0.1)
+    # the driving flank is a quarter of a pitch before the middle of the tooth, at phi1 = 0
+    assert np.degrees(broken.phi1[late]).mean() == pytest.approx(-4.5, abs=0.06)
+    full = np.abs(lags[1] - 0.02) < 1e-9
+    edges = broken.every("edge").astype(bool)
+    assert full.any()
+    assert edges.any()
+    np.testing.assert_array_equal(late, full | edges)
+    assert not (full & edges).any()
+    assert np.all(lags[1][edges] < 0.02)
+    for meshing in (whole, broken):
+        assert np.all(meshing.every("interferes") == 0)
 
 
 def test_phases_are_told_as_ranges() -> None:

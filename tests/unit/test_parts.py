@@ -12,7 +12,7 @@ from gearcam.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.blank import Blank
-from gearcam.parts.body import Mark, Part
+from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.shapes import Loop
 from gearcam.quantities import params_of
@@ -47,6 +47,28 @@ def test_a_part_without_bore_has_none() -> None:
     assert part.steps[0].moments.area == pytest.approx(900, rel=1e-14)
     assert len(part.region.interiors) == 0
     assert layers(wheel_drawing(part)) == ["OUTLINE"]
+
+
+def test_a_hub_has_the_holes_that_lie_within_it() -> None:
+    """The bore goes through the hub; a bolt hole outside of it does not, nor one on its edge."""
+    holes = tuple(
+        Opening(
+            kind="HOLE", shape=Circle(center=np.array([x, 0.0]), diameter=2.0), name=f"hole {x}"
+        )
+        for x in (9.5, 13.0)
+    )
+    part = Part(
+        name="plate",
+        contours=(square_contour(30.0),),
+        openings=bore(10.0) + holes,
+        width=8.0,
+        hub=Hub(diameter=20.0, front=3.0, back=4.0),
+    )
+    assert [(one.low, one.high) for one in part.bosses] == [(-4.0, 0.0), (8.0, 11.0)]
+    assert all([o.name for o in one.openings] == ["bore"] for one in part.bosses)
+    plate, boss = 900 - 27 * math.pi, 75 * math.pi
+    assert part.volume == pytest.approx(8 * plate + 7 * boss, rel=1e-14)
+    assert part.thickness == pytest.approx(15.0)
 
 
 def test_wrong_parts_are_refused() -> None:

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 import gearcam
-from gearcam.advice import Remedies
+from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
-from gearcam.console import remedy_lines
+from gearcam.console import remedy_lines, wrapped
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.gears.bound import contact_bound
 from gearcam.gears.checks import Subject, largest_module
@@ -153,6 +153,26 @@ def test_a_search_that_takes_too_long_is_given_up_and_says_so(folder: Path) -> N
     assert found.gave_up
     assert not found.found
     assert [*remedy_lines(found)] == ["the search for a remedy was given up after 0 s"]
+
+
+def test_what_was_tried_is_told_only_where_nothing_was_found() -> None:
+    remedy = Remedy(changes={"pair.teeth": [30, 30]}, design=None)  # type: ignore[arg-type]
+    found = Remedies(found=(remedy,), tried=("pair.teeth",))
+    assert [*remedy_lines(found)] == [
+        "built without errors with one of these:",
+        "  pair.teeth = [30, 30]",
+    ]
+    (line,) = remedy_lines(Remedies(tried=("pair.teeth", "law.eccentricity")))
+    assert line == "no remedy was found by changing pair.teeth, law.eccentricity"
+
+
+def test_a_path_longer_than_a_line_is_not_broken() -> None:
+    path = "/".join(["folder-with-hyphens"] * 8)
+    assert wrapped(f"is not in {path} today").splitlines() == [
+        "    is not in",
+        f"    {path}",
+        "    today",
+    ]
 
 
 def test_a_refusal_comes_without_a_search(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
