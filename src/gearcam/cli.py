@@ -16,7 +16,7 @@ import sys
 import textwrap
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -35,13 +35,7 @@ from gearcam.console import (
 )
 from gearcam.designs import KINDS, Design, load
 from gearcam.designs.outputs import FORMATS
-from gearcam.errors import (
-    DesignError,
-    InfeasibleError,
-    MissingExtraError,
-    Problem,
-    WriteError,
-)
+from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
 
 if TYPE_CHECKING:
     from gearcam.commands import Command
@@ -126,10 +120,7 @@ def _dispatch(words: list[str]) -> None:
         top.print_help(sys.stderr)
         raise SystemExit(WRONG)
     else:
-        from gearcam.designs.faults import did_you_mean
-
-        message, hint = f'"{word}" is not a command', did_you_mean(word, docs)
-        _refuse([Problem(message, allowed=", ".join(docs), hint=hint)])
+        _refuse([_unknown(word, "is not a command", docs)])
 
 
 def _commands_of_kinds() -> Iterator[Command]:
@@ -228,16 +219,12 @@ def _laws() -> None:
 
 def _new(kind: str, file: str | None, process: str | None) -> None:
     """Write a commented design file to start from; an existing file is never overwritten."""
-    from gearcam.designs.faults import did_you_mean, show
     from gearcam.designs.template import template
 
     if kind not in KINDS:
-        message, hint = f"{show(kind)} is not a kind of design", did_you_mean(kind, KINDS)
-        _refuse([Problem(message, key="KIND", allowed=", ".join(KINDS), hint=hint)])
-    known = KINDS[kind].processes
-    if process is not None and process not in known:
-        message, hint = f"{show(process)} is not known here", did_you_mean(process, known)
-        _refuse([Problem(message, key="--for", allowed=", ".join(known), hint=hint)])
+        _refuse([_unknown(kind, "is not a kind of design", KINDS, "KIND")])
+    if process is not None and process not in KINDS[kind].processes:
+        _refuse([_unknown(process, "is not known here", KINDS[kind].processes, "--for")])
     text = template(kind, Path(file or "").stem, process or "")
     if file is None:
         say(text.rstrip("\n"))
@@ -279,22 +266,23 @@ def _schema() -> None:
 
 def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
     """Return the kinds of files of ``--only``, or refuse."""
-    from gearcam.designs.faults import did_you_mean, show
-
     if only is None:
         return None
     kinds = [word.strip() for words in only for word in words.split(",") if word.strip()]
-    problems = (
-        [] if kinds else [Problem("nothing is listed", key="--only", allowed=", ".join(_formats()))]
-    )
-    for kind in kinds:
-        if kind not in FORMATS and kind not in (known := _formats()):
-            message, hint = f"{show(kind)} is not a kind of file", did_you_mean(kind, known)
-            allowed = ", ".join(known)
-            problems.append(Problem(message, key="--only", value=kind, allowed=allowed, hint=hint))
-    if problems:
-        _refuse(problems)
+    if not kinds:
+        _refuse([Problem("nothing is listed", key="--only", allowed=", ".join(_formats()))])
+    strange = [kind for kind in kinds if kind not in FORMATS and kind not in _formats()]
+    if strange:
+        _refuse([_unknown(kind, "is not a kind of file", _formats(), "--only") for kind in strange])
     return tuple(dict.fromkeys(kinds))
+
+
+def _unknown(word: str, what: str, known: Collection[str], key: str = "") -> Problem:
+    """Return the problem of a `word` that is none of those `known` for a `key`."""
+    from gearcam.designs.faults import did_you_mean, show
+
+    allowed, hint = ", ".join(known), did_you_mean(word, known)
+    return Problem(f"{show(word)} {what}", key=key, allowed=allowed, hint=hint)
 
 
 def _refuse(problems: Sequence[Problem]) -> None:

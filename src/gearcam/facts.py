@@ -135,6 +135,10 @@ class Facts(Mapping[str, Any]):
         self._headline = tuple(headline)
         self._title = title
 
+    def with_group(self, name: str, group: Any) -> Facts:
+        """Return the facts with a `group` more, or as they are where it is empty."""
+        return Facts({**self._tree, name: group}, self._headline, self._title) if group else self
+
     @cached_property
     def headline(self) -> tuple[str, ...]:
         """The machine in a few phrases: ``("module 2 mm", "teeth 20 : 20")``."""

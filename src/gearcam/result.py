@@ -21,7 +21,7 @@ from typing import Any, ClassVar, Final
 from gearcam.designs.design import Design, document_of, hash_of
 from gearcam.designs.kind import KINDS
 from gearcam.errors import DesignError, Problem
-from gearcam.facts import Facts
+from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.numerals import tree
 from gearcam.tolerances import DEFAULT, Tolerances
@@ -107,7 +107,11 @@ class Result(ABC):
         return self._facts({})
 
     def _facts(self, measured: Mapping[str, Any]) -> Facts:
-        return KINDS[self.design.kind].room("facts").facts(self, measured)
+        from gearcam.laws.columns import tables_in
+
+        made = KINDS[self.design.kind].room("facts").facts(self, measured)
+        notes = [Fact(it.note, Path(it.file).name, shown=True) for it in tables_in(self.design)]
+        return made.with_group("tables", [{"note": one} for one in notes if one.value])
 
     def files(self, kind: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:
         """Return the files of one kind.

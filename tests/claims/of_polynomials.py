@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from claims.claim import RiseClaim
-from gearcam.laws.rises.base import RiseParameters
+from claims.claim import RiseClaim, RiseParameters
 from gearcam.laws.rises.polynomials import (
     Polynomial,
     Polynomial23,

@@ -12,9 +12,9 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-import ezdxf
 import numpy as np
 import pytest
+from ezdxf.filemanagement import read as read_dxf
 
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
@@ -139,7 +139,8 @@ def test_the_drawn_pair_does_not_overlap_at_any_angle() -> None:
     for degrees in (0.0, 77.7, 180.0, 301.0):
         output = PairOutputSpec(files=("dxf",), dxf_curves="lines", pose=math.radians(degrees))
         made = GearPairResult(replace(profile("ellipse").design, output=output))
-        drawn = ezdxf.read(io.StringIO(made.files("dxf")["pair.dxf"].decode())).modelspace()
+        document = read_dxf(io.StringIO(made.files("dxf")["pair.dxf"].decode()))
+        drawn: Any = document.modelspace()
         one, two = (
             Polygon([(place.x, place.y) for line in drawn.query(f'POLYLINE[layer=="{layer}"]')
                      for place in line.points()])

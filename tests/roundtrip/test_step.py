@@ -244,7 +244,8 @@ def test_an_assembly_puts_parts_where_they_belong() -> None:
     assert Counter(products) == Counter(["'pair'", "'gear1'", "'gear2'"])
     assert still.bounds == pytest.approx(read(one).bounds, abs=1e-9)
     first = two.contour.moments.first - hole.shape.moments.first
-    place = first / two.area * complex(math.cos(angle), math.sin(angle)) + complex(*offset)
+    area = two.contour.moments.area - hole.shape.moments.area
+    place = first / area * complex(math.cos(angle), math.sin(angle)) + complex(*offset)
     assert turned.center == pytest.approx([place.real, place.imag, 3.0], abs=1e-9)
     half = 20.0 * (math.cos(angle) + math.sin(angle))
     box = np.array([[-half, -half, -3.0], [half, half, 3.0]])

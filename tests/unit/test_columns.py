@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearcam.laws.columns import ColumnsError, FromFile, read_rows, rows_of
+from gearcam import build, load
+from gearcam.laws.columns import ColumnsError, FromFile, read_rows, tables_in
 from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.laws.ratio.table import TableLaw
 from gearcam.laws.rises.points import TableRise
@@ -82,12 +83,25 @@ def test_a_table_reads_its_file_once(tmp_path: Path) -> None:
     assert rise.points[0][0].tolist() == [0.0, 1e-10]
 
 
+@pytest.mark.parametrize("note", ["", "read with semicolons and decimal commas"])
+def test_how_a_file_was_read_is_told_with_the_facts(tmp_path: Path, note: str) -> None:
+    table, design = (
+        Path(f"profiles/measured.{ending}").read_text(encoding="utf-8")
+        for ending in ("csv", "toml")
+    )
+    table = table.replace(",", ";").replace(".", ",") if note else table
+    (tmp_path / "measured.csv").write_text(table, encoding="utf-8")
+    (tmp_path / "measured.toml").write_text(design, encoding="utf-8")
+    facts = build(load(tmp_path / "measured.toml")).facts
+    told = [one.value for one in facts.shown() if one.meaning == "measured.csv"]
+    assert told == [note] * bool(note)
+
+
 def test_rows_are_found_wherever_their_parameters_stand(tmp_path: Path) -> None:
     law = TableLaw(file=written(tmp_path, RATIOS))
-    rows = rows_of(str(law.file), (1, "a", (law,)))
+    (rows,) = tables_in((1, "a", (law, TableLaw(phi1=(0.0,), ratio=(1.0,)))))
     assert rows is law.rows
-    assert rows is not None
     assert rows.cells[0] == ["phi1_deg", "ratio"]
-    assert rows_of("other.csv", (law,)) is None
+    assert rows.file == law.file
     assert isinstance(law, FromFile)
     assert TableLaw(phi1=(0.0,), ratio=(1.0,)).rows is None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
@@ -26,8 +28,8 @@ def test_quintics_are_given_back_power_by_power() -> None:
     found = hermite_quintics(x, exact(x), exact.deriv()(x), exact.deriv(2)(x))
     assert found.shape == (3, 6)
     for start, row in zip(x[:-1], found, strict=True):
-        moved = exact(Polynomial([start, 1.0]))
-        np.testing.assert_allclose(row, np.array(moved.coef), rtol=1e-12, atol=1e-12)
+        moved: Any = exact(Polynomial([start, 1.0]))
+        np.testing.assert_allclose(row, moved.coef, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("turn", [0.2, -0.2])

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 
+from gearcam import build, load
+from gearcam.designs.design import changed
+from gearcam.designs.kind import KINDS
 from gearcam.drawings import OUTLINE, Drawing, Feature, Path, pair_drawing, placed
+from gearcam.export.shared import sheet_rows
+from gearcam.facts import Facts
 from gearcam.numerals import decimal
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
@@ -229,3 +235,33 @@ def test_nothing_is_not_drawn() -> None:
     mark = Feature(layer="MARK", shape=Circle(center=np.zeros(2), diameter=1.0))
     with pytest.raises(ValueError, match="nothing to draw"):
         pair_sheet(Drawing(name="empty", features=(mark,)), 60.0, {}, "t", pitch_radius=30.0)
+
+
+def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows of what a design does not have are left out: a misspelt name would never be missed."""
+    asked, known = set[str](), set[str]()
+
+    def rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
+        asked.update(names)
+        known.update(facts)
+        return sheet_rows(facts, names)
+
+    for kind in KINDS.values():
+        monkeypatch.setattr(kind.room("files"), "sheet_rows", rows)
+    changes = {
+        "stepped_ellipse": {
+            "blank.density_kg_m3": 7850.0,
+            "blank.tip_rounding_mm": 0.01,
+            "pair.x": 0.1,
+        },
+        "feeder": {},
+        "lathe_slide": {"blank.clearance_mm": 0.01},
+        "plate_cam_oscillating": {"blank.density_kg_m3": 7850.0, "blank.clearance_mm": 0.01},
+        "plate_cam_offset_roller": {},
+        "tappet": {},
+        "valve_lever": {},
+    }
+    for name, change in changes.items():
+        build(changed(load(f"profiles/{name}.toml"), change)).files("drawing-svg")
+    assert len(asked) > 25
+    assert asked - known == set()

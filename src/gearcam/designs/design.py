@@ -188,13 +188,12 @@ def _with_rows(value: Any, design: Design) -> Any:
 
 
 def _rows(file: str, design: Design) -> Any:
-    from gearcam.laws.columns import ColumnsError, rows_of
+    from gearcam.laws.columns import ColumnsError, tables_in
 
     try:
-        rows = rows_of(file, design)
+        return next((rows.cells for rows in tables_in(design) if rows.file == file), None)
     except ColumnsError as error:
         raise InfeasibleError(str(error), where=file) from error
-    return rows and rows.cells
 
 
 def changed(design: Any, changes: Mapping[str, object]) -> Any:

@@ -61,10 +61,7 @@ class OutputSpec:
         "half of it",
     )
     dxf_curves: str = param(
-        TEXT,
-        default="arcs",
-        choices=("arcs", "splines", "lines"),
-        doc="how dxf outlines are drawn",
+        TEXT, default="arcs", choices=("arcs", "splines", "lines"), doc="how dxf outlines are drawn"
     )
     dxf_version: str | None = param(
         TEXT,

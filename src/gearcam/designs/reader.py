@@ -66,15 +66,14 @@ def content_of(file: str) -> bytes:
     DesignError
         If it cannot be read.
     """
+    known = {FileNotFoundError: "there is no such file",
+             IsADirectoryError: "this is a folder, not a file"}  # fmt: skip
     try:
         return Path(file).read_bytes()
-    except FileNotFoundError as error:
-        raise DesignError([Problem("there is no such file", file=file)]) from error
-    except IsADirectoryError as error:
-        raise DesignError([Problem("this is a folder, not a file", file=file)]) from error
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise DesignError([Problem(f"cannot be read: {reason}", file=file)]) from error
+        message = known.get(type(error), f"cannot be read: {reason}")
+        raise DesignError([Problem(message, file=file)]) from error
 
 
 def decoded(content: bytes, file: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -30,6 +30,8 @@ class CsvRows:
 
     Parameters
     ----------
+    file : str
+        Its name.
     lines : tuple of n int
         Number of each row in the file.
     cells : tuple of n lists of str
@@ -38,6 +40,7 @@ class CsvRows:
         How it was read where that is not the usual way, for people; else empty.
     """
 
+    file: str
     lines: tuple[int, ...]
     cells: tuple[list[str], ...]
     note: str = ""
@@ -86,32 +89,25 @@ class FromFile:
         return None if self.file is None else read_rows(self.file)
 
 
-def rows_of(file: str, part: Any) -> CsvRows | None:
-    """Return what parameters hold that name a file.
+def tables_in(part: Any) -> Iterator[CsvRows]:
+    """Yield what the CSV files hold that parameters name.
 
     Parameters
     ----------
-    file : str
-        As they name it.
     part : object
         The parameters, or a dataclass or tuple with these at any depth.
-
-    Returns
-    -------
-    CsvRows or None
-        None where there are none.
 
     Raises
     ------
     ColumnsError
-        If they have not read it yet and it cannot be read.
+        If one has not been read yet and cannot be read.
     """
-    if isinstance(part, FromFile) and part.file == file:
-        return part.rows
-    if is_dataclass(part):
+    if isinstance(part, FromFile) and part.rows is not None:
+        yield part.rows
+    elif is_dataclass(part):
         part = tuple(getattr(part, field.name) for field in fields(part))
-    inside = (rows_of(file, item) for item in part) if isinstance(part, tuple) else ()
-    return next((rows for rows in inside if rows is not None), None)
+    for item in part if isinstance(part, tuple) else ():
+        yield from tables_in(item)
 
 
 def read_rows(file: str) -> CsvRows:
@@ -147,7 +143,7 @@ def read_rows(file: str) -> CsvRows:
     semicolons = ";" in rows[0][1] and "," not in rows[0][1]
     found = (next(csv.reader([row], delimiter=";" if semicolons else ",")) for _, row in rows)
     cells = tuple([cell.strip() for cell in row] for row in found)
-    made = CsvRows(lines=tuple(line for line, _ in rows), cells=cells)
+    made = CsvRows(file=file, lines=tuple(line for line, _ in rows), cells=cells)
     return _with_points(made) if semicolons else made
 
 

@@ -32,13 +32,7 @@ from gearcam.laws.rises.base import Rise
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
-from gearcam.numeric.piecewise import (
-    Piece,
-    Piecewise,
-    extremes_among,
-    piecewise,
-    places_between,
-)
+from gearcam.numeric.piecewise import Piece, Piecewise, extremes_among, piecewise, places_between
 from gearcam.tolerances import Tolerances
 
 _INNER = slice(5, -5, 6)

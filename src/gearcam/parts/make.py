@@ -57,12 +57,7 @@ def make_part(
         _demand_within(hub, contours, work)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     part = Part(
-        name=name,
-        contours=tuple(contours),
-        width=width,
-        openings=found,
-        hub=hub,
-        marks=marks,
+        name=name, contours=tuple(contours), width=width, openings=found, hub=hub, marks=marks
     )
     _demand_marks(part, work)
     return part

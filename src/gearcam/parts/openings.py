@@ -252,8 +252,7 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece) -> Opening:
             nearest="the limit is the widest slot that has room",
             ways=(
                 Way(
-                    near={work.key("stop_pin_mm"): room},
-                    far={work.key("stop_pin_mm"): 0.1 * room},
+                    near={work.key("stop_pin_mm"): room}, far={work.key("stop_pin_mm"): 0.1 * room}
                 ),
             ),
         )

@@ -66,9 +66,7 @@ class Circle:
         area = 0.25 * math.pi * self.diameter**2
         place = complex(*self.center)
         return Moments(
-            area=area,
-            first=area * place,
-            polar=area * (abs(place) ** 2 + 0.125 * self.diameter**2),
+            area=area, first=area * place, polar=area * (abs(place) ** 2 + 0.125 * self.diameter**2)
         )
 
     @property

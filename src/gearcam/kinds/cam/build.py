@@ -58,9 +58,7 @@ class CamResult(Result):
         """The lift over a turn."""
         with self.stage("program"):
             program = make_program(
-                self.design.phases,
-                self.tolerances,
-                oscillating=self.design.follower.oscillating,
+                self.design.phases, self.tolerances, oscillating=self.design.follower.oscillating
             )
             _ = self.design_hash  # now: points that a rise has read may change
             return program

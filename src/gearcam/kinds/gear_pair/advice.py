@@ -25,10 +25,7 @@ _SHARE: Final = 0.6
 _OF_TEETH: Final = frozenset({"contact-ratio", "undercut"})
 """Findings that more teeth or a smaller swing may lift."""
 
-_EDGES: Final = (
-    Way(far={"blank.tip_rounding_mm": 0.0}),
-    Way(far={"blank.clearance_mm": 0.0}),
-)
+_EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges as they are cut."""
 
 

@@ -248,10 +248,7 @@ KIND: Final = DesignKind(
             "pair": {"backlash_mm": 0.1},
             "output": {"files": ["cut-svg", "dxf"], "kerf_mm": 0.15},
         },
-        "wire": {
-            "pair": {"backlash_mm": 0.03},
-            "output": {"files": ["dxf"], "kerf_mm": 0.3},
-        },
+        "wire": {"pair": {"backlash_mm": 0.03}, "output": {"files": ["dxf"], "kerf_mm": 0.3}},
     },
     notes={
         "law": "the ratio i21 = dphi2/dphi1 over the driver's angle",

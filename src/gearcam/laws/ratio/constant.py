@@ -29,5 +29,5 @@ LAWS.register(
         doc="constant ratio z1/z2: circular wheels",
         continuity="analytic",
         source="definition",
-    ),
+    )
 )

@@ -28,10 +28,7 @@ LOBES = "lobes of driver and driven wheel; in lowest terms as the tooth counts w
 
 
 def law_of_centrode(
-    shapes: list[Piece],
-    knots: ArrayLike,
-    lobes: Span,
-    tolerances: Tolerances,
+    shapes: list[Piece], knots: ArrayLike, lobes: Span, tolerances: Tolerances
 ) -> RatioLaw:
     """Make a law from the driver's centrode: ``i = r/(c - r)``, c the centre distance in its scale.
 

@@ -61,5 +61,5 @@ LAWS.register(
         doc="ellipses about their foci, or of more lobes, phi1 = 0 at the driver's near vertex",
         continuity="analytic",
         source="classical; polar equation of the ellipse about its focus, closure in closed form",
-    ),
+    )
 )

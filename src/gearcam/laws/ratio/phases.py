@@ -298,5 +298,5 @@ LAWS.register(
         continuity="C1 at the knots; C2 for quintic arcs",
         source="003 sections 2.2.2.1 to 2.2.2.3, eqs. (2.1), (2.13), (2.17), (2.22); 3.2.2, eqs. "
         "(3.1), (3.12), (3.14), (3.26)",
-    ),
+    )
 )

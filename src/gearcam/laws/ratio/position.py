@@ -34,9 +34,7 @@ class MotionLaw:
     x_from: float | None = param(NUMBER, default=None, doc="x at the start")
     x_to: float | None = param(NUMBER, default=None, doc="x at the end")
     slide: str | None = param(
-        TEXT,
-        default=None,
-        doc="position of a slide over phi1, towards the crank, at any scale",
+        TEXT, default=None, doc="position of a slide over phi1, towards the crank, at any scale"
     )
     rod: float | None = param(
         NUMBER, default=None, gt=1, le=1e6, doc="length of the slide's rod, in crank radii"
@@ -120,5 +118,5 @@ LAWS.register(
         doc="the driven element's position y(x), or that of a slide moved by its crank",
         continuity="analytic where y or the slide is",
         source="003 Table 1.1, second hypothesis; section 1.4.1",
-    ),
+    )
 )

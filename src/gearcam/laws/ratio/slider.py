@@ -121,10 +121,7 @@ def make_slide(shape: Function, rod: float, period: float) -> tuple[Slide, float
 
 
 def _dead_centres(
-    places: Array,
-    values: Array,
-    period: float,
-    function: Callable[[Array], list[Array]],
+    places: Array, values: Array, period: float, function: Callable[[Array], list[Array]]
 ) -> list[tuple[float, float]]:
     """Inner extremes, and the lobe's end where the slope changes its sign there too."""
     found = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]

@@ -196,5 +196,5 @@ LAWS.register(
         doc="points of the ratio, the driven angle or the driver's radius, from a CSV file",
         continuity="C2 in what is given; so C1 where it is phi2",
         source="quintics that keep the shape of the points (`gearcam.numeric.shape_keeping`)",
-    ),
+    )
 )

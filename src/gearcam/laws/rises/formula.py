@@ -107,5 +107,5 @@ RISES.register(
         doc="any smooth formula of S in x: a law of your own",
         continuity="smooth inside; at the ends what the formula gives",
         source="000 section 3.3.2, eqs. (3.3), (3.4)",
-    ),
+    )
 )

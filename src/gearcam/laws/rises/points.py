@@ -115,11 +115,7 @@ class TableRise(FromFile):
         doc="S' and S'' at the start; zero meets a dwell",
     )
     end: tuple[float, float] = param(
-        NUMBER,
-        default=(0.0, 0.0),
-        ge=-1e6,
-        le=1e6,
-        doc="S' and S'' at the end; zero meets a dwell",
+        NUMBER, default=(0.0, 0.0), ge=-1e6, le=1e6, doc="S' and S'' at the end; zero meets a dwell"
     )
 
     def problems(self) -> Iterator[Problem]:

@@ -80,10 +80,7 @@ class TrapezoidalVelocity(ClosedForm):
         """``S = phi^2/(2*q*(1 - q))``, then ``S = (phi - q/2)/(1 - q)``."""
         q, speed = self.q, 1.0 / (1.0 - self.q)
         return from_half(
-            [
-                (q, lambda x: (0.5 * speed / q) * (x * x)),
-                (0.5 - q, lambda x: speed * (x - 0.5 * q)),
-            ]
+            [(q, lambda x: (0.5 * speed / q) * (x * x)), (0.5 - q, lambda x: speed * (x - 0.5 * q))]
         )
 
 
