@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
@@ -13,6 +13,7 @@ from gearcam.numeric.crossings import Chain, remaining, rows_between
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 TURN = 2.0 * math.pi
 
@@ -24,7 +25,7 @@ class Parallel:
     distance: float
     start = np.array([0.0, 2.0])
     end = np.array([2.0, TURN])
-    corner = np.array([False, False])
+    corner: Mask = field(default_factory=lambda: np.array([False, False]))
     breaks = (np.array([], dtype=np.int64), np.array([]))
 
     def at(
@@ -44,10 +45,10 @@ class Parallel:
         return Chain(curve=curve, low=low, high=high, points=self.at(curve, low)[0])
 
 
-@pytest.mark.parametrize("count", [40, 1000])
-def test_a_parallel_too_far_in_loses_its_loops(count: int) -> None:
+@pytest.mark.parametrize(("count", "cornered"), [(40, False), (1000, False), (40, True)])
+def test_a_parallel_too_far_in_loses_its_loops(count: int, cornered: bool) -> None:
     # it crosses the long axis where 1 + 3*sin(t)^2 is (2*distance)^2
-    curves = Parallel(0.8)
+    curves = Parallel(0.8, np.array([False, cornered]))
     ((ring,),) = remaining(curves, [curves.chain(count)])
     angle = math.asin(math.sqrt((1.6**2 - 1.0) / 3.0))
     ends = sorted((branch.begin.parameter, branch.end.parameter) for branch in ring.branches)
@@ -58,7 +59,7 @@ def test_a_parallel_too_far_in_loses_its_loops(count: int) -> None:
     assert ring.area > 0.0
     index, start, end, corner = rows_between(curves, ring.branches)
     rows = sorted(zip(start.tolist(), end.tolist(), index.tolist(), corner.tolist(), strict=True))
-    assert [(row[2], row[3]) for row in rows] == [(0, True), (1, False), (1, True)]
+    assert [(row[2], row[3]) for row in rows] == [(0, True), (1, cornered), (1, True)]
     assert rows[0][1] == rows[1][0] == 2.0
 
 
