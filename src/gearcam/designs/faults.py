@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
 import re
@@ -85,6 +84,8 @@ def show(value: Any) -> str:
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the known word that was probably meant, or nothing."""
+    import difflib
+
     by_lower = {name.lower(): name for name in known}
     meant = word.lower()
     close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=_SURE)

@@ -10,12 +10,17 @@ need quotes.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.numerals import exact
+from gearcam.numerals import SHORT, ULPS, exact
 from gearcam.numeric.arrays import Array
+
+_NEAR: Final = 8.0 * ULPS * float(np.finfo(float).eps)
+"""Relative distance from a short decimal up to which a number is looked at closely: rounding of
+the power of ten included."""
 
 
 def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
@@ -44,7 +49,7 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     lengths = {name: len(values) for name, values in arrays.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"columns differ in length: {lengths}")
-    texts = []
+    tidy = []
     for name, plain in arrays.items():
         # asked for so, since numpy.ma takes as long to load as a table to write
         missing = np.broadcast_to(np.ravel(getattr(columns[name], "mask", False)), plain.shape)
@@ -53,14 +58,22 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
             raise ValueError(f"column {name} is not a number in row {bad_rows[0]}")
         # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
         # What is missing may be anything, and adding to it may warn.
-        there = np.where(missing, 0.0, plain) + 0.0
-        tidy = np.where(np.isinf(there), np.inf, there)
-        cells = [repr(exact(value)) for value in tidy.tolist()]
-        for row in np.flatnonzero(missing).tolist():
-            cells[row] = ""
-        texts.append(cells)
-    lines = [",".join(arrays), *(",".join(row) for row in zip(*texts, strict=True))]
-    return ("\n".join(lines) + "\n").encode("ascii")
+        there = _exact(np.where(missing, 0.0, plain) + 0.0)
+        tidy.append(np.where(missing, np.nan, np.where(np.isinf(there), np.inf, there)))
+    # written in one go, a list of lists has its numbers as `repr` gives each of them
+    rows = repr(np.column_stack(tidy).tolist())[1:-1]
+    for mark, other in (("], ", ""), ("[", "\n"), ("]", ""), (", ", ","), ("nan", "")):
+        rows = rows.replace(mark, other)
+    return (",".join(arrays) + rows + "\n").encode("ascii")
+
+
+def _exact(values: Array) -> Array:
+    """Return what `numerals.exact` gives for each of the `values`: most it would not change."""
+    with np.errstate(all="ignore"):
+        scaled = np.abs(values) * 10.0 ** (SHORT - 1 - np.floor(np.log10(np.abs(values))))
+        near = np.flatnonzero(~(np.abs(scaled - np.rint(scaled)) > _NEAR * scaled))
+    values[near] = [exact(value) for value in values[near].tolist()]
+    return values
 
 
 def outline_bytes(vertices: Array) -> bytes:

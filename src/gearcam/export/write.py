@@ -19,7 +19,6 @@ import errno
 import json
 import os
 import shutil
-import uuid
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -171,7 +170,7 @@ class _Change:
     temporary: list[Path] = field(default_factory=list)
 
     def _spare(self) -> Path:
-        self.temporary.append(self.folder / f"{TEMPORARY}{uuid.uuid4().hex}.tmp")
+        self.temporary.append(self.folder / f"{TEMPORARY}{os.urandom(16).hex()}.tmp")
         return self.temporary[-1]
 
     def stage(self, name: str, content: bytes) -> None:
@@ -251,7 +250,7 @@ def rewrite(file: str | os.PathLike[str], content: bytes) -> None:
         If the disk refuses; the file is as it was then.
     """
     target = Path(file).resolve()
-    spare = target.with_name(f"{TEMPORARY}{uuid.uuid4().hex}.tmp")
+    spare = target.with_name(f"{TEMPORARY}{os.urandom(16).hex()}.tmp")
     try:
         spare.write_bytes(content)
         shutil.copymode(target, spare)

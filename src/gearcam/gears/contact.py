@@ -187,7 +187,7 @@ class FlankPairs(Mounting):
         turns = np.arange(-1, 2)[:, None] if self.closed else np.zeros((1, 1))
         start, end = ((edge + turn * turns).ravel() for edge in (start, end))
         edges = np.clip(np.concatenate([start, end]), 0.0, turn)
-        edges = np.unique(np.concatenate([[0.0], edges, [turn]]))
+        edges = np.sort(np.concatenate([[0.0], edges, [turn]]))
         edges = edges[np.append(np.diff(edges) > _ONE * turn, True)]
         edges[0] = 0.0
         carrying = self._carrying(0.5 * (edges[:-1] + edges[1:]), start, end)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections.abc import Iterator, Sequence
@@ -132,6 +131,8 @@ def read_rows(file: str) -> CsvRows:
     ColumnsError
         If the file cannot be read or is empty.
     """
+    import csv
+
     try:
         text = Path(file).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError, ValueError) as error:

@@ -16,7 +16,6 @@ take it: an array, or a jet that also carries derivatives.
 from __future__ import annotations
 
 import ast
-import difflib
 import math
 import operator
 import re
@@ -277,6 +276,8 @@ def _check_name(word: str, column: int, variable: str) -> None:
     known = (variable, *CONSTANTS, *NUMPY)
     if word in known:
         return
+    import difflib
+
     alias = _ALIASES.get(word, _ALIASES.get(word.lower()))
     close = [alias] if alias else difflib.get_close_matches(word.lower(), known, n=1)
     raise FormulaError(

@@ -7,16 +7,18 @@ walls that face each other.
 A chamber whose mouth is two sharp edges has no walls that face each other there: its mouth is not
 seen.
 
-Depends on numeric; shapely inside the functions.
+Depends on numeric.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
@@ -43,6 +45,9 @@ bounds the distance within which the narrowest one is sought."""
 
 _ALL: Final = 8000
 """Most points of which each is compared with every other where no slot was found nearby."""
+
+_BLOCK: Final = 1 << 16
+"""Pairs of points that are looked at in one go: what a cache holds."""
 
 _FINER: Final = np.linspace(-1.5, 1.5, 121)
 """Places, in steps of the first search, at which the narrowest slot is then refined."""
@@ -99,8 +104,13 @@ def tool_limits(contour: Contour) -> ToolLimits:
     ToolLimits
         Radii from the tangents of the dense points, widths between dense points.
     """
-    radius, place = _inner(contour)
-    slot, middle = _slot(contour)
+    ends = np.cumsum([len(run.points) for run in contour.runs])
+    points = as_complex(np.concatenate([run.points for run in contour.runs]))
+    tangents = as_complex(np.concatenate([run.tangents for run in contour.runs]))
+    size = float(np.ptp(contour.vertices, axis=0).max())
+    radius, place = _inner(points, tangents, ends, size)
+    # no place of a convex outline faces another
+    slot, middle = (math.inf, None) if place is None else _slot(points, tangents, ends)
     return ToolLimits(
         inner_radius=radius,
         inner_place=None if place is None else (place.real, place.imag),
@@ -109,34 +119,28 @@ def tool_limits(contour: Contour) -> ToolLimits:
     )
 
 
-def _inner(contour: Contour) -> tuple[float, complex | None]:
-    """Find the smallest concave radius and its place."""
-    size = float(np.ptp(contour.vertices, axis=0).max())
-    sharpest, place = 0.0, None
-    ends = [as_complex(run.tangents)[[0, -1]] for run in contour.runs]
-    for run, own, after in zip(contour.runs, ends, [*ends[1:], ends[0]], strict=True):
-        if float(np.angle(after[0] / own[1])) < -_CORNER:
-            return 0.0, complex(*run.points[-1])
-        p, t = as_complex(run.points), as_complex(run.tangents)
-        length = np.abs(np.diff(p))
-        bend = -np.angle(t[1:] * np.conj(t[:-1]))
-        real = length > _GRAIN * size
-        bend = np.divide(bend, length, out=np.zeros_like(bend), where=real)
-        k = int(bend.argmax())
-        if bend[k] * size > _GRAIN and bend[k] > sharpest:
-            sharpest, place = float(bend[k]), complex(0.5 * (p[k] + p[k + 1]))
-    return (1.0 / sharpest if sharpest else math.inf), place
+def _inner(points: Plane, tangents: Plane, ends: Ints, size: float) -> tuple[float, complex | None]:
+    """Find the smallest concave radius and its place; each run ends before one of `ends`."""
+    turn = -np.angle(np.append(tangents[1:], tangents[0]) * np.conj(tangents))
+    corners = np.flatnonzero(turn[ends - 1] > _CORNER)
+    if corners.size:
+        return 0.0, complex(points[ends[corners[0]] - 1])
+    length = np.abs(np.diff(points))
+    length[ends[:-1] - 1] = 0.0  # a run begins where the one before it ends
+    real = length > _GRAIN * size
+    bend = np.divide(turn[:-1], length, out=np.zeros_like(length), where=real)
+    k = int(bend.argmax())
+    if bend[k] * size <= _GRAIN:
+        return math.inf, None
+    return 1.0 / float(bend[k]), complex(0.5 * (points[k] + points[k + 1]))
 
 
-def _slot(contour: Contour) -> tuple[float, complex | None]:
+def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, complex | None]:
     """Width and middle of the narrowest slot."""
-    runs = contour.runs
-    points = np.concatenate([as_complex(run.points) for run in runs])
-    tangents = np.concatenate([as_complex(run.tangents) for run in runs])
-    last = np.cumsum([len(run.points) for run in runs]) - 1
-    first = np.append(0, last[:-1] + 1)
+    last = ends - 1
+    first = np.append(0, ends[:-1])
     steps = np.abs(np.diff(points, prepend=points[0]))
-    steps[first] = 0.0  # a run begins where the one before it ends
+    steps[first] = 0.0
     way = np.cumsum(steps)
 
     def at(run: Ints, along: Array) -> tuple[Plane, Plane]:
@@ -149,9 +153,10 @@ def _slot(contour: Contour) -> tuple[float, complex | None]:
 
     length = np.diff(way[first], append=way[-1])
     step = way[-1] / max(_LEAST, _PER_RUN * len(length))
-    counts = np.ceil(length / step).astype(int) + 1
-    number = np.repeat(np.arange(len(counts)), counts)
-    share = np.concatenate([np.linspace(0.0, 1.0, count) for count in counts.tolist()])
+    counts = np.ceil(length / step).astype(int)
+    number = np.repeat(np.arange(len(counts)), counts + 1)
+    place = np.arange(len(number)) - np.repeat(np.cumsum(counts + 1) - counts - 1, counts + 1)
+    share = np.where(place < counts[number], place * (1.0 / counts)[number], 1.0)
     along = way[first[number]] + share * length[number]
     best, pair = _narrowest(*at(number, along))
     if math.isinf(best):
@@ -165,30 +170,62 @@ def _slot(contour: Contour) -> tuple[float, complex | None]:
 
 def _narrowest(p: Plane, n: Plane) -> tuple[float, tuple[int, int]]:
     """Find the least width of any pair, and the pair: of those that lie near enough."""
-    from shapely import STRtree, points
-
-    best, pair = _of_neighbours(p, n, _COARSE, _WINDOW)
-    if math.isinf(best):
-        best, pair = _of_neighbours(p, n, 1, len(p) if len(p) <= _ALL else _COARSE * _WINDOW)
+    best, (a, b) = _least(p[::_COARSE], n[::_COARSE], _neighbours(n[::_COARSE], _WINDOW))
+    if math.isfinite(best):
+        pair = _COARSE * a, _COARSE * b
+    else:
+        most = len(p) if len(p) <= _ALL else _COARSE * _WINDOW
+        best, pair = _least(p, n, _neighbours(n, most))
     if math.isinf(best):
         return best, pair
-    made: Any = points(p.real, p.imag)
-    i, j = STRtree(made).query(made, predicate="dwithin", distance=best)
-    width = _width(p[i], n[i], p[j], n[j])
-    k = int(width.argmin())
-    return (float(width[k]), (int(i[k]), int(j[k]))) if width[k] < best else (best, pair)
+    width, nearer = _least(p, n, _in_discs(p, p + 0.5 * best * n, 0.5 * best))
+    return (width, nearer) if width < best else (best, pair)
 
 
-def _of_neighbours(p: Plane, n: Plane, of: int, most: int) -> tuple[float, tuple[int, int]]:
-    """Find the least width of pairs up to `most` apart among one `of` so many points."""
-    p, n = p[::of], n[::of]
-    best, pair, size = math.inf, (0, 0), len(p)
-    for apart in range(1, min(most, size - 1) + 1):
-        for way in (apart, -apart):
-            width = _width(p, n, np.roll(p, way), np.roll(n, way))
+def _neighbours(n: Plane, most: int) -> Iterator[tuple[Ints, Ints]]:
+    """Pairs of points up to `most` apart that face each other, the nearest first, in blocks."""
+    size = len(n)
+    apart = np.arange(1, min(most, size // 2) + 1)
+    ways = np.stack([apart, -apart], axis=1).ravel()
+    turned = sliding_window_view(np.tile(n, 2), size)
+    for block in np.array_split(ways, math.ceil(len(ways) * size / _BLOCK)):
+        other = turned[-block % size]
+        way, i = np.nonzero(n.real * other.real + n.imag * other.imag < _FACING)
+        yield i, (i - block[way]) % size
+
+
+def _in_discs(p: Plane, centers: Plane, radius: float) -> Iterator[tuple[Ints, Ints]]:
+    """Pairs of discs and points in them, in blocks: by squares of this side, 3 by 3 around each."""
+    radius *= 1.0 + _GRAIN
+    corner = complex(p.real.min(), p.imag.min())
+    (x, y), (u, v) = (
+        np.floor([z.real, z.imag]).astype(int)
+        for z in ((p - corner) / radius, (centers - corner) / radius)
+    )
+    column = int(y.max()) + 5  # centres lie up to a square outside
+    square = x * column + y
+    order = np.argsort(square, kind="stable")
+    middle = ((u * column + v)[:, None] + column * np.arange(-1, 2)).ravel()
+    first, last = np.searchsorted(square[order], [middle - 1, middle + 2])
+    counts = last - first
+    cuts = np.searchsorted(np.cumsum(counts), np.arange(_BLOCK, counts.sum(), _BLOCK))
+    for k in np.split(np.arange(len(counts)), cuts):
+        disc = np.repeat(k // 3, counts[k])
+        shift = first[k] - np.cumsum(counts[k]) + counts[k]
+        inner = order[np.arange(len(disc)) + np.repeat(shift, counts[k])]
+        gap = p[inner] - centers[disc]
+        inside = gap.real**2 + gap.imag**2 <= radius**2
+        yield disc[inside], inner[inside]
+
+
+def _least(p: Plane, n: Plane, pairs: Iterable[tuple[Ints, Ints]]) -> tuple[float, tuple[int, int]]:
+    """Find the least width of some pairs, given in blocks, and its pair."""
+    best, pair = math.inf, (0, 0)
+    for i, j in pairs:
+        width = _width(p[i], n[i], p[j], n[j])
+        if width.size and width.min() < best:
             k = int(width.argmin())
-            if width[k] < best:
-                best, pair = float(width[k]), (of * k, of * ((k - way) % size))
+            best, pair = float(width[k]), (int(i[k]), int(j[k]))
     return best, pair
 
 
