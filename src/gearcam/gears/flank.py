@@ -210,10 +210,8 @@ def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plan
     cutter, w = toothing.cutter, toothing.turn
     kind, row_sf, row_sigma = rows.kind[index], rows.sf[index], rows.sigma[index]
     points, tangents = np.empty((2, len(phi)), dtype=np.complex128)
-    flank, fillet, rounded = (
-        np.flatnonzero(kind == each) for each in (Curve.FLANK, Curve.FILLET, Curve.ROUND)
-    )
-    parallel = np.flatnonzero((kind == Curve.LAND) | (kind == Curve.TIP))
+    flank, fillet, land, tip, rounded = (np.flatnonzero(kind == int(each)) for each in Curve)
+    parallel = np.concatenate([land, tip])
     place = phi
     if rounded.size:
         row = index[rounded]

@@ -124,7 +124,7 @@ class Piecewise:
             here = np.flatnonzero(numbers[index] == number) if len(functions) > 1 else slice(None)
             which = index[here]
             if which.size:
-                jet = function(Jet.variable(x[here], order), *columns[:, which])
+                jet = function(Jet.variable(x[here], order), *columns.take(which, 1, mode="clip"))
                 for k, values in enumerate((jet + self.offsets[which]).derivatives()):
                     result[k, here] = values
         return result
