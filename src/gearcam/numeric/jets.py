@@ -80,7 +80,7 @@ class Jet:
 
     def __mul__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
-            return Jet([value * other for value in self.c])
+            return Jet([value if _is_zero(value) else value * other for value in self.c])
         a, b = self.c, other.c
         left = [j for j, value in enumerate(a) if not _is_zero(value)]
         right = [not _is_zero(value) for value in b]
@@ -95,7 +95,7 @@ class Jet:
 
     def __truediv__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
-            return Jet([value / other for value in self.c])
+            return Jet([value if _is_zero(value) else value / other for value in self.c])
         quotient: list[Value] = []
         for k, value in enumerate(self.c):
             rest = value
