@@ -222,8 +222,9 @@ def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plan
 
     if flank.size:
         frames, sf, sigma = every.some(flank), row_sf[flank], row_sigma[flank]
-        points[flank] = toothing.flank_points(frames, sf, sigma)
-        tangents[flank] = -sigma * w * toothing.normals(frames, sigma)
+        normals = toothing.normals(frames, sigma)
+        points[flank] = frames.p + toothing.ahead(frames, sf) * normals
+        tangents[flank] = -sigma * w * normals
 
     if fillet.size:
         frames, sf, sigma = every.some(fillet), row_sf[fillet], row_sigma[fillet]

@@ -96,9 +96,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(
-        toothing, flank, curve, toothing.track.angle(near), MISS * addendum
-    )
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(near), MISS * addendum)
     return phi, foot, np.where(miss <= MISS * addendum, addendum, np.nan)
 
 

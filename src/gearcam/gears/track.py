@@ -73,7 +73,8 @@ class Frames(NamedTuple):
 
     def some(self, which: Ints | int) -> Frames:
         """Return those at some of the parameters; a curvature that is left out stays so."""
-        return Frames(*(values[which] if values.size else values for values in self))
+        kappa = self.kappa[which] if self.kappa.size else self.kappa
+        return Frames(self.p[which], self.t[which], kappa, self.speed[which], self.s[which])
 
 
 class LeastRadius(NamedTuple):

@@ -120,8 +120,9 @@ class Piecewise:
         """
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
+        family = numbers.take(index)
         for number, (function, columns) in enumerate(functions):
-            here = np.flatnonzero(numbers[index] == number) if len(functions) > 1 else slice(None)
+            here = np.flatnonzero(family == number) if len(functions) > 1 else slice(None)
             which = index[here]
             if which.size:
                 jet = function(Jet.variable(x[here], order), *columns.take(which, 1, mode="clip"))
@@ -280,9 +281,9 @@ def extremes_among(
     -------
     places, values : arrays
     """
-    return _extremes_among(
-        lambda t: np.array(function(t))[:, None], x, values[None], slopes[None]
-    )[0]
+    return _extremes_among(lambda t: np.array(function(t))[:, None], x, values[None], slopes[None])[
+        0
+    ]
 
 
 def _extremes_among(
