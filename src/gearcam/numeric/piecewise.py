@@ -257,7 +257,19 @@ def extremes(function: Callable[[Array], Sequence[Array]], knots: ArrayLike) -> 
 def extremes_of_each(
     functions: Callable[[Array], Array], knots: ArrayLike
 ) -> list[tuple[Array, Array]]:
-    """Find the same of m functions at once, ``functions(x)`` of shape (2, m, ...)."""
+    """Find the extremes of several functions at once (see `extremes`).
+
+    Parameters
+    ----------
+    functions : callable
+        ``functions(x) -> (values, slopes)``, an array (2, m, k) for m functions.
+    knots : (n + 1,) array
+        Between them the functions are smooth.
+
+    Returns
+    -------
+    list of m (places, values)
+    """
     x = places_between(knots)
     values, slopes = (found.reshape(-1, *x.shape) for found in functions(x.ravel()))
     return _extremes_among(functions, x, values, slopes)
