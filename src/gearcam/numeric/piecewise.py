@@ -293,9 +293,10 @@ def extremes_among(
     -------
     places, values : arrays
     """
-    return _extremes_among(lambda t: np.array(function(t))[:, None], x, values[None], slopes[None])[
-        0
-    ]
+    (found,) = _extremes_among(
+        lambda t: np.array(function(t))[:, None], x, values[None], slopes[None]
+    )
+    return found
 
 
 def _extremes_among(
