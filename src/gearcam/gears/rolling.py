@@ -11,9 +11,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from itertools import pairwise
-from typing import Any, Final
+from functools import cached_property
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,8 +22,7 @@ from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.chebyshev import expand
-from gearcam.numeric.jets import Jet, sqrt
-from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.tolerances import Tolerances
 
 WHEEL: Final = 1
@@ -101,16 +99,20 @@ class Rolling:
     def curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Both centrodes' extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
 
-        def curvature(wheel: int, phi: Array) -> list[Array]:
+        def curvatures(phi: Array) -> Array:
             ratios = self.law.ratio.derivatives(phi, 3)
-            wi, r, dr, ddr = _radii([Jet(both) for both in pairwise(ratios)], self.mate)
-            speed = sqrt(r * r + dr * dr)
-            kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
-            if wheel == 2:
-                kappa = (1.0 + wi) / speed - kappa
-            return (kappa / self.center_distance).derivatives()
+            wi, r, dr, ddr, d3r = _radii(ratios, self.mate)
+            speed = np.sqrt(r * r + dr * dr)
+            rate = dr * (r + ddr) / (speed * speed)  # of the speed's logarithm
+            cube = speed * speed * speed
+            first = (r * r + 2.0 * dr * dr - r * ddr) / cube
+            slope = (2.0 * r * dr + 3.0 * dr * ddr - r * d3r) / cube - 3.0 * rate * first
+            both = (1.0 + wi) / speed
+            change = self.mate * ratios[1] / speed - rate * both
+            found = [[first, both - first], [slope, change - slope]]
+            return np.array(found) / self.center_distance
 
-        first, second = (extremes(partial(curvature, k), self._tooth_knots) for k in (1, 2))
+        first, second = extremes_of_each(curvatures, self._tooth_knots)
         return first, second
 
     @property
@@ -197,13 +199,19 @@ def _complex(real: Array, imag: Array) -> Plane:
     return result
 
 
-def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
-    """Return w*i, and r1 for unit size with its derivatives, of a ratio's: arrays or jets."""
+def _radii(ratios: Sequence[Array], mate: int) -> list[Array]:
+    """Return w*i, and r1 for unit size with its derivatives to the third, of a ratio's."""
     i, di, *more = ratios
     wi = mate * i
     a = 1.0 / (1.0 + wi)
     square = a * a
-    return [wi, i * a, square * di, *(square * (ddi - 2.0 * mate * (a * di * di)) for ddi in more)]
+    found = [wi, i * a, square * di]
+    if more:
+        found.append(square * (more[0] - 2.0 * mate * (a * di * di)))
+    if more[1:]:
+        bend = mate * a * di
+        found.append(square * (more[1] - 6.0 * bend * (more[0] - bend * di)))
+    return found
 
 
 def roll(

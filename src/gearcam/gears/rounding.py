@@ -20,6 +20,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import MISS, ROUGH, TipEnds, cross, flank_at, flank_crossings
+from gearcam.gears.track import Frames
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import largest_fitting
@@ -121,9 +122,8 @@ def _arcs(
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
     near, there = MISS * toothing.pitch, tops.row >= 0
-    phi, foot, miss = cross(
-        partial(flank_at, toothing, centers, sigma), curve, tips.phi, tips.foot, near
-    )
+    flank, first = partial(flank_at, toothing, centers, sigma), np.stack([tips.phi, tips.foot])
+    phi, foot, miss = cross(toothing, flank, curve, first, near)
     place = foot + tops.tip_turn
     fits = (tops.tip >= 0) & (miss <= ROUGH * near)
     fits &= (place >= rows.start[tops.tip] - _EDGE) & (place <= rows.end[tops.tip] + _EDGE)
@@ -137,7 +137,7 @@ def _arcs(
     if not np.all(fits & (reach > 0.0) & (reach < end), where=there):
         return None
     normals = sigma * toothing.normals(toothing.frames(phi), sigma)
-    moves = curve(foot)[1]
+    moves = curve(foot, toothing.frames(foot))[1]
     others = toothing.turn * moves / np.abs(moves)
     others[both[0]] = normals[both[1]]
     ends = _put_in(rows, tops, sigma, phi, foot, both)
@@ -166,9 +166,11 @@ def _arcs(
     return made, np.where(there, reach, np.nan)
 
 
-def _moved_tip(toothing: Toothing, tops: _Tops, radius: float, foot: Array) -> tuple[Plane, Plane]:
+def _moved_tip(
+    toothing: Toothing, tops: _Tops, radius: float, foot: Array, base: Frames
+) -> tuple[Plane, Plane]:
     """Return points over feet of tips moved inwards, and how they move on, mm and mm/rad."""
-    base, w = toothing.frames(foot), toothing.turn
+    w = toothing.turn
     height = tops.height + (foot - tops.start) * tops.slope
     move = base.t * (base.speed * (1.0 + base.kappa * height) + tops.slope * w)
     along = move / np.abs(move)

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from gearcam.gears.flank import Toothing
+from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import newton_in_bracket
 
@@ -23,6 +24,8 @@ _STEPS = 25
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
+
+_Way = Callable[[Array, Frames], tuple[Plane, Plane]]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -86,63 +89,64 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
     """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
-    phi, foot = toothing.track.angle(
-        np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
-    )
+    near = np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
 
-    def curve(angle: Array) -> tuple[Plane, Plane]:
-        base = toothing.frames(angle)
+    def curve(_: Array, base: Frames) -> tuple[Plane, Plane]:
         slide = base.speed * (1.0 + base.kappa * addendum) * base.t
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(flank, curve, phi, foot, MISS * addendum)
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(near), MISS * addendum)
     return phi, foot, np.where(miss <= MISS * addendum, addendum, np.nan)
 
 
-def flank_at(toothing: Toothing, sf: Array, sigma: Array, phi: Array) -> tuple[Plane, Plane]:
-    """Return points of flanks (`sf`, `sigma`) of a `toothing` at `phi`, and how they move on."""
-    frames = toothing.frames(phi)
+def flank_at(
+    toothing: Toothing, sf: Array, sigma: Array, _: Array, frames: Frames
+) -> tuple[Plane, Plane]:
+    """Return points of flanks (`sf`, `sigma`) of a `toothing` at `frames`, and how they move on."""
     return toothing.flank_points(frames, sf, sigma), toothing.flank_motion(frames, sf, sigma)
 
 
 def cross(
-    one: Callable[[Array], tuple[Plane, Plane]],
-    two: Callable[[Array], tuple[Plane, Plane]],
-    x: Array,
-    y: Array,
+    toothing: Toothing,
+    one: _Way,
+    two: _Way,
+    phi: Array,
     near: float,
 ) -> tuple[Array, Array, Array]:
-    """Find where curves cross, n pairs at once, by Newton's method.
+    """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
     Parameters
     ----------
+    toothing : Toothing
+        The wheel.
     one, two : callable
-        ``one(x)`` returns points, mm, and their derivatives.
-    x, y : (n,) arrays
-        Parameters to begin with.
+        ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
+    phi : (2, n) array, rad
+        Driver angles to begin with, on both.
     near : float, mm
         Distance at which a crossing is found.
 
     Returns
     -------
-    x, y : (n,) arrays
-        Parameters on both curves.
+    x, y : (n,) arrays, rad
+        Driver angles on both curves.
     miss : (n,) array, mm
         How far their points are apart, at most one step before.
     """
-    miss = np.full(x.shape, np.inf, dtype=complex)
+    miss = np.full(phi.shape[1:], np.inf, dtype=complex)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(_STEPS):
-            (p, move), (q, slide) = one(x), two(y)
+            frames = toothing.frames(phi)
+            (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
             miss = p - q
             if not np.any(np.abs(miss) > near):
                 break
-            first = -np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)
-            second = np.imag(np.conj(move) * miss) / np.imag(np.conj(move) * slide)
-            good = np.isfinite(first) & np.isfinite(second)
-            x, y = x + np.where(good, first, 0.0), y + np.where(good, second, 0.0)
-    return x, y, np.abs(miss)
+            # both steps over one determinant: the curves' directions against each other
+            steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
+            steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
+            phi = phi + np.where(np.isfinite(steps).all(axis=0), steps, 0.0)
+    return phi[0], phi[1], np.abs(miss)
 
 
 def flank_crossings(
@@ -168,7 +172,7 @@ def flank_crossings(
     """
     one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
     near = MISS * toothing.pitch
-    first, second, miss = cross(one, two, start[0], start[1], near)
+    first, second, miss = cross(toothing, one, two, start, near)
     return np.stack([first, second]), miss <= ROUGH * near
 
 

@@ -23,6 +23,7 @@ def newton_in_bracket(
     high: ArrayLike,
     start: ArrayLike,
     tolerance: float,
+    noise: float = 0.0,
 ) -> Array:
     """Find the root of a function between `low` and `high`, element by element.
 
@@ -37,6 +38,8 @@ def newton_in_bracket(
         First guess, inside the bracket.
     tolerance : float
         The search stops when every step is smaller than this, in units of x.
+    noise : float
+        Or when its value is: what rounding may make of 0.
 
     Returns
     -------
@@ -53,7 +56,7 @@ def newton_in_bracket(
         inside = (step - a) * (step - b) <= 0.0
         # A first step that leads out tries the end: it may be the answer.
         other = 0.5 * (a + b) if number else np.where((step - a) * (b - a) > 0.0, b, a)
-        new = np.where(value == 0.0, x, np.where(inside, step, other))
+        new = np.where(np.abs(value) <= noise, x, np.where(inside, step, other))
         done = np.all(np.abs(new - x) <= tolerance)
         x = new
         if done:
@@ -62,7 +65,11 @@ def newton_in_bracket(
 
 
 def bracketed_root(
-    function: Callable[[Array], Array], low: ArrayLike, high: ArrayLike, tolerance: float
+    function: Callable[[Array], Array],
+    low: ArrayLike,
+    high: ArrayLike,
+    tolerance: float,
+    ends: tuple[Array, Array] | None = None,
 ) -> Array:
     """Find where a function changes sign between `low` and `high`, jumps included.
 
@@ -77,6 +84,8 @@ def bracketed_root(
         Brackets with opposite signs at their ends.
     tolerance : float
         Width at which a bracket counts as a point, in units of x.
+    ends : (array, array), optional
+        The function's values at `low` and `high`, where they are known already.
 
     Returns
     -------
@@ -86,7 +95,7 @@ def bracketed_root(
     a, b = (np.array(v, dtype=float) for v in np.broadcast_arrays(low, high))
     if a.size == 0:
         return a
-    fa, fb = function(a), function(b)
+    fa, fb = ends or (function(a), function(b))
     c, fc, t = a.copy(), fa.copy(), np.full_like(a, 0.5)
     for _ in range(_STEPS):
         x = a + t * (b - a)
