@@ -2,7 +2,8 @@
 
 A *biarc* is a pair of arcs with a common tangent at the joint, through two points with given
 tangents. A run becomes a bulge polyline (see `bulges`) of biarcs, each as long as the tolerance
-allows.
+allows. All runs of a contour are fitted side by side: a *span* is a run or a part of a long one,
+and each round tries one length on every span.
 
 Points are complex numbers inside this room: turning and scaling a vector is one product.
 Curvature, not radius, describes an arc, so that a nearly straight piece loses no digits.
@@ -12,22 +13,17 @@ Refused: runs that do not join to a closed chain, tolerances that are not positi
 
 from __future__ import annotations
 
-import cmath
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs, off_circle
 from gearcam.numeric.contour import Run
 from gearcam.numeric.hermite import on_cubics
 
-Piece = list[tuple[complex, float]]
-"""End point and bulge of each arc of a piece."""
-
-MAX_TURN = 0.5 * math.pi
+MAX_TURN = 0.5 * np.pi
 """Largest angle that one biarc may turn through, rad: keeps its two arcs short of a half circle,
 where distance to the arc and distance to the circle could differ."""
 
@@ -35,13 +31,10 @@ STRAIGHT = 1e-6
 """A piece counts as straight where its rise is below this part of the tolerance: far above
 rounding, far below anything that a machine can follow."""
 
-ROUNDING = 1e-15
-"""Distance of two points, over that from the origin, that is nothing but rounding."""
-
 SAME_ARC = 1e-6
 """Difference of the two end angles, rad, below which a biarc is written as one arc."""
 
-AIM = 0.97
+AIM = 0.985
 """Part of the predicted length that the search tries: a little short, so that most succeed."""
 
 LEAST_ERROR = 1e-3
@@ -59,13 +52,18 @@ REACH = 3
 MOST_CHECKS = 50
 """Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
 
+SPAN = 8192
+"""Most steps of a span: a longer run is cut, for the sake of speed, and has an arc or two more at
+each cut than the longest pieces would give, one in a hundred."""
+
 
 @dataclass(frozen=True, eq=False)
-class _Curve:
-    """A run as complex points and tangents, with the angle turned so far.
+class _Curves:
+    """Runs behind each other as complex points and tangents, with the angle turned so far.
 
     Distances are taken at the `checks`: the points, and more between them where points are sparse
-    beside a sharper bend; `place` is where each point stands among the checks.
+    beside a sharper bend; `place` is where each point stands among the checks. The runs' points are
+    those from `first` to `last`.
     """
 
     points: Plane
@@ -73,10 +71,25 @@ class _Curve:
     turned: Array
     checks: Plane
     place: Ints
+    first: Ints
+    last: Ints
 
 
-def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
-    """Fit tangent-continuous arcs to a run, each pair as long as the tolerance allows.
+@dataclass(frozen=True, eq=False)
+class _Biarcs:
+    """Biarcs: their joints, and half the angles through which both arcs turn, (2, n).
+
+    A `single` arc ends where the joint would be; so does a straight piece, where it `fails`.
+    """
+
+    joint: Plane
+    halves: Array
+    single: Mask
+    fails: Mask
+
+
+def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]:
+    """Fit tangent-continuous arcs to runs, each pair as long as the tolerance allows.
 
     From the start on, the longest piece is sought whose biarc stays within the tolerance of the
     run's points. The error grows with the third power of the length, so each trial predicts the
@@ -86,37 +99,38 @@ def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    run : Run
-        A smooth piece, mm.
+    runs : sequence of Run
+        Smooth pieces, mm.
     tolerance : float, mm
-        Largest distance between the run's points and the arcs.
+        Largest distance between a run's points and the arcs.
 
     Returns
     -------
-    vertices : (k, 2) array, mm
-        Both ends of the run, and the knots between.
-    bulges : (k - 1,) array
-        Tangent of a quarter of each arc's angle, positive to the left, 0 for a straight piece.
+    list of (vertices, bulges)
+        For each run (k, 2) mm, both its ends and the knots between, and (k - 1,), the tangent of a
+        quarter of each arc's angle, positive to the left, 0 for a straight piece.
 
     Raises
     ------
     ValueError
-        If the tolerance is not positive, or the run is not finite or has fewer than two different
+        If the tolerance is not positive, or a run is not finite or has fewer than two different
         points.
     """
     if not tolerance > 0:
         raise ValueError(f"the tolerance must be positive, not {tolerance}")
-    curve = _curve(run, tolerance)
-    last = len(curve.points) - 1
-    knots, bulges = [complex(curve.points[0])], []
-    start, guess = 0, last
-    while start < last:
-        end, piece = _longest(curve, start, guess, tolerance)
-        for point, bulge in piece:
-            knots.append(point)
-            bulges.append(bulge)
-        start, guess = end, end - start
-    return as_pairs(np.array(knots)), np.array(bulges)
+    curves = _curves(runs, tolerance)
+    start, end = _longest(curves, tolerance)
+    made = _biarcs(curves, start, end)
+    kept = np.stack([np.ones_like(made.single), ~made.single], axis=1)
+    knots = np.stack([curves.points[start], made.joint, curves.points[end]])
+    bulges = np.tan(0.5 * made.halves)
+    bulges *= 0.5 * np.abs(bulges * np.diff(knots, axis=0)) > STRAIGHT * tolerance
+    behind = np.cumsum(kept.sum(axis=1))[np.searchsorted(start, curves.last) - 1]
+    pieces = (np.split(one.T[kept], behind[:-1]) for one in (knots[:2], bulges))
+    ends = curves.points[curves.last]
+    return [
+        (as_pairs(np.append(one, q)), bends) for one, bends, q in zip(*pieces, ends, strict=True)
+    ]
 
 
 def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
@@ -141,129 +155,168 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
     ValueError
         If the runs do not join within the tolerance.
     """
-    vertices, bulges = [], []
-    for run, after in zip(runs, [*runs[1:], runs[0]], strict=True):
-        gap = math.dist(run.points[-1], after.points[0])
-        if gap > tolerance:
-            raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
-        points, bends = fit_arcs(run, tolerance)
-        vertices.append(points[:-1])
-        bulges.append(bends)
-    return np.vstack(vertices), np.concatenate(bulges)
+    ends = np.array([run.points[[0, -1]] for run in runs])
+    gap = float(np.hypot(*(np.roll(ends[:, 0], -1, axis=0) - ends[:, 1]).T).max())
+    if gap > tolerance:
+        raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
+    made = fit_arcs(runs, tolerance)
+    return np.vstack([points[:-1] for points, _ in made]), np.concatenate([b for _, b in made])
 
 
-def _curve(run: Run, tolerance: float) -> _Curve:
-    points, tangents = as_complex(run.points), as_complex(run.tangents)
+def _curves(runs: Sequence[Run], tolerance: float) -> _Curves:
+    points = as_complex(np.vstack([run.points for run in runs]))
+    tangents = as_complex(np.vstack([run.tangents for run in runs]))
     if not (np.isfinite(points).all() and np.isfinite(tangents).all()):
         raise ValueError("points and tangents of a run must be finite")
-    kept = np.concatenate([[True], np.diff(points) != 0])
-    points, tangents = points[kept], tangents[kept]
-    if len(points) < 2:
+    of = np.repeat(np.arange(len(runs)), [len(run.points) for run in runs])
+    kept = np.append(True, (np.diff(points) != 0) | (np.diff(of) != 0))
+    points, tangents, of = points[kept], tangents[kept], of[kept]
+    first = np.searchsorted(of, np.arange(len(runs)))
+    last = np.append(first[1:], len(of)) - 1
+    if (last <= first).any():
         raise ValueError("a run needs at least two different points")
     steps = np.angle(tangents[1:] * np.conj(tangents[:-1]))
-    turned = np.concatenate([[0.0], np.cumsum(steps)])
-    length = np.abs(np.diff(points))
-    checks, place = _between(points, tangents, _checks(length, steps, tolerance))
-    return _Curve(points, tangents, turned, checks, place)
+    turned = np.append(0.0, np.cumsum(steps))
+    parts = _checks(np.abs(np.diff(points)), steps, of, tolerance)
+    checks, place = _between(points, tangents, parts)
+    return _Curves(points, tangents, turned, checks, place, first, last)
 
 
-def _checks(length: Array, turn: Array, tolerance: float) -> Ints:
-    """Return into how many parts each step of a run is cut for checking.
+def _checks(length: Array, turn: Array, of: Ints, tolerance: float) -> Ints:
+    """Return into how many parts each step of runs is cut for checking.
 
     Next to a sharp bend an arc may carry on the bend's curvature over a long, flat step and leave
     the curve between its ends: such a step is cut as finely as the bend asks for.
     """
-    bend = np.abs(turn) / length
-    padded = np.pad(bend, REACH, mode="edge")
-    sharpest = np.max([padded[k : k + len(bend)] for k in range(2 * REACH + 1)], axis=0)
+    inside = of[1:] == of[:-1]
+    bend = np.divide(np.abs(turn), length, out=np.zeros_like(length), where=inside)
+    sharpest = bend.copy()
+    for away in range(1, REACH + 1):
+        beside = of[1:-away] == of[1 + away :]
+        for near, far in (
+            (slice(None, -away), slice(away, None)),
+            (slice(away, None), slice(None, -away)),
+        ):
+            sharpest[near] = np.maximum(sharpest[near], np.where(beside, bend[far], 0.0))
     parts = np.ceil(length * np.sqrt(sharpest / (8 * CHECK_PART * tolerance)))
-    return np.clip(parts, 1, MOST_CHECKS).astype(np.int64)
+    return np.where(inside, np.clip(parts, 1, MOST_CHECKS), 1).astype(np.int64)
 
 
 def _between(points: Plane, tangents: Plane, parts: Ints) -> tuple[Plane, Ints]:
     """Return points with others between them (cubic Hermite), and where the points stand."""
-    place = np.concatenate([[0], np.cumsum(parts)])
+    place = np.append(0, np.cumsum(parts))
     index = np.repeat(np.arange(len(parts)), parts)
-    part = (np.arange(len(index)) - place[index]) / parts[index]
-    return np.append(on_cubics(points, tangents, index, part)[0], points[-1]), place
+    number = np.arange(len(index)) - place[index]
+    checks, inner = points[np.append(index, len(parts))], np.flatnonzero(number)
+    share = number[inner] / parts[index[inner]]
+    checks[inner] = on_cubics(points, tangents, index[inner], share)[0]
+    return checks, place
 
 
-def _longest(curve: _Curve, start: int, guess: int, tolerance: float) -> tuple[int, Piece]:
-    """Return end and arcs of the longest piece from `start` that stays within the tolerance."""
-    low, best = start + 1, _piece(curve, start, start + 1, tolerance)[1]
-    high = _furthest(curve, start)
-    trial, rounds = min(start + guess, high), 0
-    while high - low > NEAR * (low - start):
+def _longest(curves: _Curves, tolerance: float) -> tuple[Ints, Ints]:
+    """Return both ends of the longest pieces that stay within the tolerance, in order."""
+    cuts = [
+        np.linspace(a, b, -((a - b) // SPAN) + 1).astype(np.int64)
+        for a, b in zip(curves.first, curves.last, strict=True)
+    ]
+    start, last = (
+        np.concatenate([one[side] for one in cuts]) for side in (slice(-1), slice(1, None))
+    )
+    starts, ends = [], []
+    low, high = start + 1, _furthest(curves, start, last)
+    trial, rounds = high, np.zeros_like(start)
+    while start.size:
+        found = high - low <= NEAR * (low - start)
+        if found.any():
+            starts.append(start[found])
+            ends.append(low[found])
+            guess = np.where(found, low - start, 0)
+            start = np.where(found, low, start)
+            left = start < last
+            start, last, low, high, trial, rounds, guess, found = (
+                one[left] for one in (start, last, low, high, trial, rounds, guess, found)
+            )
+            rounds[found] = 0
+            low[found] = start[found] + 1
+            high[found] = _furthest(curves, start[found], last[found])
+            trial[found] = np.minimum(start + guess, high)[found]
+            continue
         rounds += 1
-        trial = min(max(trial, low + 1), high)
-        error, piece = _piece(curve, start, trial, tolerance)
-        if error <= tolerance:
-            low, best = trial, piece
-        else:
-            high = trial - 1
-        growth = AIM * (tolerance / max(error, LEAST_ERROR * tolerance)) ** (1 / 3)
-        trial = start + round(growth * (trial - start)) if rounds % 3 else (low + high + 1) // 2
-    return low, best
+        trial = np.clip(trial, low + 1, high)
+        error = _errors(curves, start, trial)
+        fits = error <= tolerance
+        growth = np.cbrt(tolerance / np.maximum(error, LEAST_ERROR * tolerance))
+        low = np.where(fits, trial, low)
+        high = np.where(fits, np.where(growth <= 1 + NEAR, trial, high), trial - 1)
+        grown = start + np.rint(AIM * growth * (trial - start)).astype(np.int64)
+        trial = np.where(rounds % 3, grown, (low + high + 1) // 2)
+    order = np.argsort(np.concatenate(starts))
+    return np.concatenate(starts)[order], np.concatenate(ends)[order]
 
 
-def _furthest(curve: _Curve, start: int) -> int:
-    """Return the last index to which the tangent turns by no more than `MAX_TURN`."""
-    turned = np.abs(curve.turned[start + 1 :] - curve.turned[start])
-    over = turned > MAX_TURN
-    return start + max(1, int(np.argmax(over)) if over.any() else len(turned))
+def _ranges(low: Ints, high: Ints) -> tuple[Ints, Ints, Ints]:
+    """Return the numbers from `low` to below `high`, the range of each, where ranges begin."""
+    count = np.maximum(high - low, 0)
+    of = np.repeat(np.arange(len(low)), count)
+    begin = np.cumsum(count) - count
+    return np.arange(len(of)) - begin[of] + low[of], of, begin
 
 
-def _piece(curve: _Curve, start: int, end: int, tolerance: float) -> tuple[float, Piece]:
-    """Return the largest distance and the arcs of the biarc between two points of the curve."""
-    p, q = complex(curve.points[start]), complex(curve.points[end])
-    t, u = complex(curve.tangents[start]), complex(curve.tangents[end])
+def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
+    """Return the last indices to which the tangent turns by no more than `MAX_TURN`."""
+    index, of, begin = _ranges(start + 1, last + 1)
+    over = np.abs(curves.turned[index] - curves.turned[start[of]]) > MAX_TURN
+    bound = (
+        np.minimum.reduceat(np.where(over, index, len(curves.points)), begin) - 1
+        if len(of)
+        else last
+    )
+    return np.clip(bound, start + 1, last)
+
+
+def _biarcs(curves: _Curves, start: Ints, end: Ints) -> _Biarcs:
+    """Return the biarcs between points of the curves."""
+    p, q = curves.points[start], curves.points[end]
+    t, u = curves.tangents[start], curves.tangents[end]
     chord = q - p
-    inner = curve.checks[curve.place[start] + 1 : curve.place[end]]
-    if abs(chord) <= ROUNDING * abs(q):
-        return float(np.abs(inner - p).max(initial=0.0)), [(q, 0.0)]
-    first, second = cmath.phase(chord / t), cmath.phase(u / chord)
-    if abs(first - second) < SAME_ARC and abs(first) < 1:
-        half = 0.5 * (first + second)
-        return _largest(_to_arc(inner, p, t, q)), [(q, _bulge(half, chord, tolerance))]
-    along = 2 * (chord * (t + u).conjugate()).real
-    twist = 2 - 2 * (t * u.conjugate()).real
-    root = along + math.sqrt(along * along + 4 * twist * abs(chord) ** 2)
-    straight: tuple[float, Piece] = (math.inf, [(q, 0.0)])
-    if along <= 0:
-        return straight
+    before, after = np.angle(chord * np.conj(t)), np.angle(u * np.conj(chord))
+    arc = (np.abs(before - after) < SAME_ARC) & (np.abs(before) < 1)
+    along = 2 * (chord * np.conj(t + u)).real
+    twist = 2 - 2 * (t * np.conj(u)).real
     # Equal tangent lengths d on both sides of the joint (Bolton 1975): twist*d^2 + along*d =
     # |chord|^2.
-    length = 2 * abs(chord) ** 2 / root
+    square = np.abs(chord) ** 2
+    root = along + np.sqrt(along**2 + 4 * twist * square)
+    length = np.divide(2 * square, root, out=np.zeros_like(root), where=along > 0)
     joint = 0.5 * (p + q + length * (t - u))
-    first, second = cmath.phase((joint - p) / t), cmath.phase(u / (q - joint))
-    if max(abs(first), abs(second)) > 0.5 * MAX_TURN:
-        return straight
-    middle = t * cmath.exp(2j * first)
-    before = ((inner - joint) * middle.conjugate()).real < 0
-    error = max(
-        _largest(_to_arc(inner[before], p, t, joint)),
-        _largest(_to_arc(inner[~before], joint, middle, q)),
+    first, second = np.angle((joint - p) * np.conj(t)), np.angle(u * np.conj(q - joint))
+    pair = ~arc & (along > 0) & (np.maximum(np.abs(first), np.abs(second)) <= 0.5 * MAX_TURN)
+    first = np.where(pair, first, np.where(arc, 0.5 * (before + after), 0.0))
+    return _Biarcs(
+        joint=np.where(pair, joint, q),
+        halves=np.stack([first, np.where(pair, second, 0.0)]),
+        single=~pair,
+        fails=~pair & ~arc,
     )
-    pieces = [
-        (joint, _bulge(first, joint - p, tolerance)),
-        (q, _bulge(second, q - joint, tolerance)),
-    ]
-    return error, pieces
 
 
-def _bulge(half: float, chord: complex, tolerance: float) -> float:
-    """Return the bulge of an arc that turns by ``2 * half``; 0 where it hardly rises."""
-    bulge = math.tan(0.5 * half)
-    return bulge if 0.5 * abs(bulge * chord) > STRAIGHT * tolerance else 0.0
-
-
-def _largest(values: Array) -> float:
-    return float(values.max()) if values.size else 0.0
-
-
-def _to_arc(points: Plane, start: complex, tangent: complex, end: complex) -> Array:
-    """Return distances of points to the circle through two points with a tangent at the first."""
-    chord = end - start
-    bend = 2 * (chord / tangent).imag / abs(chord) ** 2
-    local = (points - start) * tangent.conjugate()
-    return off_circle(local, bend)
+def _errors(curves: _Curves, start: Ints, end: Ints) -> Array:
+    """Return the largest distance from the checks between points to the biarcs there."""
+    made = _biarcs(curves, start, end)
+    p, t = curves.points[start], curves.tangents[start]
+    begin = np.stack([p, made.joint])
+    tangent = np.stack([t, t * np.exp(2j * made.halves[0])])
+    chord = np.stack([made.joint - p, curves.points[end] - made.joint])
+    bend = 2 * (chord * np.conj(tangent)).imag
+    bend /= np.maximum(np.abs(chord) ** 2, np.finfo(float).tiny)
+    stop = np.where(made.fails, 0, curves.place[end])
+    index, of, ahead = _ranges(curves.place[start] + 1, stop)
+    points = curves.checks[index]
+    beyond = ((points - made.joint[of]) * np.conj(tangent[1, of])).real >= 0
+    side = (beyond & ~made.single[of]).astype(np.int64)
+    away = off_circle((points - begin[side, of]) * np.conj(tangent[side, of]), bend[side, of])
+    error = np.where(made.fails, np.inf, 0.0)
+    some = np.append(ahead[1:], len(of)) > ahead
+    if len(of):
+        error[some] = np.maximum.reduceat(away, ahead[some])
+    return error
