@@ -2,8 +2,7 @@
 
 A *biarc* is a pair of arcs with a common tangent at the joint, through two points with given
 tangents. A run becomes a bulge polyline (see `bulges`) of biarcs, each as long as the tolerance
-allows. All runs of a contour are fitted side by side: a *span* is a run or a part of a long one,
-and each round tries one length on every span.
+allows. All runs of a contour are fitted side by side: each round tries one length on every run.
 
 Points are complex numbers inside this room: turning and scaling a vector is one product.
 Curvature, not radius, describes an arc, so that a nearly straight piece loses no digits.
@@ -31,7 +30,7 @@ STRAIGHT = 1e-6
 """A piece counts as straight where its rise is below this part of the tolerance: far above
 rounding, far below anything that a machine can follow."""
 
-SAME_ARC = 1e-6
+SAME_ARC = 1e-9
 """Difference of the two end angles, rad, below which a biarc is written as one arc."""
 
 AIM = 0.985
@@ -51,10 +50,6 @@ REACH = 3
 
 MOST_CHECKS = 50
 """Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
-
-SPAN = 8192
-"""Most steps of a span: a longer run is cut, for the sake of speed, and has an arc or two more at
-each cut than the longest pieces would give, one in a hundred."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,13 +210,7 @@ def _between(points: Plane, tangents: Plane, parts: Ints) -> tuple[Plane, Ints]:
 
 def _longest(curves: _Curves, tolerance: float) -> tuple[Ints, Ints]:
     """Return both ends of the longest pieces that stay within the tolerance, in order."""
-    cuts = [
-        np.linspace(a, b, -((a - b) // SPAN) + 1).astype(np.int64)
-        for a, b in zip(curves.first, curves.last, strict=True)
-    ]
-    start, last = (
-        np.concatenate([one[side] for one in cuts]) for side in (slice(-1), slice(1, None))
-    )
+    start, last = curves.first, curves.last
     starts, ends = [], []
     low, high = start + 1, _furthest(curves, start, last)
     trial, rounds = high, np.zeros_like(start)
