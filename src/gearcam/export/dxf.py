@@ -26,7 +26,7 @@ from gearcam.numerals import shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.splines import DEGREE, fit_spline
+from gearcam.numeric.splines import DEGREE, fit_splines
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -204,7 +204,7 @@ def _polyline(
 
 def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]:
     """Poles and knots of each run's spline; each begins exactly where the one before ends."""
-    made = [fit_spline(run, CURVE_PART * style.tolerance) for run in contour.runs]
+    made = fit_splines(contour.runs, CURVE_PART * style.tolerance)
     for spline, following in zip(made, [*made[1:], made[0]], strict=True):
         poles = spline.poles.copy()
         gap = float(np.hypot(*(poles[-1] - following.poles[0])))
