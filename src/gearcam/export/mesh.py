@@ -109,6 +109,7 @@ def _require(mesh: Mesh, name: str, when: str = "") -> None:
 
 def _single(mesh: Mesh, name: str) -> Mesh:
     """Round a mesh to single precision, join what falls together, drop what folds."""
+    _require(mesh, name)
     rounded = mesh.vertices.astype(np.float32).astype(np.float64)
     order = np.lexsort(rounded.T)
     new = np.append(True, (np.diff(rounded[order], axis=0) != 0.0).any(axis=1))

@@ -139,8 +139,11 @@ class Contour:
     @cached_property
     def moments(self) -> Moments:
         """Moments inside the true curve, from the dense runs."""
-        made = (curve_moments(run.points, run.tangents) for run in self.runs)
-        return sum(made, start=Moments())
+        # steps from one run to the next have no length
+        return curve_moments(
+            np.vstack([run.points for run in self.runs]),
+            np.vstack([run.tangents for run in self.runs]),
+        )
 
     @property
     def length(self) -> float:
