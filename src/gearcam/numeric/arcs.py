@@ -39,6 +39,9 @@ SAME_ARC = 1e-9
 NEAR = 0.02
 """The search stops where the longest fitting piece is known to this part of its length."""
 
+WIDEST = np.tan(1.0)
+"""Tangent of the largest half of the angle through which one arc may turn."""
+
 CHECK_PART = 0.02
 """Part of the tolerance by which the arcs may leave the curve unseen between two checks."""
 
@@ -64,13 +67,13 @@ class _Curves:
 
 
 class _Biarcs(NamedTuple):
-    """Biarcs: their joints, and half the angles through which both arcs turn, (2, n).
+    """Biarcs: their joints, and the bulges of both arcs, (2, n).
 
     A `single` arc ends where the joint would be; so does a straight piece, where it `fails`.
     """
 
     joint: Plane
-    halves: Array
+    bulges: Array
     single: Mask
     fails: Mask
 
@@ -110,8 +113,8 @@ def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]
     made = _biarcs(rows, start, end)
     kept = np.stack([np.ones_like(made.single), ~made.single], axis=1)
     knots = np.stack([rows.points[start], made.joint, rows.points[end]])
-    bulges = np.tan(0.5 * made.halves)
-    bulges *= 0.5 * np.abs(bulges * np.diff(knots, axis=0)) > STRAIGHT * tolerance
+    rise = 0.5 * np.abs(made.bulges * np.diff(knots, axis=0))
+    bulges = np.where(rise > STRAIGHT * tolerance, made.bulges, 0.0)
     behind = np.cumsum(kept.sum(axis=1))[np.searchsorted(start, rows.last) - 1]
     pieces = (np.split(one.T[kept], behind[:-1]) for one in (knots[:2], bulges))
     ends = rows.points[rows.last]
@@ -204,35 +207,37 @@ def _biarcs(rows: Rows, start: Ints, end: Ints) -> _Biarcs:
     p, q = rows.points[start], rows.points[end]
     t, u = rows.tangents[start], rows.tangents[end]
     chord = q - p
-    before, after = np.angle(chord * np.conj(t)), np.angle(u * np.conj(chord))
-    arc = (np.abs(before - after) < SAME_ARC) & (np.abs(before) < 1)
-    along = 2 * (chord * np.conj(t + u)).real
-    twist = 2 - 2 * (t * np.conj(u)).real
-    # Equal tangent lengths d on both sides of the joint (Bolton 1975): twist*d^2 + along*d =
+    before, after = chord * np.conj(t), u * np.conj(chord)
+    apart = before * np.conj(after)
+    single = np.abs(apart.imag) < SAME_ARC * apart.real
+    single &= np.abs(before.imag) < WIDEST * before.real
+    along = 2 * (before + after).real
+    # Equal tangent lengths d on both sides of the joint (Bolton 1975): |t - u|^2*d^2 + along*d =
     # |chord|^2.
     square = np.abs(chord) ** 2
-    root = along + np.sqrt(along**2 + 4 * twist * square)
+    root = along + np.sqrt(along**2 + 4 * np.abs(t - u) ** 2 * square)
     length = np.divide(2 * square, root, out=np.zeros_like(root), where=along > 0)
     joint = 0.5 * (p + q + length * (t - u))
-    first, second = np.angle((joint - p) * np.conj(t)), np.angle(u * np.conj(q - joint))
-    pair = ~arc & (along > 0) & (np.maximum(np.abs(first), np.abs(second)) <= 0.5 * MAX_TURN)
-    first = np.where(pair, first, np.where(arc, 0.5 * (before + after), 0.0))
-    return _Biarcs(
-        joint=np.where(pair, joint, q),
-        halves=np.stack([first, np.where(pair, second, 0.0)]),
-        single=~pair,
-        fails=~pair & ~arc,
-    )
+    turned = np.array([(joint - p) * np.conj(t), u * np.conj(q - joint)])
+    # each arc turns by twice the angle of these
+    pair = ~single & (along > 0) & (np.abs(turned.imag) <= turned.real).all(axis=0)
+    turned[0, single] = (before + after)[single]
+    size = np.abs(turned) + turned.real
+    bulges = np.divide(turned.imag, size, out=np.zeros_like(size), where=size > 0)
+    bulges[:, ~pair & ~single] = bulges[1, single] = 0.0
+    return _Biarcs(np.where(pair, joint, q), bulges, ~pair, ~pair & ~single)
 
 
 def _errors(curves: _Curves, start: Ints, end: Ints) -> Array:
     """Return the largest distance from the checks between points to the biarcs there."""
     made = _biarcs(curves.rows, start, end)
     p, t = curves.rows.points[start], curves.rows.tangents[start]
-    begin = np.stack([p, made.joint])
-    back = np.conj(np.stack([t, t * np.exp(2j * made.halves[0])]))
-    chord = np.stack([made.joint - p, curves.rows.points[end] - made.joint])
-    bend = 2 * (chord * back).imag / np.maximum(np.abs(chord) ** 2, np.finfo(float).tiny)
+    begin = np.array([p, made.joint])
+    chord = np.array([made.joint - p, curves.rows.points[end] - made.joint])
+    square = np.maximum(chord.real**2 + chord.imag**2, np.finfo(float).tiny)
+    # the tangent at the joint is that at the start, mirrored by the chord
+    back = np.array([np.conj(t), t * np.conj(chord[0]) ** 2 / square[0]])
+    bend = 2 * (chord * back).imag / square
 
     def away(index: Ints, of: Ints) -> Array:
         points = curves.checks[index]

@@ -126,30 +126,29 @@ def longest_pieces(
     """
     start, last = rows.first, rows.last
     found: list[tuple[Ints, Ints]] = []
-    low, high = start + 1, furthest(start, last)
-    trial, rounds = high, np.zeros_like(start)
+    low, top = start + 1, furthest(start, last)
+    trial = high = top
     while start.size:
         done = high - low <= near * (low - start)
         if done.any():
             found.append((start[done], low[done]))
-            guess = low - start
+            trial = np.where(done, 2 * low - start, trial)
             start = np.where(done, low, start)
             left = start < last
-            start, last, low, high, trial, rounds, guess, done = (
-                one[left] for one in (start, last, low, high, trial, rounds, guess, done)
+            start, last, low, high, top, trial, done = (
+                one[left] for one in (start, last, low, high, top, trial, done)
             )
-            begun = start[done]
-            rounds[done], low[done], high[done] = 0, begun + 1, furthest(begun, last[done])
-            trial[done] = begun + guess[done]
+            low[done] = start[done] + 1
+            high[done] = top[done] = furthest(start[done], last[done])
             continue
-        rounds += 1
-        trial = np.clip(trial, low + 1, high)
+        # a prediction that leaves what is known says nothing: then the middle is tried
+        inside = (trial > low) & ((trial < high) | (high == top))
+        trial = np.where(inside, np.minimum(trial, high), (low + high + 1) // 2)
         error = errors(start, trial)
         fits = error <= tolerance
         growth = (tolerance / np.maximum(error, tolerance / _GROWTH**order)) ** (1 / order)
         low = np.where(fits, trial, low)
         high = np.where(fits, np.where(growth <= 1 + near, trial, high), trial - 1)
-        grown = start + np.rint(_AIM * growth * (trial - start)).astype(np.int64)
-        trial = np.where(rounds % 3, grown, (low + high + 1) // 2)
+        trial = start + np.rint(_AIM * growth * (trial - start)).astype(np.int64)
     starts, ends = (np.sort(np.concatenate(one)) for one in zip(*found, strict=True))
     return starts, ends
