@@ -17,6 +17,12 @@ from gearcam.numeric.contour import Run
 _AIM: Final = 0.985
 """Part of the predicted length that the search tries: a little short, so that most succeed."""
 
+_SPREAD: Final = np.array([1.0, 0.8, 0.92, 0.97, 1.03, 1.1, 1.3])
+"""Lengths that are tried together, over the predicted one."""
+
+_FEW: Final = 8
+"""Runs for which that costs hardly more than to try one."""
+
 _GROWTH: Final = 10.0
 """Growth of a length from one trial to the next at most: very small errors predict nothing."""
 
@@ -144,11 +150,18 @@ def longest_pieces(
         # a prediction that leaves what is known says nothing: then the middle is tried
         inside = (trial > low) & ((trial < high) | (high == top))
         trial = np.where(inside, np.minimum(trial, high), (low + high + 1) // 2)
-        error = errors(start, trial)
+        spread = _SPREAD[:, None] if start.size <= _FEW else np.ones((1, 1))
+        tried = start + np.rint(spread * (trial - start)).astype(np.int64)
+        tried = np.minimum(np.maximum(tried, low + 1), high)
+        error = errors(np.tile(start, len(spread)), tried.ravel()).reshape(tried.shape)
         fits = error <= tolerance
+        low = np.where(fits, tried, low).max(axis=0)
+        high = np.where(fits | (tried < low), high, tried - 1).min(axis=0)
+        # the longest that fits predicts, or else the shortest
+        best = np.where(fits, tried, -tried).argmax(axis=0), np.arange(start.size)
+        error, trial = error[best], tried[best]
         growth = (tolerance / np.maximum(error, tolerance / _GROWTH**order)) ** (1 / order)
-        low = np.where(fits, trial, low)
-        high = np.where(fits, np.where(growth <= 1 + near, trial, high), trial - 1)
+        high = np.where((trial == low) & (growth <= 1 + near), low, high)
         trial = start + np.rint(_AIM * growth * (trial - start)).astype(np.int64)
     starts, ends = (np.sort(np.concatenate(one)) for one in zip(*found, strict=True))
     return starts, ends
