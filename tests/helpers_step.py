@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.splines import fit_spline
+from gearcam.numeric.splines import fit_splines
 from gearcam.parts.body import Part
 from gearcam.parts.shapes import Loop
 from helpers_splines import cubics
@@ -92,7 +92,7 @@ def spline_area(contour: Contour, tolerance: float) -> float:
     total = 0.0
     for run in contour.runs:
         for piece in run.pieces:
-            x, y = np.moveaxis(cubics(fit_spline(piece, tolerance)), 2, 0)
+            x, y = np.moveaxis(cubics(fit_splines([piece], tolerance)[0]), 2, 0)
             swept = (x @ basis) * (np.diff(y) @ slopes) - (y @ basis) * (np.diff(x) @ slopes)
             total += 0.25 * float((swept @ weight).sum())
     return total

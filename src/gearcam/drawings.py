@@ -133,20 +133,13 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
         return shape
     turn, shift = cmath.exp(1j * angle), complex(*offset)
 
-    def move(points: Array, by: complex = shift) -> Array:
+    def move(points: Array) -> Array:
         values = np.ascontiguousarray(points, dtype=np.float64).view(np.complex128)
-        return (values * turn + by).view(np.float64)
+        return (values * turn + shift).view(np.float64)
 
     match shape:
         case Contour():
-            return replace(
-                shape,
-                dense=lambda: tuple(
-                    replace(run, points=move(run.points), tangents=move(run.tangents, 0))
-                    for run in shape.runs
-                ),
-                vertices=move(shape.vertices),
-            )
+            return shape.placed(turn, shift)
         case Path():
             return replace(shape, points=move(shape.points))
         case Loop():

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from gearcam.numeric.contour import Run
-from gearcam.numeric.splines import DEGREE, Spline, fit_spline
+from gearcam.numeric.splines import DEGREE, Spline, fit_splines
 from helpers_contour import Curve, arc, as_pairs
 from helpers_splines import cubics
 
@@ -84,7 +84,7 @@ def miss(points: np.ndarray, curve: Curve) -> float:
 @pytest.mark.parametrize("tolerance", [3e-2, 1e-3, 1e-5])
 @pytest.mark.parametrize("name", CURVES)
 def test_the_error_is_below_the_tolerance_and_near_it(name: str, tolerance: float) -> None:
-    spline = fit_spline(run_of(CURVES[name]), tolerance)
+    spline = fit_splines([run_of(CURVES[name])], tolerance)[0]
     error = miss(drawn(spline), CURVES[name])
     assert error <= tolerance
     if len(spline.breaks) > 3:
@@ -94,7 +94,7 @@ def test_the_error_is_below_the_tolerance_and_near_it(name: str, tolerance: floa
 @pytest.mark.parametrize("name", CURVES)
 def test_it_reaches_both_ends_with_their_tangents(name: str) -> None:
     run = run_of(CURVES[name])
-    spline = fit_spline(run, 1e-3)
+    spline = fit_splines([run], 1e-3)[0]
     assert spline.poles[[0, -1]].tolist() == run.points[[0, -1]].tolist()
     for arm, unit in ((spline.poles[:2], run.tangents[0]), (spline.poles[-2:], run.tangents[-1])):
         way = np.diff(arm, axis=0)[0]
@@ -103,7 +103,7 @@ def test_it_reaches_both_ends_with_their_tangents(name: str) -> None:
 
 @pytest.mark.parametrize("name", CURVES)
 def test_knots_are_double_and_tangents_pass_through_them(name: str) -> None:
-    spline = fit_spline(run_of(CURVES[name]), 1e-4)
+    spline = fit_splines([run_of(CURVES[name])], 1e-4)[0]
     cubics = len(spline.breaks) - 1
     assert cubics > 3
     assert len(spline.poles) == 2 * cubics + 2
@@ -124,7 +124,7 @@ def test_knots_are_double_and_tangents_pass_through_them(name: str) -> None:
 
 @pytest.mark.parametrize("name", CURVES)
 def test_its_cubics_are_the_spline(name: str) -> None:
-    spline = fit_spline(run_of(CURVES[name]), 1e-4)
+    spline = fit_splines([run_of(CURVES[name])], 1e-4)[0]
     u = np.linspace(0.0, 1.0, 11)
     for (low, high), bezier in zip(pairwise(spline.breaks), cubics(spline), strict=True):
         a, b, c, d = bezier @ [1, 1j]
@@ -138,7 +138,7 @@ def test_its_cubics_are_the_spline(name: str) -> None:
 def test_pieces_follow_the_fourth_root_of_the_tolerance() -> None:
     tolerances = 10.0 ** np.arange(-2, -9, -1.0)
     run = run_of(ellipse_piece, 20000)
-    counts = [len(fit_spline(run, tolerance).breaks) - 1 for tolerance in tolerances]
+    counts = [len(fit_splines([run], tolerance)[0].breaks) - 1 for tolerance in tolerances]
     slope = np.polyfit(np.log(tolerances[2:]), np.log(counts[2:]), 1)[0]
     assert slope == pytest.approx(-0.25, abs=0.025)
 
@@ -149,7 +149,7 @@ def test_a_circle_needs_as_many_as_theory_says(tolerance: float) -> None:
     radius, sweep = 10.0, 5.0
     run = run_of(arc(0j, radius, 0.0, sweep), 20000)
     longest = (384 * tolerance / radius) ** 0.25
-    count = len(fit_spline(run, tolerance).breaks) - 1
+    count = len(fit_splines([run], tolerance)[0].breaks) - 1
     assert sweep / longest <= count * 1.01
     assert count <= math.ceil(1.06 * sweep / longest) + 1
 
@@ -157,7 +157,7 @@ def test_a_circle_needs_as_many_as_theory_says(tolerance: float) -> None:
 def test_a_straight_piece_is_one_cubic() -> None:
     ends = np.array([[1.0, 2.0], [31.0, 42.0]])
     run = Run(points=ends, tangents=np.array([[0.6, 0.8], [0.6, 0.8]]))
-    spline = fit_spline(run, 1e-6)
+    spline = fit_splines([run], 1e-6)[0]
     assert len(spline.breaks) == 2
     assert spline.poles == pytest.approx(np.array([[1, 2], [11, 46 / 3], [21, 86 / 3], [31, 42]]))
     assert spline.breaks == pytest.approx([0.0, 50.0])
@@ -168,14 +168,15 @@ def test_points_given_twice_do_no_harm() -> None:
     twice = Run(
         points=np.repeat(run.points, 2, axis=0), tangents=np.repeat(run.tangents, 2, axis=0)
     )
-    assert fit_spline(twice, 1e-4).poles == pytest.approx(fit_spline(run, 1e-4).poles, abs=1e-12)
+    doubled, plain = fit_splines([twice, run], 1e-4)
+    assert doubled.poles == pytest.approx(plain.poles, abs=1e-12)
 
 
 @pytest.mark.parametrize("pole", [1, 4, 5, -2])
 def test_a_moved_pole_is_found(pole: int) -> None:
     """The control: the largest share of an inner pole in its cubic is 4/9."""
     tolerance = 1e-3
-    spline = fit_spline(run_of(ellipse_piece), tolerance)
+    spline = fit_splines([run_of(ellipse_piece)], tolerance)[0]
     poles = spline.poles.copy()
     way = poles[pole + 1] - poles[pole - 1] if pole > 0 else poles[-1] - poles[-3]
     poles[pole] += 6 * tolerance * np.array([-way[1], way[0]]) / np.hypot(*way)
@@ -185,7 +186,7 @@ def test_a_moved_pole_is_found(pole: int) -> None:
 @pytest.mark.parametrize("tolerance", [0.0, -1e-3, math.nan])
 def test_tolerances_that_are_not_positive_are_refused(tolerance: float) -> None:
     with pytest.raises(ValueError, match="tolerance must be positive"):
-        fit_spline(run_of(flank, 50), tolerance)
+        fit_splines([run_of(flank, 50)], tolerance)
 
 
 def test_a_single_point_is_refused() -> None:
@@ -193,4 +194,4 @@ def test_a_single_point_is_refused() -> None:
     for count in (1, 3):
         run = Run(points=np.repeat(point, count, 0), tangents=np.repeat(unit, count, 0))
         with pytest.raises(ValueError, match="two different points"):
-            fit_spline(run, 1e-3)
+            fit_splines([run], 1e-3)

@@ -10,6 +10,7 @@ import math
 import re
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +23,7 @@ from gearcam.errors import GearcamError, MissingExtraError
 from gearcam.export import step, step_shapes
 from gearcam.export.step import step_bytes
 from gearcam.numeric.contour import Run
-from gearcam.numeric.splines import Spline, fit_spline
+from gearcam.numeric.splines import Spline, fit_splines
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.shapes import Circle
 from gearcam.solids import SolidError
@@ -355,13 +356,13 @@ def moved_pole(amount: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the first fit have a pole beside its place."""
     left = [amount]
 
-    def fit(run: Run, tolerance: float) -> Spline:
-        made = fit_spline(run, tolerance)
-        poles = made.poles.copy()
-        poles[len(poles) // 2] += left.pop() * made.poles[0] / 20.0 if left else 0.0
-        return Spline(poles=poles, breaks=made.breaks)
+    def fit(runs: Sequence[Run], tolerance: float) -> list[Spline]:
+        made = fit_splines(runs, tolerance)
+        poles = made[0].poles.copy()
+        poles[len(poles) // 2] += left.pop() * made[0].poles[0] / 20.0 if left else 0.0
+        return [Spline(poles=poles, breaks=made[0].breaks), *made[1:]]
 
-    monkeypatch.setattr(step_shapes, "fit_spline", fit)
+    monkeypatch.setattr(step_shapes, "fit_splines", fit)
 
 
 def test_a_moved_pole_is_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,9 +11,9 @@ import pytest
 
 from gearcam.drawings import Drawing, Path, pair_drawing
 from gearcam.export.svg import svg_bytes
-from gearcam.numeric.bulges import distances
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
+from helpers_bulges import distances
 from helpers_contour import bore, gear_contour
 
 etree: Any = importlib.import_module("lxml.etree")

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from gearcam.numeric.arcs import fit_arcs, fit_closed
-from gearcam.numeric.bulges import deviation, distances, flatten_bulges
+from gearcam.numeric.bulges import deviation, farthest, flatten_bulges
 from gearcam.numeric.contour import Run
+from helpers_bulges import distances
 from helpers_contour import arc, disc_contour, gear_contour, line, sample, squashed
 
 TOLERANCE = 1e-3
@@ -45,7 +46,7 @@ def end_tangents(vertices: np.ndarray, bulges: np.ndarray) -> tuple[np.ndarray, 
 
 @pytest.mark.parametrize("run", [spiral(), spiral(-0.5), wave()], ids=["out", "in", "wave"])
 def test_the_fit_stays_within_the_tolerance_and_uses_it(run: Run) -> None:
-    vertices, bulges = fit_arcs(run, TOLERANCE)
+    vertices, bulges = fit_arcs([run], TOLERANCE)[0]
     there = distances(run.points, vertices, bulges, closed=False).max()
     places = flatten_bulges(vertices, bulges, math.inf, closed=False, least=20)
     back = distances(places, run.points, np.zeros(len(run.points) - 1), closed=False).max()
@@ -55,7 +56,7 @@ def test_the_fit_stays_within_the_tolerance_and_uses_it(run: Run) -> None:
 
 @pytest.mark.parametrize("run", [spiral(), spiral(-0.5), wave()], ids=["out", "in", "wave"])
 def test_the_fit_is_tangent_continuous_and_ends_with_the_run(run: Run) -> None:
-    vertices, bulges = fit_arcs(run, TOLERANCE)
+    vertices, bulges = fit_arcs([run], TOLERANCE)[0]
     first, last = end_tangents(vertices, bulges)
     assert np.abs(np.angle(first[1:] / last[:-1])).max() < 1e-9
     given = run.tangents[:, 0] + 1j * run.tangents[:, 1]
@@ -68,7 +69,7 @@ def test_the_number_of_arcs_grows_with_the_cube_root_of_the_exactness() -> None:
     run = sample(
         lambda u: (20 * np.exp((0.3 + 1j) * 2 * u), np.exp((0.3 + 1j) * 2 * u) * (0.3 + 1j)), 2e-9
     )
-    counts = [len(fit_arcs(run[0], tolerance)[1]) for tolerance in (1e-3, 1e-6)]
+    counts = [len(fit_arcs([run[0]], tolerance)[0][1]) for tolerance in (1e-3, 1e-6)]
     assert counts[1] / counts[0] == pytest.approx(10, rel=0.35)
 
 
@@ -89,7 +90,7 @@ def test_a_straight_run_is_one_straight_piece() -> None:
         tangents=np.repeat(run.tangents[:1], 50, 0),
     )
     for straight in (run, many):
-        vertices, bulges = fit_arcs(straight, TOLERANCE)
+        vertices, bulges = fit_arcs([straight], TOLERANCE)[0]
         assert bulges.tolist() == [0.0]
         assert (vertices == run.points[[0, -1]]).all()
 
@@ -97,7 +98,7 @@ def test_a_straight_run_is_one_straight_piece() -> None:
 def test_repeated_points_do_no_harm() -> None:
     run = spiral()
     doubled = Run(points=np.repeat(run.points, 2, 0), tangents=np.repeat(run.tangents, 2, 0))
-    assert (fit_arcs(doubled, TOLERANCE)[0] == fit_arcs(run, TOLERANCE)[0]).all()
+    assert (fit_arcs([doubled], TOLERANCE)[0][0] == fit_arcs([run], TOLERANCE)[0][0]).all()
 
 
 def test_a_run_that_comes_back_by_rounding_does_no_harm() -> None:
@@ -109,14 +110,16 @@ def test_a_run_that_comes_back_by_rounding_does_no_harm() -> None:
     tangents = np.insert(tangents, 0, np.repeat(tangents[:1], 2, 0), axis=0)
     for count in (3, 4, 5, 8, 20, len(points)):
         run = Run(points=points[:count], tangents=tangents[:count])
-        vertices, bulges = fit_arcs(run, TOLERANCE)
+        vertices, bulges = fit_arcs([run], TOLERANCE)[0]
         assert distances(run.points, vertices, bulges, closed=False).max() < 1.1 * TOLERANCE
 
 
 def test_a_mirrored_run_mirrors_the_bulges() -> None:
     run, flip = wave(), np.array([1.0, -1.0])
-    _, bulges = fit_arcs(run, TOLERANCE)
-    _, mirrored = fit_arcs(Run(points=run.points * flip, tangents=run.tangents * flip), TOLERANCE)
+    _, bulges = fit_arcs([run], TOLERANCE)[0]
+    _, mirrored = fit_arcs(
+        [Run(points=run.points * flip, tangents=run.tangents * flip)], TOLERANCE
+    )[0]
     assert mirrored == pytest.approx(-bulges, abs=1e-12)
     assert (bulges < 0).any()
     assert (bulges > 0).any()
@@ -125,11 +128,11 @@ def test_a_mirrored_run_mirrors_the_bulges() -> None:
 def test_what_cannot_be_fitted_is_refused() -> None:
     run = spiral()
     with pytest.raises(ValueError, match="positive"):
-        fit_arcs(run, 0.0)
+        fit_arcs([run], 0.0)
     with pytest.raises(ValueError, match="two different points"):
-        fit_arcs(Run(points=run.points[:1], tangents=run.tangents[:1]), TOLERANCE)
+        fit_arcs([Run(points=run.points[:1], tangents=run.tangents[:1])], TOLERANCE)
     with pytest.raises(ValueError, match="finite"):
-        fit_arcs(Run(points=run.points * np.nan, tangents=run.tangents), TOLERANCE)
+        fit_arcs([Run(points=run.points * np.nan, tangents=run.tangents)], TOLERANCE)
     with pytest.raises(ValueError, match="do not join"):
         fit_closed([run], TOLERANCE)
 
@@ -161,7 +164,7 @@ def test_a_flat_step_beside_a_sharp_bend_is_checked_within(flat_radius: float) -
             points=np.vstack([bend.points, flat.points[1:]]),
             tangents=np.vstack([bend.tangents, flat.tangents[1:]]),
         )
-        vertices, bulges = fit_arcs(run, TOLERANCE)
+        vertices, bulges = fit_arcs([run], TOLERANCE)[0]
         worst = max(worst, distances(true, vertices, bulges, closed=False).max())
     assert 0.4 * TOLERANCE < worst < 1.02 * TOLERANCE
 
@@ -170,7 +173,7 @@ def test_between_coarse_points_the_tangents_tell_the_curve() -> None:
     angle = np.linspace(0.0, np.pi / 2, 7)
     spokes = np.column_stack([np.cos(angle), np.sin(angle)])
     run = Run(points=10 * spokes, tangents=np.column_stack([-spokes[:, 1], spokes[:, 0]]))
-    _, bulges = fit_arcs(run, TOLERANCE)
+    _, bulges = fit_arcs([run], TOLERANCE)[0]
     assert bulges == pytest.approx([np.tan(np.pi / 8)], abs=1e-9)
 
 
@@ -257,8 +260,32 @@ def test_flattening_keeps_the_sagitta_and_the_area() -> None:
 
 def test_an_open_polyline_keeps_its_last_point() -> None:
     run = sample(squashed(arc(0, 10, 0, 1), (1, 0.5), 0.2), 1e-5)[0]
-    vertices, bulges = fit_arcs(run, TOLERANCE)
+    vertices, bulges = fit_arcs([run], TOLERANCE)[0]
     points = flatten_bulges(vertices, bulges, 1e-4, closed=False)
     assert (points[-1] == run.points[-1]).all()
     with pytest.raises(ValueError, match="bulges"):
         flatten_bulges(vertices, bulges, 1e-4, closed=True)
+
+
+@pytest.mark.parametrize("shape", ["gear", "disc", "spur"])
+def test_the_farthest_point_is_that_of_exact_distances(shape: str) -> None:
+    """Also where the way downhill from the place of the same length ends at a corner."""
+    if shape == "spur":
+        dense = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [5.0, 1.0], [0.0, 10.0]])
+        vertices, bulges = np.roll(dense, 2, axis=0) * 1.01, np.array([0.0, 0.1, -0.2, 0.0, 0.9])
+    else:
+        contour = gear_contour(12, 5.0, 1e-2) if shape == "gear" else disc_contour(50.0)
+        vertices, bulges = fit_closed(contour.runs, 1e-2)
+        dense = np.vstack([run.points[:-1] for run in contour.runs])
+        dense = dense + np.random.default_rng(4).normal(0.0, 1e-3, dense.shape)
+    exact = distances(dense, vertices, bulges).max()
+    assert farthest(dense, vertices, bulges) == pytest.approx(exact, rel=1e-12)
+
+
+def test_runs_fitted_side_by_side_are_those_fitted_alone() -> None:
+    runs = [spiral(), wave(), spiral(-0.5)]
+    together = fit_arcs(runs, TOLERANCE)
+    for (vertices, bulges), run in zip(together, runs, strict=True):
+        ((alone, bends),) = fit_arcs([run], TOLERANCE)
+        assert (vertices == alone).all()
+        assert bulges == pytest.approx(bends, abs=1e-14)

@@ -12,7 +12,8 @@ from gearcam.cams.follow import follow
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.profile_points import profile_points
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.bulges import as_pairs, distances
+from gearcam.numeric.bulges import as_pairs
+from helpers_bulges import distances
 
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]

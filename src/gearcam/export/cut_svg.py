@@ -101,8 +101,8 @@ def _data(feature: Feature, shift: Array, decimals: int) -> str:
     """Return the path data of a feature that is shifted."""
     match feature.shape:
         case Contour() as contour:
-            vertices, bulges = fit_closed(contour.runs, CURVE_PART * contour.tolerance)
-            return arc_data(vertices + shift, bulges, decimals)
+            vertices, bulges = contour.fitted(fit_closed, CURVE_PART * contour.tolerance)
+            return arc_data(contour.moved(vertices) + shift, bulges, decimals)
         case Circle(center=center, diameter=diameter):
             sides = center + 0.5 * diameter * np.array([[1.0, 0.0], [-1.0, 0.0]])
             return arc_data(sides + shift, np.ones(2), decimals)

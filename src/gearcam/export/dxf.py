@@ -26,7 +26,7 @@ from gearcam.numerals import shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.splines import DEGREE, fit_spline
+from gearcam.numeric.splines import DEGREE, fit_splines
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -171,8 +171,8 @@ def add_shape(space: Modelspace, shape: Shape, attributes: dict[str, Any], style
                     poles.tolist(), degree=DEGREE, knots=knots.tolist(), dxfattribs=attributes
                 )
         case Contour() if style.curves == "arcs":
-            vertices, bulges = fit_closed(shape.runs, CURVE_PART * style.tolerance)
-            _polyline(space, vertices, bulges, attributes, style)
+            vertices, bulges = shape.fitted(fit_closed, CURVE_PART * style.tolerance)
+            _polyline(space, shape.moved(vertices), bulges, attributes, style)
         case Contour(vertices=vertices):
             _polyline(space, vertices, 0.0, attributes, style)
         case Loop():
@@ -197,21 +197,25 @@ def _polyline(
     closed: bool = True,
 ) -> None:
     """Add a polyline of the kind that the version knows."""
-    rows = np.column_stack([vertices, np.broadcast_to(bulges, len(vertices))]).tolist()
-    add = space.add_polyline2d if style.version == "R12" else space.add_lwpolyline
-    add(rows, format="xyb", close=closed, dxfattribs=attributes)
+    bends = np.broadcast_to(bulges, len(vertices))
+    if style.version == "R12":
+        rows = np.column_stack([vertices, bends]).tolist()
+        space.add_polyline2d(rows, format="xyb", close=closed, dxfattribs=attributes)
+        return
+    line = space.add_lwpolyline((), close=closed, dxfattribs=attributes)
+    widths = np.zeros_like(vertices)
+    # all at once: the library would add them one by one
+    line.lwpoints.extend(np.column_stack([vertices, widths, bends]))
 
 
 def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]:
     """Poles and knots of each run's spline; each begins exactly where the one before ends."""
-    made = [fit_spline(run, CURVE_PART * style.tolerance) for run in contour.runs]
+    made = contour.fitted(fit_splines, CURVE_PART * style.tolerance)
     for spline, following in zip(made, [*made[1:], made[0]], strict=True):
-        poles = spline.poles.copy()
-        gap = float(np.hypot(*(poles[-1] - following.poles[0])))
+        gap = float(np.hypot(*(spline.poles[-1] - following.poles[0])))
         if gap > style.tolerance:
             raise ValueError(f"runs do not join: a gap of {shown(gap, 3)} mm")
-        poles[-1] = following.poles[0]
-        yield poles, spline.knots
+        yield contour.moved(np.vstack([spline.poles[:-1], following.poles[:1]])), spline.knots
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Mesh files: STL (binary), 3MF and GLB, written by trimesh.
+"""Mesh files: STL (binary), 3MF and GLB, the latter two written by trimesh.
 
 All three hold millimetres. STL has no unit; 3MF states it; glTF means metres, but every program
 that takes wheels reads the numbers, so the GLB keeps millimetres and says so in its scene's extras
@@ -29,9 +29,8 @@ if TYPE_CHECKING:
 HEADER_LENGTH: Final = 80
 """Bytes of an STL header."""
 
-COUNT_LENGTH: Final = 4
-TRIANGLE_LENGTH: Final = 50
-"""Bytes of the number of triangles behind it, and of each triangle."""
+TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("color", "<u2")])
+"""A triangle of a binary STL; behind the header their number stands, in four bytes."""
 
 EPOCH: Final = (1980, 1, 1, 0, 0, 0)
 """The date in a 3MF's archive: the earliest that the format knows."""
@@ -58,16 +57,18 @@ def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     SolidError
         If the mesh is not closed, or rounding to single precision opens it.
     """
-    from trimesh.exchange.stl import export_stl
-
     # each body for itself: joined, two that touch would share edges and be open
-    files = (export_stl(body) for body in _scene(bodies).geometry.values())
-    triangles = b"".join(file[HEADER_LENGTH + COUNT_LENGTH :] for file in files)
-    count = len(triangles) // TRIANGLE_LENGTH
+    single = [_single(mesh, body) for body, mesh in bodies.items()]
+    corners = np.concatenate([mesh.vertices[mesh.triangles] for mesh in single])
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(normals, axis=1, keepdims=True)
+    triangles = np.zeros(len(corners), dtype=TRIANGLE)
+    triangles["corners"] = corners
+    triangles["normal"] = np.divide(normals, sizes, out=normals, where=sizes > 0.0)
     # "solid" at the start would announce the text form.
     label = f"gearcam {name} (mm)".encode("ascii", "replace")[:HEADER_LENGTH]
-    head = label.ljust(HEADER_LENGTH, b"\0") + count.to_bytes(COUNT_LENGTH, "little")
-    return head + triangles
+    count = len(triangles).to_bytes(4, "little")
+    return label.ljust(HEADER_LENGTH, b"\0") + count + triangles.tobytes()
 
 
 def threemf_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
@@ -108,9 +109,13 @@ def _require(mesh: Mesh, name: str, when: str = "") -> None:
 
 def _single(mesh: Mesh, name: str) -> Mesh:
     """Round a mesh to single precision, join what falls together, drop what folds."""
+    _require(mesh, name)
     rounded = mesh.vertices.astype(np.float32).astype(np.float64)
-    places, index = np.unique(rounded, axis=0, return_inverse=True)
-    triangles = index.reshape(-1)[mesh.triangles]
+    order = np.lexsort(rounded.T)
+    new = np.append(True, (np.diff(rounded[order], axis=0) != 0.0).any(axis=1))
+    index = np.empty_like(order)
+    index[order] = np.cumsum(new) - 1
+    places, triangles = rounded[order[new]], index[mesh.triangles]
     a, b, c = triangles.T
     single = Mesh(vertices=places, triangles=triangles[(a != b) & (b != c) & (c != a)])
     _require(single, name, " in single precision")

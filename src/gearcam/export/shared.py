@@ -156,16 +156,17 @@ def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: dict[str, Any]
         Contents by file name.
     """
     from gearcam.export.dxf import dxf_bytes
-    from gearcam.export.dxf_read import measure_dxf
+    from gearcam.export.dxf_read import Known, measure_dxf
 
     files: Files = {}
+    outlines: Known = {}
     known = measured.setdefault(
         "dxf", {"curves": style.curves, "version": style.version, "error_mm": {}}
     )
     for drawing in drawings:
         name = f"{drawing.name}.dxf"
         files[name] = dxf_bytes(drawing, style)
-        known["error_mm"][name] = measure_dxf(files[name], drawing.contours)
+        known["error_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
     return files
 
 

@@ -48,7 +48,12 @@ _TOKEN: Final = re.compile(r"'(gearcam-\d+)'")
 """What the kernel is given for a name."""
 
 
-def step_bytes(items: Sequence[tuple[Part, Placement]], name: str, tolerance: float) -> bytes:
+def step_bytes(
+    items: Sequence[tuple[Part, Placement]],
+    name: str,
+    tolerance: float,
+    made: dict[Part, Any] | None = None,
+) -> bytes:
     """Write parts as STEP.
 
     Parameters
@@ -59,6 +64,8 @@ def step_bytes(items: Sequence[tuple[Part, Placement]], name: str, tolerance: fl
         Of the assembly, and of the file without its ending.
     tolerance : float, mm
         Largest distance of the faces from the dense points of the outlines.
+    made : dict, optional
+        The parts' solids to that tolerance, as far as they have been made; new ones are kept in it.
 
     Returns
     -------
@@ -81,8 +88,9 @@ def step_bytes(items: Sequence[tuple[Part, Placement]], name: str, tolerance: fl
     texts = dict.fromkeys([f"{name}.step", name, *(part.name for part in parts)])
     tokens = {text: f"gearcam-{number}" for number, text in enumerate(texts)}
     with _silent(), _document() as document:
-        made = {part: _joined(solids_of(part, tolerance)) for part in parts}
-        _fill(document, items, made, tokens[name], tokens)
+        made = {} if made is None else made
+        made |= {p: _joined(solids_of(p, tolerance)) for p in parts if p not in made}
+        _fill(document, items, {part: made[part] for part in parts}, tokens[name], tokens)
         written = _write(document, tokens[f"{name}.step"])
     return _normal(written.decode("ascii"), tokens).encode("ascii")
 

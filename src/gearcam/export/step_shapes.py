@@ -25,7 +25,7 @@ import numpy as np
 
 from gearcam.numeric.bulges import arc_centers, as_complex, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.splines import DEGREE, Spline, fit_spline
+from gearcam.numeric.splines import DEGREE, Spline, fit_splines
 from gearcam.parts.body import Edge, Layer, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.solids import OVERSHOOT, SolidError, demand_volume
@@ -229,13 +229,13 @@ def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
     pieces = (piece for run in contour.runs for piece in run.pieces)
     runs = [piece for piece in pieces if _length(piece) > RESOLUTION]
     starts = [complex(*run.points[0]) for run in runs]
-    made = []
-    for run, start, end in zip(runs, starts, [*starts[1:], starts[0]], strict=True):
-        if _is_straight(run, min(RESOLUTION, tolerance)):
-            made.append(_line(start, end))
-        else:
-            made.append(_curve(fit_spline(run, tolerance), start, end))
-    return made
+    straight = [_is_straight(run, min(RESOLUTION, tolerance)) for run in runs]
+    bent = [run for run, flat in zip(runs, straight, strict=True) if not flat]
+    splines = iter(fit_splines(bent, tolerance) if bent else ())
+    return [
+        _line(start, end) if flat else _curve(next(splines), start, end)
+        for flat, start, end in zip(straight, starts, [*starts[1:], starts[0]], strict=True)
+    ]
 
 
 def _length(run: Run) -> float:

@@ -12,24 +12,20 @@ Refused: runs that do not join to a closed chain, tolerances that are not positi
 
 from __future__ import annotations
 
-import cmath
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs, off_circle
 from gearcam.numeric.contour import Run
-from gearcam.numeric.fitting import longest_pieces, points_to_fit
+from gearcam.numeric.fitting import Rows, largest, longest_pieces, points_to_fit
 from gearcam.numeric.hermite import on_cubics
 
-Piece = list[tuple[complex, float]]
-"""End point and bulge of each arc of a piece."""
-
-MAX_TURN = 0.5 * math.pi
+MAX_TURN = 0.5 * np.pi
 """Largest angle that one biarc may turn through, rad: keeps its two arcs short of a half circle,
 where distance to the arc and distance to the circle could differ."""
 
@@ -37,14 +33,14 @@ STRAIGHT = 1e-6
 """A piece counts as straight where its rise is below this part of the tolerance: far above
 rounding, far below anything that a machine can follow."""
 
-ROUNDING = 1e-15
-"""Distance of two points, over that from the origin, that is nothing but rounding."""
-
-SAME_ARC = 1e-6
+SAME_ARC = 1e-9
 """Difference of the two end angles, rad, below which a biarc is written as one arc."""
 
 NEAR = 0.02
 """The search stops where the longest fitting piece is known to this part of its length."""
+
+WIDEST = np.tan(1.0)
+"""Tangent of the largest half of the angle through which one arc may turn."""
 
 CHECK_PART = 0.02
 """Part of the tolerance by which the arcs may leave the curve unseen between two checks."""
@@ -57,22 +53,33 @@ MOST_CHECKS = 50
 
 
 @dataclass(frozen=True, eq=False)
-class _Curve:
-    """A run as complex points and tangents, with the angle turned so far.
+class _Curves:
+    """Rows of points, the angle that the tangent has `turned` so far, and where to check.
 
     Distances are taken at the `checks`: the points, and more between them where points are sparse
     beside a sharper bend; `place` is where each point stands among the checks.
     """
 
-    points: Plane
-    tangents: Plane
+    rows: Rows
     turned: Array
     checks: Plane
     place: Ints
 
 
-def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
-    """Fit tangent-continuous arcs to a run, each pair as long as the tolerance allows.
+class _Biarcs(NamedTuple):
+    """Biarcs: their joints, and the bulges of both arcs, (2, n).
+
+    A `single` arc ends where the joint would be; so does a straight piece, where it `fails`.
+    """
+
+    joint: Plane
+    bulges: Array
+    single: Mask
+    fails: Mask
+
+
+def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]:
+    """Fit tangent-continuous arcs to runs, each pair as long as the tolerance allows.
 
     From the start on, the longest piece is sought whose biarc stays within the tolerance of the
     run's points. The error grows with the third power of the length, so each trial predicts the
@@ -82,31 +89,38 @@ def fit_arcs(run: Run, tolerance: float) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    run : Run
-        A smooth piece, mm.
+    runs : sequence of Run
+        Smooth pieces, mm.
     tolerance : float, mm
-        Largest distance between the run's points and the arcs.
+        Largest distance between a run's points and the arcs.
 
     Returns
     -------
-    vertices : (k, 2) array, mm
-        Both ends of the run, and the knots between.
-    bulges : (k - 1,) array
-        Tangent of a quarter of each arc's angle, positive to the left, 0 for a straight piece.
+    list of (vertices, bulges)
+        For each run (k, 2) mm, both its ends and the knots between, and (k - 1,), the tangent of a
+        quarter of each arc's angle, positive to the left, 0 for a straight piece.
 
     Raises
     ------
     ValueError
-        If the tolerance is not positive, or the run is not finite or has fewer than two different
+        If the tolerance is not positive, or a run is not finite or has fewer than two different
         points.
     """
-    curve = _curve(run, tolerance)
-    last = len(curve.points) - 1
-    pieces = longest_pieces(
-        partial(_piece, curve, tolerance), partial(_furthest, curve), last, tolerance, 3, NEAR
-    )
-    ends, bulges = zip(*(arc for _, piece in pieces for arc in piece), strict=True)
-    return as_pairs(np.array([curve.points[0], *ends])), np.array(bulges)
+    rows = points_to_fit(runs, tolerance)
+    curves = _curves(rows, tolerance)
+    errors, furthest = partial(_errors, curves), partial(_furthest, curves)
+    start, end = longest_pieces(errors, furthest, rows, tolerance, 3, NEAR)
+    made = _biarcs(rows, start, end)
+    kept = np.stack([np.ones_like(made.single), ~made.single], axis=1)
+    knots = np.stack([rows.points[start], made.joint, rows.points[end]])
+    rise = 0.5 * np.abs(made.bulges * np.diff(knots, axis=0))
+    bulges = np.where(rise > STRAIGHT * tolerance, made.bulges, 0.0)
+    behind = np.cumsum(kept.sum(axis=1))[np.searchsorted(start, rows.last) - 1]
+    pieces = (np.split(one.T[kept], behind[:-1]) for one in (knots[:2], bulges))
+    ends = rows.points[rows.last]
+    return [
+        (as_pairs(np.append(one, q)), bends) for one, bends, q in zip(*pieces, ends, strict=True)
+    ]
 
 
 def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
@@ -131,105 +145,105 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
     ValueError
         If the runs do not join within the tolerance.
     """
-    vertices, bulges = [], []
-    for run, after in zip(runs, [*runs[1:], runs[0]], strict=True):
-        gap = math.dist(run.points[-1], after.points[0])
-        if gap > tolerance:
-            raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
-        points, bends = fit_arcs(run, tolerance)
-        vertices.append(points[:-1])
-        bulges.append(bends)
-    return np.vstack(vertices), np.concatenate(bulges)
+    ends = np.array([run.points[[0, -1]] for run in runs])
+    gap = float(np.hypot(*(np.roll(ends[:, 0], -1, axis=0) - ends[:, 1]).T).max())
+    if gap > tolerance:
+        raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
+    made = fit_arcs(runs, tolerance)
+    return np.vstack([points[:-1] for points, _ in made]), np.concatenate([b for _, b in made])
 
 
-def _curve(run: Run, tolerance: float) -> _Curve:
-    points, tangents = points_to_fit(run, tolerance)
-    steps = np.angle(tangents[1:] * np.conj(tangents[:-1]))
-    turned = np.concatenate([[0.0], np.cumsum(steps)])
-    length = np.abs(np.diff(points))
-    checks, place = _between(points, tangents, _checks(length, steps, tolerance))
-    return _Curve(points, tangents, turned, checks, place)
+def _curves(rows: Rows, tolerance: float) -> _Curves:
+    steps = np.angle(rows.tangents[1:] * np.conj(rows.tangents[:-1]))
+    turned = np.append(0.0, np.cumsum(steps))
+    of = np.repeat(np.arange(len(rows.first)), rows.last - rows.first + 1)
+    parts = _checks(np.abs(np.diff(rows.points)), steps, of, tolerance)
+    return _Curves(rows, turned, *_between(rows.points, rows.tangents, parts))
 
 
-def _checks(length: Array, turn: Array, tolerance: float) -> Ints:
-    """Return into how many parts each step of a run is cut for checking.
+def _checks(length: Array, turn: Array, of: Ints, tolerance: float) -> Ints:
+    """Return into how many parts each step of runs is cut for checking.
 
     Next to a sharp bend an arc may carry on the bend's curvature over a long, flat step and leave
     the curve between its ends: such a step is cut as finely as the bend asks for.
     """
-    bend = np.abs(turn) / length
-    padded = np.pad(bend, REACH, mode="edge")
-    sharpest = np.max([padded[k : k + len(bend)] for k in range(2 * REACH + 1)], axis=0)
+    inside = of[1:] == of[:-1]
+    bend = np.divide(np.abs(turn), length, out=np.zeros_like(length), where=inside)
+    sharpest = bend.copy()
+    for away in range(1, REACH + 1):
+        beside = of[1:-away] == of[1 + away :]
+        for near, far in (
+            (slice(None, -away), slice(away, None)),
+            (slice(away, None), slice(None, -away)),
+        ):
+            sharpest[near] = np.maximum(sharpest[near], np.where(beside, bend[far], 0.0))
     parts = np.ceil(length * np.sqrt(sharpest / (8 * CHECK_PART * tolerance)))
-    return np.clip(parts, 1, MOST_CHECKS).astype(np.int64)
+    return np.where(inside, np.clip(parts, 1, MOST_CHECKS), 1).astype(np.int64)
 
 
 def _between(points: Plane, tangents: Plane, parts: Ints) -> tuple[Plane, Ints]:
     """Return points with others between them (cubic Hermite), and where the points stand."""
-    place = np.concatenate([[0], np.cumsum(parts)])
+    place = np.append(0, np.cumsum(parts))
     index = np.repeat(np.arange(len(parts)), parts)
-    part = (np.arange(len(index)) - place[index]) / parts[index]
-    return np.append(on_cubics(points, tangents, index, part)[0], points[-1]), place
+    number = np.arange(len(index)) - place[index]
+    checks, inner = points[np.append(index, len(parts))], np.flatnonzero(number)
+    share = number[inner] / parts[index[inner]]
+    checks[inner] = on_cubics(points, tangents, index[inner], share)[0]
+    return checks, place
 
 
-def _furthest(curve: _Curve, start: int) -> int:
-    """Return the last index to which the tangent turns by no more than `MAX_TURN`."""
-    turned = np.abs(curve.turned[start + 1 :] - curve.turned[start])
-    over = turned > MAX_TURN
-    return start + max(1, int(np.argmax(over)) if over.any() else len(turned))
+def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
+    """Return the last indices to which the tangent turns by no more than `MAX_TURN`."""
+
+    def short(index: Ints, of: Ints) -> Array:
+        over = np.abs(curves.turned[index] - curves.turned[start[of]]) > MAX_TURN
+        return np.where(over, last[of] + 1 - index, 0)
+
+    return np.maximum(last - largest(short, start + 1, last + 1).astype(np.int64), start + 1)
 
 
-def _piece(curve: _Curve, tolerance: float, start: int, end: int) -> tuple[float, Piece]:
-    """Return the largest distance and the arcs of the biarc between two points of the curve."""
-    p, q = complex(curve.points[start]), complex(curve.points[end])
-    t, u = complex(curve.tangents[start]), complex(curve.tangents[end])
+def _biarcs(rows: Rows, start: Ints, end: Ints) -> _Biarcs:
+    """Return the biarcs between points."""
+    p, q = rows.points[start], rows.points[end]
+    t, u = rows.tangents[start], rows.tangents[end]
     chord = q - p
-    inner = curve.checks[curve.place[start] + 1 : curve.place[end]]
-    if abs(chord) <= ROUNDING * abs(q):
-        return float(np.abs(inner - p).max(initial=0.0)), [(q, 0.0)]
-    first, second = cmath.phase(chord / t), cmath.phase(u / chord)
-    if abs(first - second) < SAME_ARC and abs(first) < 1:
-        half = 0.5 * (first + second)
-        return _largest(_to_arc(inner, p, t, q)), [(q, _bulge(half, chord, tolerance))]
-    along = 2 * (chord * (t + u).conjugate()).real
-    twist = 2 - 2 * (t * u.conjugate()).real
-    root = along + math.sqrt(along * along + 4 * twist * abs(chord) ** 2)
-    straight: tuple[float, Piece] = (math.inf, [(q, 0.0)])
-    if along <= 0:
-        return straight
-    # Equal tangent lengths d on both sides of the joint (Bolton 1975): twist*d^2 + along*d =
+    before, after = chord * np.conj(t), u * np.conj(chord)
+    apart = before * np.conj(after)
+    single = np.abs(apart.imag) < SAME_ARC * apart.real
+    single &= np.abs(before.imag) < WIDEST * before.real
+    along = 2 * (before + after).real
+    # Equal tangent lengths d on both sides of the joint (Bolton 1975): |t - u|^2*d^2 + along*d =
     # |chord|^2.
-    length = 2 * abs(chord) ** 2 / root
+    square = np.abs(chord) ** 2
+    root = along + np.sqrt(along**2 + 4 * np.abs(t - u) ** 2 * square)
+    length = np.divide(2 * square, root, out=np.zeros_like(root), where=along > 0)
     joint = 0.5 * (p + q + length * (t - u))
-    first, second = cmath.phase((joint - p) / t), cmath.phase(u / (q - joint))
-    if max(abs(first), abs(second)) > 0.5 * MAX_TURN:
-        return straight
-    middle = t * cmath.exp(2j * first)
-    before = ((inner - joint) * middle.conjugate()).real < 0
-    error = max(
-        _largest(_to_arc(inner[before], p, t, joint)),
-        _largest(_to_arc(inner[~before], joint, middle, q)),
-    )
-    pieces = [
-        (joint, _bulge(first, joint - p, tolerance)),
-        (q, _bulge(second, q - joint, tolerance)),
-    ]
-    return error, pieces
+    turned = np.array([(joint - p) * np.conj(t), u * np.conj(q - joint)])
+    # each arc turns by twice the angle of these
+    pair = ~single & (along > 0) & (np.abs(turned.imag) <= turned.real).all(axis=0)
+    turned[0, single] = (before + after)[single]
+    size = np.abs(turned) + turned.real
+    bulges = np.divide(turned.imag, size, out=np.zeros_like(size), where=size > 0)
+    bulges[:, ~pair & ~single] = bulges[1, single] = 0.0
+    return _Biarcs(np.where(pair, joint, q), bulges, ~pair, ~pair & ~single)
 
 
-def _bulge(half: float, chord: complex, tolerance: float) -> float:
-    """Return the bulge of an arc that turns by ``2 * half``; 0 where it hardly rises."""
-    bulge = math.tan(0.5 * half)
-    return bulge if 0.5 * abs(bulge * chord) > STRAIGHT * tolerance else 0.0
+def _errors(curves: _Curves, start: Ints, end: Ints) -> Array:
+    """Return the largest distance from the checks between points to the biarcs there."""
+    made = _biarcs(curves.rows, start, end)
+    p, t = curves.rows.points[start], curves.rows.tangents[start]
+    begin = np.array([p, made.joint])
+    chord = np.array([made.joint - p, curves.rows.points[end] - made.joint])
+    square = np.maximum(chord.real**2 + chord.imag**2, np.finfo(float).tiny)
+    # the tangent at the joint is that at the start, mirrored by the chord
+    back = np.array([np.conj(t), t * np.conj(chord[0]) ** 2 / square[0]])
+    bend = 2 * (chord * back).imag / square
 
+    def away(index: Ints, of: Ints) -> Array:
+        points = curves.checks[index]
+        beyond = ((points - made.joint[of]) * back[1, of]).real >= 0
+        side = (beyond & ~made.single[of]).astype(np.int64)
+        return off_circle((points - begin[side, of]) * back[side, of], bend[side, of])
 
-def _largest(values: Array) -> float:
-    return float(values.max()) if values.size else 0.0
-
-
-def _to_arc(points: Plane, start: complex, tangent: complex, end: complex) -> Array:
-    """Return distances of points to the circle through two points with a tangent at the first."""
-    chord = end - start
-    bend = 2 * (chord / tangent).imag / abs(chord) ** 2
-    local = (points - start) * tangent.conjugate()
-    return off_circle(local, bend)
+    stop = np.where(made.fails, 0, curves.place[end])
+    return np.where(made.fails, np.inf, largest(away, curves.place[start] + 1, stop))

@@ -1,4 +1,4 @@
-"""Bulge polylines: chains of arcs and straight pieces, and exact distances to them.
+"""Bulge polylines: chains of arcs and straight pieces, and how far curves are from them.
 
 A *bulge polyline* is what a DXF polyline holds: vertices, and for each piece its *bulge*, the
 tangent of a quarter of the arc's angle, positive where the piece turns left, 0 where it is
@@ -15,8 +15,8 @@ import numpy as np
 
 from gearcam.numeric.arrays import Array, Ints, Plane
 
-BLOCK = 24
-"""Points whose distances are computed together."""
+BLOCK = 20_000
+"""Distances that are computed together where the nearest of all pieces is sought."""
 
 
 def as_complex(values: Array) -> Plane:
@@ -156,60 +156,65 @@ def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Plane, P
     return points[:expected], (ends - points)[:expected], bends
 
 
-def distances(points: Array, vertices: Array, bulges: Array, closed: bool = True) -> Array:
-    """Return the exact distance of each point to the nearest place of a bulge polyline.
+def farthest(points: Array, vertices: Array, bulges: Array) -> float:
+    """Return the largest distance of a closed curve's points to a closed bulge polyline.
 
     Parameters
     ----------
     points : (n, 2) array, mm
-        Any points; fast where neighbours in the array are neighbours in the plane.
-    vertices, bulges, closed
-        The polyline, as for `flatten_bulges`.
+        Points on the curve, in order; fast where the polyline begins beside the first and goes the
+        same way.
+    vertices : (k, 2) array, mm
+        The polyline.
+    bulges : (k,) array
+        Its bulges; arcs of half a circle at most.
 
     Returns
     -------
-    (n,) array, mm
-        Never negative.
+    float, mm
+        The largest of the distances to the nearest places.
 
     Notes
     -----
-    Points are taken by blocks. A disc around a block and a disc around each piece bound their
-    distance from both sides; only pieces that can be the nearest are computed.
+    Each point goes from the place of the same length downhill to a place that is the nearest one,
+    but for some points at corners. The points that seem farthest are then held against all pieces
+    until no other one can be farther.
     """
-    start, chord, bends = bulge_pieces(vertices, bulges, closed)
+    start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
     real = chord != 0
-    if real.any():
-        start, chord, bends = start[real], chord[real], bends[real]
-    middle, reach = start + 0.5 * chord, 0.5 * np.abs(chord) * np.maximum(1.0, np.abs(bends))
-    targets = as_complex(points)
-    result = np.empty(len(targets))
-    for first in range(0, len(targets), BLOCK):
-        block = targets[first : first + BLOCK]
-        centre = 0.5 * (block.real.min() + block.real.max()) + 0.5j * (
-            block.imag.min() + block.imag.max()
-        )
-        spread = np.abs(block - centre).max()
-        away = np.abs(middle - centre)
-        near = away - reach - spread <= (away + reach).min() + spread
-        result[first : first + BLOCK] = _nearest(block, start[near], chord[near], bends[near])
-    return result
+    start, chord, half = start[real], chord[real], 2 * np.arctan(bends[real])
+    size, end = np.abs(chord), start + chord
+    into, out = (chord / size * np.exp(1j * sign * half) for sign in (-1, 1))
+    bend = 2 * np.sin(half) / size
 
+    def measured(targets: Plane, at: Ints) -> tuple[Array, Ints]:
+        """Return distances to pieces, and on which side of them (-1, 1) a piece may be nearer."""
+        local, past = (targets - start[at]) * np.conj(into[at]), targets - end[at]
+        side = ((past * np.conj(out[at])).real > 0).astype(np.int64) - (local.real < 0)
+        ends = np.minimum(np.abs(local), np.abs(past))
+        return np.where(side, ends, off_circle(local, bend[at])), side
 
-def _nearest(points: Plane, start: Plane, chord: Plane, bends: Array) -> Array:
-    """Return the distance of points (n,) to the nearest of the pieces (k,)."""
-    half = 2 * np.arctan(bends)
-    length = np.abs(chord)
-    unit = np.divide(chord, length, out=np.ones_like(chord), where=length > 0)
-    into, out = unit * np.exp(-1j * half), unit * np.exp(1j * half)
-    bend = np.divide(2 * np.sin(half), length, out=np.zeros_like(length), where=length > 0)
-    from_start = points[:, None] - start
-    from_end = from_start - chord
-    local = from_start * np.conj(into)
-    ahead, behind = local.real >= 0, (from_end * np.conj(out)).real <= 0
-    # Inside the arc's sector the circle is nearest, elsewhere one of the two ends.
-    beside = np.where(np.abs(bends) <= 1, ahead & behind, ahead | behind)
-    ends = np.minimum(np.abs(from_start), np.abs(from_end))
-    return np.where(beside, off_circle(local, bend), ends).min(axis=1)
+    targets, lengths = as_complex(points), np.cumsum(size / np.sinc(half / np.pi))
+    steps = np.abs(np.diff(targets, append=targets[0]))
+    way = (np.cumsum(steps) - steps) * (lengths[-1] / steps.sum())
+    piece = np.minimum(np.searchsorted(lengths, way, side="right"), len(start) - 1)
+    found, side = measured(targets, piece)
+    todo = np.flatnonzero(side)
+    while todo.size:
+        tried = (piece[todo] + side[todo]) % len(start)
+        away, beyond = measured(targets[todo], tried)
+        nearer = away < found[todo]
+        todo, tried = todo[nearer], tried[nearer]
+        piece[todo], found[todo], side[todo] = tried, away[nearer], beyond[nearer]
+        todo = todo[side[todo] != 0]
+    largest, every, order = 0.0, np.arange(len(start)), np.argsort(-found)
+    count = max(1, BLOCK // len(start))
+    for first in range(0, len(order), count):
+        worst = order[first : first + count]
+        if found[worst[0]] <= largest:
+            break
+        largest = max(largest, float(measured(targets[worst, None], every)[0].min(axis=1).max()))
+    return largest
 
 
 def deviation(vertices: Array, bulges: Array, dense: Array, samples: int = 8) -> float:
@@ -232,7 +237,7 @@ def deviation(vertices: Array, bulges: Array, dense: Array, samples: int = 8) ->
         The larger of both ways: dense points to the polyline (exact), places on the polyline to the
         dense polygon. The second way holds the dense polygon's own chord error.
     """
-    there = distances(dense, vertices, bulges).max()
+    there = farthest(dense, vertices, bulges)
     places = flatten_bulges(vertices, bulges, math.inf, least=samples)
-    back = distances(places, dense, np.zeros(len(dense))).max()
-    return float(max(there, back))
+    back = farthest(places, dense, np.zeros(len(dense)))
+    return max(there, back)

@@ -7,11 +7,11 @@ curve, no chord farther from it than the tolerance.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from gearcam.numeric.moments import Moments, curve_moments
 
 if TYPE_CHECKING:
     from shapely import Polygon
+
+Fitted = TypeVar("Fitted")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -75,12 +77,54 @@ class Contour:
         The chord error that was allowed.
     chord_error : float, mm
         The chord error measured against the dense runs.
+    source : Contour or None
+        The one in its own frame, of which this one is *placed*.
+    stand : (complex, complex)
+        How: turned by a number of length 1, then shifted, mm.
     """
 
     dense: Callable[[], tuple[Run, ...]]
     vertices: Array
     tolerance: float
     chord_error: float
+    source: Contour | None = None
+    stand: tuple[complex, complex] = (1.0, 0.0)
+
+    @property
+    def own(self) -> Contour:
+        """The contour in its own frame."""
+        return self.source or self
+
+    def placed(self, turn: complex, shift: complex) -> Contour:
+        """Return the contour, turned and then shifted once more (see `stand`)."""
+        own, stand = self.own, (turn * self.stand[0], turn * self.stand[1] + shift)
+        return replace(
+            own,
+            dense=lambda: tuple(
+                replace(
+                    run, points=_move(run.points, *stand), tangents=_move(run.tangents, stand[0])
+                )
+                for run in own.runs
+            ),
+            vertices=_move(own.vertices, *stand),
+            source=own,
+            stand=stand,
+        )
+
+    def moved(self, points: Array) -> Array:
+        """Return points (n, 2) of the own frame where they stand."""
+        return points if self.source is None else _move(points, *self.stand)
+
+    def fitted(self, fit: Callable[[Sequence[Run], float], Fitted], tolerance: float) -> Fitted:
+        """Return what `fit` makes of the runs in their own frame to a `tolerance`, made once."""
+        made, key = self.own._fits, (fit, tolerance)
+        if key not in made:
+            made[key] = fit(self.own.runs, tolerance)
+        return made[key]
+
+    @cached_property
+    def _fits(self) -> dict[Any, Any]:
+        return {}
 
     @cached_property
     def runs(self) -> tuple[Run, ...]:
@@ -95,8 +139,11 @@ class Contour:
     @cached_property
     def moments(self) -> Moments:
         """Moments inside the true curve, from the dense runs."""
-        made = (curve_moments(run.points, run.tangents) for run in self.runs)
-        return sum(made, start=Moments())
+        # steps from one run to the next have no length
+        return curve_moments(
+            np.vstack([run.points for run in self.runs]),
+            np.vstack([run.tangents for run in self.runs]),
+        )
 
     @property
     def length(self) -> float:
@@ -118,6 +165,11 @@ class Contour:
         from shapely import Polygon
 
         return Polygon(self.vertices)
+
+
+def _move(points: Array, turn: complex, shift: complex = 0.0) -> Array:
+    values = np.ascontiguousarray(points, dtype=np.float64).view(np.complex128)
+    return (values * turn + shift).view(np.float64)
 
 
 def polygon_area(vertices: Array) -> float:

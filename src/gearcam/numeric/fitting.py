@@ -1,101 +1,167 @@
-"""How runs are cut into the longest pieces that one curve can stand for."""
+"""How runs are cut into the longest pieces that one curve can stand for.
+
+All runs are cut side by side: each round tries one length on every run.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Final, TypeVar
+from collections.abc import Callable, Sequence
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from gearcam.numeric.arrays import Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Run
 
-Fitted = TypeVar("Fitted")
-
-_AIM: Final = 0.97
+_AIM: Final = 0.985
 """Part of the predicted length that the search tries: a little short, so that most succeed."""
+
+_SPREAD: Final = np.array([1.0, 0.8, 0.92, 0.97, 1.03, 1.1, 1.3])
+"""Lengths that are tried together, over the predicted one."""
+
+_FEW: Final = 8
+"""Runs for which that costs hardly more than to try one."""
 
 _GROWTH: Final = 10.0
 """Growth of a length from one trial to the next at most: very small errors predict nothing."""
 
 
-def points_to_fit(run: Run, tolerance: float) -> tuple[Plane, Plane]:
-    """Return a run's points and tangents, without repeated points.
+class Rows(NamedTuple):
+    """Runs behind each other: points, mm, and unit tangents (n,), complex.
+
+    The points of a run are those from its `first` to its `last`.
+    """
+
+    points: Plane
+    tangents: Plane
+    first: Ints
+    last: Ints
+
+
+def points_to_fit(runs: Sequence[Run], tolerance: float) -> Rows:
+    """Return the points and tangents of runs, without repeated points.
 
     Parameters
     ----------
-    run : Run
-        A smooth piece, mm.
+    runs : sequence of Run
+        Smooth pieces, mm.
     tolerance : float, mm
         Of the fit.
 
     Returns
     -------
-    points, tangents : (n,) complex arrays, mm and 1
+    Rows
 
     Raises
     ------
     ValueError
-        If the tolerance is not positive, or the run is not finite or has fewer than two different
+        If the tolerance is not positive, or a run is not finite or has fewer than two different
         points.
     """
     if not tolerance > 0:
         raise ValueError(f"the tolerance must be positive, not {tolerance}")
-    points, tangents = as_complex(run.points), as_complex(run.tangents)
+    points = as_complex(np.vstack([run.points for run in runs]))
+    tangents = as_complex(np.vstack([run.tangents for run in runs]))
     if not (np.isfinite(points).all() and np.isfinite(tangents).all()):
         raise ValueError("points and tangents of a run must be finite")
-    kept = np.append(True, np.diff(points) != 0)
-    if kept.sum() < 2:
+    of = np.repeat(np.arange(len(runs)), [len(run.points) for run in runs])
+    kept = np.append(True, (np.diff(points) != 0) | (np.diff(of) != 0))
+    first = np.searchsorted(of[kept], np.arange(len(runs)))
+    last = np.append(first[1:], kept.sum()) - 1
+    if (last <= first).any():
         raise ValueError("a run needs at least two different points")
-    return points[kept], tangents[kept]
+    return Rows(points[kept], tangents[kept], first, last)
 
 
-def longest_pieces(
-    fit: Callable[[int, int], tuple[float, Fitted]],
-    furthest: Callable[[int], int],
-    last: int,
-    tolerance: float,
-    order: int,
-    near: float,
-) -> list[tuple[int, Fitted]]:
-    """Cut a row of points into pieces, each as long as the tolerance allows.
+def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Array:
+    """Return the largest of the measures within ranges.
 
     Parameters
     ----------
-    fit : callable
-        ``fit(start, end) -> (error, fitted)`` between two points.
+    measure : callable
+        ``measure(index, of) -> (m,) array``, none negative: at numbers `index` within the ranges
+        `of`.
+    low, high : (n,) int arrays
+        The ranges: from `low` to below `high`.
+
+    Returns
+    -------
+    (n,) array
+        0 where a range is empty.
+    """
+    count = np.maximum(high - low, 0)
+    begin = np.cumsum(count) - count
+    of = np.repeat(np.arange(len(low)), count)
+    found, some = np.zeros(len(low)), count > 0
+    if of.size:
+        measured = measure(np.arange(of.size) + (low - begin)[of], of)
+        found[some] = np.maximum.reduceat(measured, begin[some])
+    return found
+
+
+def longest_pieces(
+    errors: Callable[[Ints, Ints], Array],
+    furthest: Callable[[Ints, Ints], Ints],
+    rows: Rows,
+    tolerance: float,
+    order: int,
+    near: float,
+) -> tuple[Ints, Ints]:
+    """Cut runs into pieces, each as long as the tolerance allows.
+
+    Parameters
+    ----------
+    errors : callable
+        ``errors(start, end)``: of what would stand for the pieces between points.
     furthest : callable
-        ``furthest(start) -> end``: where a piece must end, whatever its error.
-    last : int
-        Number of the last point.
+        ``furthest(start, last) -> end``: where a piece must end, whatever its error.
+    rows : Rows
+        The runs.
     tolerance : float
         Largest error; two neighbours may have more.
     order : int
         Power of a piece's length with which its error grows: each trial predicts the next one.
     near : float
-        The search stops where the longest piece is known to this part of its length.
+        The search stops where the longest piece is known, or predicted, to this part of its length.
 
     Returns
     -------
-    list of (int, fitted)
-        End of each piece, and what was fitted to it.
+    start, end : int arrays
+        Of the pieces, in order.
     """
-    found: list[tuple[int, Fitted]] = []
-    start, guess = 0, last
-    while start < last:
-        low, high, best = start + 1, furthest(start), fit(start, start + 1)[1]
-        trial, rounds = start + guess, 0
-        while high - low > near * (low - start):
-            rounds += 1
-            trial = min(max(trial, low + 1), high)
-            error, fitted = fit(start, trial)
-            if error <= tolerance:
-                low, best = trial, fitted
-            else:
-                high = trial - 1
-            growth = _AIM * (tolerance / max(error, tolerance / _GROWTH**order)) ** (1 / order)
-            trial = start + round(growth * (trial - start)) if rounds % 3 else (low + high + 1) // 2
-        found.append((low, best))
-        start, guess = low, low - start
-    return found
+    start, last = rows.first, rows.last
+    found: list[tuple[Ints, Ints]] = []
+    low, top = start + 1, furthest(start, last)
+    trial = high = top
+    while start.size:
+        done = high - low <= near * (low - start)
+        if done.any():
+            found.append((start[done], low[done]))
+            trial = np.where(done, 2 * low - start, trial)
+            start = np.where(done, low, start)
+            left = start < last
+            start, last, low, high, top, trial, done = (
+                one[left] for one in (start, last, low, high, top, trial, done)
+            )
+            low[done] = start[done] + 1
+            high[done] = top[done] = furthest(start[done], last[done])
+            continue
+        # a prediction that leaves what is known says nothing: then the middle is tried
+        inside = (trial > low) & ((trial < high) | (high == top))
+        trial = np.where(inside, np.minimum(trial, high), (low + high + 1) // 2)
+        spread = _SPREAD[:, None] if start.size <= _FEW else np.ones((1, 1))
+        tried = start + np.rint(spread * (trial - start)).astype(np.int64)
+        tried = np.minimum(np.maximum(tried, low + 1), high)
+        error = errors(np.tile(start, len(spread)), tried.ravel()).reshape(tried.shape)
+        fits = error <= tolerance
+        low = np.where(fits, tried, low).max(axis=0)
+        high = np.where(fits | (tried < low), high, tried - 1).min(axis=0)
+        # the longest that fits predicts, or else the shortest
+        best = np.where(fits, tried, -tried).argmax(axis=0), np.arange(start.size)
+        error, trial = error[best], tried[best]
+        growth = (tolerance / np.maximum(error, tolerance / _GROWTH**order)) ** (1 / order)
+        high = np.where((trial == low) & (growth <= 1 + near), low, high)
+        trial = start + np.rint(_AIM * growth * (trial - start)).astype(np.int64)
+    starts, ends = (np.sort(np.concatenate(one)) for one in zip(*found, strict=True))
+    return starts, ends

@@ -10,15 +10,17 @@ Refused: tolerances that are not positive.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
-from gearcam.numeric.fitting import longest_pieces, points_to_fit
+from gearcam.numeric.fitting import Rows, largest, longest_pieces, points_to_fit
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 DEGREE: Final = 3
@@ -51,52 +53,57 @@ class Spline:
         )
 
 
-def fit_spline(run: Run, tolerance: float) -> Spline:
-    """Fit a cubic B-spline to a smooth piece of curve.
+def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
+    """Fit a cubic B-spline to each of some smooth pieces of curve.
 
     Parameters
     ----------
-    run : Run
+    runs : sequence of Run
         Dense points and tangents.
     tolerance : float, mm
         Largest distance of the points from it.
 
     Returns
     -------
-    Spline
-        Through both ends, with the tangents there.
+    list of Spline
+        Each through both ends of its run, with the tangents there.
 
     Raises
     ------
     ValueError
-        If the tolerance is not positive, or the run is not finite or has fewer than two different
+        If the tolerance is not positive, or a run is not finite or has fewer than two different
         points.
     """
-    p, t = points_to_fit(run, tolerance)
-    way = np.concatenate([[0.0], np.cumsum(hermite_arms(p, t))])
-    last = len(p) - 1
+    rows = points_to_fit(runs, tolerance)
+    p, t, first, last = rows
+    way = np.append(0.0, np.cumsum(hermite_arms(p, t)))
+    start, end = longest_pieces(
+        partial(_errors, rows, way), lambda _, last: last, rows, tolerance, 4, _NEAR
+    )
+    arms = (way[end] - way[start]) / 3.0
+    inner = np.stack([p[start] + arms * t[start], p[end] - arms * t[end]], axis=1)
+    made = []
+    for low, high in zip(first, last, strict=True):
+        own = slice(*np.searchsorted(start, (low, high)))
+        poles = np.concatenate([p[[low]], inner[own].ravel(), p[[high]]])
+        breaks = np.append(way[start[own]], way[high]) - way[low]
+        made.append(Spline(poles=as_pairs(poles), breaks=breaks))
+    return made
 
-    def miss(start: int, end: int) -> tuple[float, None]:
-        return _error(p, t, way, start, end), None
 
-    pieces = longest_pieces(miss, lambda _: last, last, tolerance, 4, _NEAR)
-    index = np.array([0, *(end for end, _ in pieces)])
-    arms = np.diff(way[index]) / 3.0
-    out, into = p[index[:-1]] + arms * t[index[:-1]], p[index[1:]] - arms * t[index[1:]]
-    poles = np.concatenate([p[:1], np.stack([out, into], axis=1).ravel(), p[-1:]])
-    return Spline(poles=as_pairs(poles), breaks=way[index])
-
-
-def _error(p: Plane, t: Plane, way: Array, start: int, end: int) -> float:
-    """Return the largest distance of inner points from the cubic that joins two of them."""
-    inner = slice(start + 1, end)
+def _errors(rows: Rows, way: Array, start: Ints, end: Ints) -> Array:
+    """Return the largest distances of inner points from the cubics that join two points."""
+    p, t = rows.points, rows.tangents
     length = way[end] - way[start]
-    if end - start < 2:
-        return 0.0
-    u = (way[inner] - way[start]) / length
-    way, _ = hermite_cubic(p[end] - p[start], length * t[start], length * t[end], u)
-    miss = p[start] + way - p[inner]
-    # across the curve; what is along it only shifts the parameter, and counts by its square
-    bend = abs(np.angle(t[end] * np.conj(t[start]))) / length
-    across = np.abs((miss * np.conj(t[inner])).imag)
-    return float((across + 0.5 * bend * np.abs(miss) ** 2).max())
+    chord, first, second = p[end] - p[start], length * t[start], length * t[end]
+    bend = np.abs(np.angle(t[end] * np.conj(t[start]))) / length
+
+    def away(index: Ints, of: Ints) -> Array:
+        begin = start[of]
+        u = (way[index] - way[begin]) / length[of]
+        miss = p[begin] + hermite_cubic(chord[of], first[of], second[of], u)[0] - p[index]
+        # across the curve; what is along it only shifts the parameter, and counts by its square
+        across = np.abs((miss * np.conj(t[index])).imag)
+        return across + 0.5 * bend[of] * np.abs(miss) ** 2
+
+    return largest(away, start + 1, end)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from gearcam.drawings import Drawing, Placement
     from gearcam.export.dxf import DxfStyle
     from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.parts.body import Part
 
 Measured = dict[str, Any]
 
@@ -126,12 +127,13 @@ def _steps(result: GearPairResult, _: Measured) -> Files:
     from gearcam.export.step import step_bytes
 
     tolerance = STEP_PART * result.gear1.profile.tolerance
+    made: dict[Part, Any] = {}
     files = {
-        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance)
+        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance, made)
         for part in result.parts
     }
     placed = list(zip(result.parts, placements(result), strict=True))
-    return files | {f"{PAIR}.step": step_bytes(placed, PAIR, tolerance)}
+    return files | {f"{PAIR}.step": step_bytes(placed, PAIR, tolerance, made)}
 
 
 def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
