@@ -141,9 +141,10 @@ def longest_pieces(
             trial = np.where(done, 2 * low - start, trial)
             start = np.where(done, low, start)
             left = start < last
-            start, last, low, high, top, trial, done = (
-                one[left] for one in (start, last, low, high, top, trial, done)
+            start, last, low, high, top, trial = (
+                one[left] for one in (start, last, low, high, top, trial)
             )
+            done = done[left]
             low[done] = start[done] + 1
             high[done] = top[done] = furthest(start[done], last[done])
             continue
