@@ -22,7 +22,7 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs, off_circle
 from gearcam.numeric.contour import Run
-from gearcam.numeric.fitting import Rows, largest, longest_pieces, points_to_fit
+from gearcam.numeric.fitting import RunPoints, largest, longest_pieces, points_to_fit
 from gearcam.numeric.hermite import on_cubics
 
 MAX_TURN = 0.5 * np.pi
@@ -54,13 +54,13 @@ MOST_CHECKS = 50
 
 @dataclass(frozen=True, eq=False)
 class _Curves:
-    """Rows of points, the angle that the tangent has `turned` so far, and where to check.
+    """RunPoints of points, the angle that the tangent has `turned` so far, and where to check.
 
     Distances are taken at the `checks`: the points, and more between them where points are sparse
     beside a sharper bend; `place` is where each point stands among the checks.
     """
 
-    rows: Rows
+    rows: RunPoints
     turned: Array
     checks: Plane
     place: Ints
@@ -153,7 +153,7 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
     return np.vstack([points[:-1] for points, _ in made]), np.concatenate([b for _, b in made])
 
 
-def _curves(rows: Rows, tolerance: float) -> _Curves:
+def _curves(rows: RunPoints, tolerance: float) -> _Curves:
     steps = np.angle(rows.tangents[1:] * np.conj(rows.tangents[:-1]))
     turned = np.append(0.0, np.cumsum(steps))
     of = np.repeat(np.arange(len(rows.first)), rows.last - rows.first + 1)
@@ -202,7 +202,7 @@ def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
     return np.maximum(last - largest(short, start + 1, last + 1).astype(np.int64), start + 1)
 
 
-def _biarcs(rows: Rows, start: Ints, end: Ints) -> _Biarcs:
+def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:
     """Return the biarcs between points."""
     p, q = rows.points[start], rows.points[end]
     t, u = rows.tangents[start], rows.tangents[end]

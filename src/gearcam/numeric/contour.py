@@ -96,7 +96,7 @@ class Contour:
         return self.source or self
 
     def placed(self, turn: complex, shift: complex) -> Contour:
-        """Return the contour, turned and then shifted once more (see `stand`)."""
+        """Return the contour, once more turned by `turn`, then moved by `shift` (see `stand`)."""
         own, stand = self.own, (turn * self.stand[0], turn * self.stand[1] + shift)
         return replace(
             own,

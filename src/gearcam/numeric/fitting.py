@@ -27,7 +27,7 @@ _GROWTH: Final = 10.0
 """Growth of a length from one trial to the next at most: very small errors predict nothing."""
 
 
-class Rows(NamedTuple):
+class RunPoints(NamedTuple):
     """Runs behind each other: points, mm, and unit tangents (n,), complex.
 
     The points of a run are those from its `first` to its `last`.
@@ -39,7 +39,7 @@ class Rows(NamedTuple):
     last: Ints
 
 
-def points_to_fit(runs: Sequence[Run], tolerance: float) -> Rows:
+def points_to_fit(runs: Sequence[Run], tolerance: float) -> RunPoints:
     """Return the points and tangents of runs, without repeated points.
 
     Parameters
@@ -51,7 +51,7 @@ def points_to_fit(runs: Sequence[Run], tolerance: float) -> Rows:
 
     Returns
     -------
-    Rows
+    RunPoints
 
     Raises
     ------
@@ -71,7 +71,7 @@ def points_to_fit(runs: Sequence[Run], tolerance: float) -> Rows:
     last = np.append(first[1:], kept.sum()) - 1
     if (last <= first).any():
         raise ValueError("a run needs at least two different points")
-    return Rows(points[kept], tangents[kept], first, last)
+    return RunPoints(points[kept], tangents[kept], first, last)
 
 
 def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Array:
@@ -103,7 +103,7 @@ def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Ar
 def longest_pieces(
     errors: Callable[[Ints, Ints], Array],
     furthest: Callable[[Ints, Ints], Ints],
-    rows: Rows,
+    rows: RunPoints,
     tolerance: float,
     order: int,
     near: float,
@@ -116,7 +116,7 @@ def longest_pieces(
         ``errors(start, end)``: of what would stand for the pieces between points.
     furthest : callable
         ``furthest(start, last) -> end``: where a piece must end, whatever its error.
-    rows : Rows
+    rows : RunPoints
         The runs.
     tolerance : float
         Largest error; two neighbours may have more.
@@ -141,9 +141,10 @@ def longest_pieces(
             trial = np.where(done, 2 * low - start, trial)
             start = np.where(done, low, start)
             left = start < last
-            start, last, low, high, top, trial, done = (
-                one[left] for one in (start, last, low, high, top, trial, done)
+            start, last, low, high, top, trial = (
+                one[left] for one in (start, last, low, high, top, trial)
             )
+            done = done[left]
             low[done] = start[done] + 1
             high[done] = top[done] = furthest(start[done], last[done])
             continue

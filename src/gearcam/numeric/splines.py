@@ -20,7 +20,7 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
-from gearcam.numeric.fitting import Rows, largest, longest_pieces, points_to_fit
+from gearcam.numeric.fitting import RunPoints, largest, longest_pieces, points_to_fit
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 DEGREE: Final = 3
@@ -91,7 +91,7 @@ def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
     return made
 
 
-def _errors(rows: Rows, way: Array, start: Ints, end: Ints) -> Array:
+def _errors(rows: RunPoints, way: Array, start: Ints, end: Ints) -> Array:
     """Return the largest distances of inner points from the cubics that join two points."""
     p, t = rows.points, rows.tangents
     length = way[end] - way[start]
