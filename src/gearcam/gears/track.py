@@ -44,6 +44,10 @@ _PAD = 1e-12
 _ANGLE = 4e-16
 """Step of Newton's method at which the inverse ends, in periods: rounding."""
 
+_ROUNDING = 4e-16
+"""What an arc length is missed by at which it ends too, in those of a period: rounding; steps stay
+larger where the curve hardly moves."""
+
 
 class Frames(NamedTuple):
     """Frames of a track at parameters: arrays of one shape.
@@ -147,8 +151,8 @@ class ArcLength:
         def miss(phi: Array) -> tuple[Array, Array]:
             return self.unit(phi) - rest, self.speed(phi)
 
-        pad = _PAD * self.period
-        phi = newton_in_bracket(miss, low - pad, high + pad, start, _ANGLE * self.period)
+        pad, noise = _PAD * self.period, _ROUNDING * self.unit_length
+        phi = newton_in_bracket(miss, low - pad, high + pad, start, _ANGLE * self.period, noise)
         return phi + turns * self.period
 
     @cached_property

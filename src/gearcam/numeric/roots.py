@@ -23,6 +23,7 @@ def newton_in_bracket(
     high: ArrayLike,
     start: ArrayLike,
     tolerance: float,
+    noise: float = 0.0,
 ) -> Array:
     """Find the root of a function between `low` and `high`, element by element.
 
@@ -37,6 +38,8 @@ def newton_in_bracket(
         First guess, inside the bracket.
     tolerance : float
         The search stops when every step is smaller than this, in units of x.
+    noise : float
+        Or when its value is: what rounding may make of 0.
 
     Returns
     -------
@@ -53,7 +56,7 @@ def newton_in_bracket(
         inside = (step - a) * (step - b) <= 0.0
         # A first step that leads out tries the end: it may be the answer.
         other = 0.5 * (a + b) if number else np.where((step - a) * (b - a) > 0.0, b, a)
-        new = np.where(value == 0.0, x, np.where(inside, step, other))
+        new = np.where(np.abs(value) <= noise, x, np.where(inside, step, other))
         done = np.all(np.abs(new - x) <= tolerance)
         x = new
         if done:
