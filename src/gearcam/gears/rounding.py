@@ -19,7 +19,7 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
-from gearcam.gears.tips import MISS, ROUGH, TipEnds, cross, flank_at, flank_crossings
+from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import largest_fitting
@@ -120,12 +120,12 @@ def _arcs(
     (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
-    near, there = MISS * toothing.pitch, tops.row >= 0
+    enough, there = near(toothing), tops.row >= 0
     phi, foot, miss = cross(
-        partial(flank_at, toothing, centers, sigma), curve, tips.phi, tips.foot, near
+        partial(flank_at, toothing, centers, sigma), curve, tips.phi, tips.foot, enough
     )
     place = foot + tops.tip_turn
-    fits = (tops.tip >= 0) & (miss <= ROUGH * near)
+    fits = (tops.tip >= 0) & (miss <= ROUGH * enough)
     fits &= (place >= rows.start[tops.tip] - _EDGE) & (place <= rows.end[tops.tip] + _EDGE)
     # arcs that leave no tip between them become one; so do those of pointed teeth
     narrow = ~(fits[:z] & fits[z:]) | (foot[z:] >= foot[:z])

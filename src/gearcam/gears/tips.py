@@ -12,8 +12,12 @@ from gearcam.gears.flank import Toothing
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import newton_in_bracket
 
-MISS = 1e-12
-"""Distance at which curves meet, in addenda or pitches: rounding."""
+_MISS = 1e-12
+"""Distance at which curves meet, in pitches."""
+
+_ROUNDING = 2e-14
+"""The same in lengths of the centrode: places are rounded, and where the driver's radius grows
+fastest, along an ellipse of eccentricity 0.99, so far."""
 
 ROUGH = 1e3
 """Times that distance within which curves meet that Newton's method has no better place of."""
@@ -96,8 +100,13 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(flank, curve, phi, foot, MISS * addendum)
-    return phi, foot, np.where(miss <= MISS * addendum, addendum, np.nan)
+    phi, foot, miss = cross(flank, curve, phi, foot, near(toothing))
+    return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
+
+
+def near(toothing: Toothing) -> float:
+    """Return the distance at which curves of a wheel meet, mm: rounding."""
+    return max(_MISS * toothing.pitch, _ROUNDING * toothing.track.length)
 
 
 def flank_at(toothing: Toothing, sf: Array, sigma: Array, phi: Array) -> tuple[Plane, Plane]:
@@ -111,7 +120,7 @@ def cross(
     two: Callable[[Array], tuple[Plane, Plane]],
     x: Array,
     y: Array,
-    near: float,
+    enough: float,
 ) -> tuple[Array, Array, Array]:
     """Find where curves cross, n pairs at once, by Newton's method.
 
@@ -121,7 +130,7 @@ def cross(
         ``one(x)`` returns points, mm, and their derivatives.
     x, y : (n,) arrays
         Parameters to begin with.
-    near : float, mm
+    enough : float, mm
         Distance at which a crossing is found.
 
     Returns
@@ -129,19 +138,19 @@ def cross(
     x, y : (n,) arrays
         Parameters on both curves.
     miss : (n,) array, mm
-        How far their points are apart, at most one step before.
+        How far their points are apart one step before.
     """
     miss = np.full(x.shape, np.inf, dtype=complex)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(_STEPS):
             (p, move), (q, slide) = one(x), two(y)
             miss = p - q
-            if not np.any(np.abs(miss) > near):
-                break
             first = -np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)
             second = np.imag(np.conj(move) * miss) / np.imag(np.conj(move) * slide)
             good = np.isfinite(first) & np.isfinite(second)
             x, y = x + np.where(good, first, 0.0), y + np.where(good, second, 0.0)
+            if not np.any(np.abs(miss) > enough):
+                break
     return x, y, np.abs(miss)
 
 
@@ -167,9 +176,8 @@ def flank_crossings(
         Whether they cross.
     """
     one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
-    near = MISS * toothing.pitch
-    first, second, miss = cross(one, two, start[0], start[1], near)
-    return np.stack([first, second]), miss <= ROUGH * near
+    first, second, miss = cross(one, two, start[0], start[1], near(toothing))
+    return np.stack([first, second]), miss <= ROUGH * near(toothing)
 
 
 def _search(
@@ -178,9 +186,9 @@ def _search(
     """Search tip ends in their bracket: driver angles, feet, heights, whether they are full."""
     track, addendum, w = toothing.track, toothing.cutter.addendum, toothing.turn
     around = _around(toothing)
-    near = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
+    below = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
     start, end, low, high, guess = track.angle(
-        np.stack([sf, sf - sigma * highest, sf - around, sf + around, near])
+        np.stack([sf, sf - sigma * highest, sf - around, sf + around, below])
     )
 
     def distance(phi: Array, at: Ints | slice) -> tuple[Array, Array, Array]:
@@ -204,7 +212,9 @@ def _search(
 
         first = start[at] + (end - start)[at] * np.clip(addendum / height[at], 0.0, 1.0)
         tolerance = _ANGLE * track.arc.period
-        phi[at] = newton_in_bracket(over, start[at], end[at], first, tolerance)
+        phi[at] = newton_in_bracket(
+            over, start[at], end[at], first, tolerance, _ROUNDING * track.length
+        )
         height[at], _, foot[at] = distance(phi[at], at)
     return phi, foot, height, full
 
@@ -239,4 +249,5 @@ def feet(toothing: Toothing, points: Plane, low: Array, high: Array, start: Arra
         return along, frames.speed * (1.0 + frames.kappa * out)
 
     inside = np.clip(start, np.minimum(low, high), np.maximum(low, high))
-    return newton_in_bracket(miss, low, high, inside, _ANGLE * toothing.track.arc.period)
+    tolerance, noise = _ANGLE * toothing.track.arc.period, _ROUNDING * toothing.track.length
+    return newton_in_bracket(miss, low, high, inside, tolerance, noise)
