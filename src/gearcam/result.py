@@ -98,7 +98,7 @@ class Result(ABC):
 
     @cached_property
     def design_hash(self) -> str:
-        """The hash of the design as it was when its law or program was made."""
+        """The hash of the design; its CSV files count as they were when they were first read."""
         return hash_of(self.design)
 
     @cached_property

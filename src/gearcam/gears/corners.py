@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
@@ -109,7 +110,21 @@ def _paths(
 
 
 def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:
-    """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll."""
-    down = np.real(np.conj(toothing.turn) * _paths(toothing, flanks, reach, _WINDOW)[1])
+    """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll.
+
+    The rolls of neighbouring teeth are a pitch apart, and are the same ones for most of their way.
+    """
+    sf, sigma = (values.reshape(2, -1) for values in flanks)
+    ends = toothing.track.angle(sf - sigma * reach.reshape(sf.shape))
+    corner = toothing.flank_points(toothing.frames(ends, curved=False), sf, sigma)
+    rolls = np.arange(-_WINDOW * _ROLLS, (_WINDOW + sf.shape[1] - 1) * _ROLLS + 1) / _ROLLS
+    own = toothing.frames(
+        toothing.track.angle(sf[:, :1] + toothing.pitch * rolls), curved=False
+    )
+    up = np.conj(toothing.turn * own.t)
+    base = np.real(up * own.p)
+    count = round(2 * _WINDOW * _ROLLS) + 1
+    up, base = (sliding_window_view(v, count, axis=1)[:, ::_ROLLS] for v in (up, base))
+    down = np.real(up * corner[..., None]) - base
     clearance = cutter.dedendum - toothing.cutter.addendum
-    return np.any(down > cutter.dedendum - _CAUTION * clearance, axis=1)
+    return np.any(down > cutter.dedendum - _CAUTION * clearance, axis=2).ravel()

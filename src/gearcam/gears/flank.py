@@ -208,40 +208,41 @@ def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plan
         In the wheel's frame; forward is the direction of the outline with rising s.
     """
     cutter, w = toothing.cutter, toothing.turn
-    kind = rows.kind[index]
+    kind, row_sf, row_sigma = rows.kind[index], rows.sf[index], rows.sigma[index]
     points, tangents = np.empty((2, len(phi)), dtype=np.complex128)
+    flank, fillet, land, tip, rounded = (np.flatnonzero(kind == int(each)) for each in Curve)
+    parallel = np.concatenate([land, tip])
+    place = phi
+    if rounded.size:
+        row = index[rounded]
+        start, end = rows.start[row], rows.end[row]
+        place = phi.copy()
+        place[rounded] = np.where(row_sigma[rounded] < 0.0, start, end)
+    every = toothing.frames(place, curved=parallel.size > 0)
 
-    flank = np.flatnonzero(kind == Curve.FLANK)
     if flank.size:
-        frames = toothing.frames(phi[flank], curved=False)
-        sf, sigma = rows.sf[index[flank]], rows.sigma[index[flank]]
+        frames, sf, sigma = every.some(flank), row_sf[flank], row_sigma[flank]
         points[flank] = toothing.flank_points(frames, sf, sigma)
         tangents[flank] = -sigma * w * toothing.normals(frames, sigma)
 
-    fillet = np.flatnonzero(kind == Curve.FILLET)
     if fillet.size:
-        frames = toothing.frames(phi[fillet], curved=False)
-        sf, sigma = rows.sf[index[fillet]], rows.sigma[index[fillet]]
+        frames, sf, sigma = every.some(fillet), row_sf[fillet], row_sigma[fillet]
         arm = _tip_center(cutter, frames, sf + sigma * cutter.offset, w)
         length = np.abs(arm)
         unit = np.where(length > 0.0, arm, -w * frames.t) / np.where(length > 0.0, length, 1.0)
         points[fillet] = frames.p + arm + cutter.tip_radius * unit
         tangents[fillet] = w * unit
 
-    rounded = np.flatnonzero(kind == Curve.ROUND)
     if rounded.size:
-        row = index[rounded]
-        start, end, sigma = rows.start[row], rows.end[row], rows.sigma[row]
-        frames = toothing.frames(np.where(sigma < 0.0, start, end), curved=False)
-        share = (phi[rounded] - start) / (end - start)
+        frames, row = every.some(rounded), index[rounded]
+        share = (phi[rounded] - rows.start[row]) / (rows.end[row] - rows.start[row])
         normal = np.exp(1j * (rows.low[row] + share * (rows.high[row] - rows.low[row])))
-        center = toothing.flank_points(frames, rows.sf[row], sigma)
+        center = toothing.flank_points(frames, row_sf[rounded], row_sigma[rounded])
         points[rounded] = center + toothing.rounding * normal
         tangents[rounded] = normal / w
 
-    parallel = np.flatnonzero((kind == Curve.LAND) | (kind == Curve.TIP))
     if parallel.size:
-        frames, row = toothing.frames(phi[parallel]), index[parallel]
+        frames, row = every.some(parallel), index[parallel]
         span = rows.end[row] - rows.start[row]
         slope = (rows.high[row] - rows.low[row]) / np.where(span == 0.0, np.inf, span)
         height = rows.low[row] + (phi[parallel] - rows.start[row]) * slope

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, Final
 
@@ -24,7 +24,7 @@ from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.jets import Jet, sqrt
-from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.tolerances import Tolerances
 
 WHEEL: Final = 1
@@ -101,16 +101,15 @@ class Rolling:
     def curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Both centrodes' extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
 
-        def curvature(wheel: int, phi: Array) -> list[Array]:
+        def curvatures(phi: Array) -> Array:
             ratios = self.law.ratio.derivatives(phi, 3)
             wi, r, dr, ddr = _radii([Jet(both) for both in pairwise(ratios)], self.mate)
             speed = sqrt(r * r + dr * dr)
             kappa = (r * r + 2.0 * (dr * dr) - r * ddr) / (speed * speed * speed)
-            if wheel == 2:
-                kappa = (1.0 + wi) / speed - kappa
-            return (kappa / self.center_distance).derivatives()
+            both = np.array([kappa.c, ((1.0 + wi) / speed - kappa).c])
+            return both.swapaxes(0, 1) / self.center_distance
 
-        first, second = (extremes(partial(curvature, k), self._tooth_knots) for k in (1, 2))
+        first, second = extremes_of_each(curvatures, self._tooth_knots)
         return first, second
 
     @property

@@ -20,6 +20,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
+from gearcam.gears.track import Frames
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import largest_fitting
@@ -120,12 +121,11 @@ def _arcs(
     (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
-    enough, there = near(toothing), tops.row >= 0
-    phi, foot, miss = cross(
-        partial(flank_at, toothing, centers, sigma), curve, tips.phi, tips.foot, enough
-    )
+    there = tops.row >= 0
+    flank, first = partial(flank_at, toothing, centers, sigma), np.stack([tips.phi, tips.foot])
+    phi, foot, miss = cross(toothing, flank, curve, first)
     place = foot + tops.tip_turn
-    fits = (tops.tip >= 0) & (miss <= ROUGH * enough)
+    fits = (tops.tip >= 0) & (miss <= ROUGH * near(toothing))
     fits &= (place >= rows.start[tops.tip] - _EDGE) & (place <= rows.end[tops.tip] + _EDGE)
     # arcs that leave no tip between them become one; so do those of pointed teeth
     narrow = ~(fits[:z] & fits[z:]) | (foot[z:] >= foot[:z])
@@ -137,7 +137,7 @@ def _arcs(
     if not np.all(fits & (reach > 0.0) & (reach < end), where=there):
         return None
     normals = sigma * toothing.normals(toothing.frames(phi), sigma)
-    moves = curve(foot)[1]
+    moves = curve(foot, toothing.frames(foot))[1]
     others = toothing.turn * moves / np.abs(moves)
     others[both[0]] = normals[both[1]]
     ends = _put_in(rows, tops, sigma, phi, foot, both)
@@ -166,9 +166,11 @@ def _arcs(
     return made, np.where(there, reach, np.nan)
 
 
-def _moved_tip(toothing: Toothing, tops: _Tops, radius: float, foot: Array) -> tuple[Plane, Plane]:
+def _moved_tip(
+    toothing: Toothing, tops: _Tops, radius: float, foot: Array, base: Frames
+) -> tuple[Plane, Plane]:
     """Return points over feet of tips moved inwards, and how they move on, mm and mm/rad."""
-    base, w = toothing.frames(foot), toothing.turn
+    w = toothing.turn
     height = tops.height + (foot - tops.start) * tops.slope
     move = base.t * (base.speed * (1.0 + base.kappa * height) + tops.slope * w)
     along = move / np.abs(move)

@@ -67,10 +67,12 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
         "corner": [True, False, False, False, False, True],
         "tooth": [*[number[:count]] * 3, *[number[following]] * 3],
     }
-    columns = {
-        name: np.stack([np.broadcast_to(value, count) for value in values], axis=1).ravel()
-        for name, values in table.items()
-    }
+    columns = {}
+    for name, values in table.items():
+        made = np.empty((count, ROWS_PER_TOOTH), np.result_type(*values))
+        for k, value in enumerate(values):
+            made[:, k] = value
+        columns[name] = made.ravel()
     return Rows(**columns)
 
 

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from gearcam.gears.flank import Toothing
+from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import newton_in_bracket
 
@@ -27,6 +28,8 @@ _STEPS = 25
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
+
+_Way = Callable[[Array, Frames], tuple[Plane, Plane]]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -90,17 +93,14 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
     """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
-    phi, foot = toothing.track.angle(
-        np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
-    )
+    guess = np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
 
-    def curve(angle: Array) -> tuple[Plane, Plane]:
-        base = toothing.frames(angle)
+    def curve(_: Array, base: Frames) -> tuple[Plane, Plane]:
         slide = base.speed * (1.0 + base.kappa * addendum) * base.t
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(flank, curve, phi, foot, near(toothing))
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess))
     return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
 
 
@@ -109,49 +109,50 @@ def near(toothing: Toothing) -> float:
     return max(_MISS * toothing.pitch, _ROUNDING * toothing.track.length)
 
 
-def flank_at(toothing: Toothing, sf: Array, sigma: Array, phi: Array) -> tuple[Plane, Plane]:
-    """Return points of flanks (`sf`, `sigma`) of a `toothing` at `phi`, and how they move on."""
-    frames = toothing.frames(phi)
+def flank_at(
+    toothing: Toothing, sf: Array, sigma: Array, _: Array, frames: Frames
+) -> tuple[Plane, Plane]:
+    """Return points of flanks (`sf`, `sigma`) of a `toothing` at `frames`, and how they move on."""
     return toothing.flank_points(frames, sf, sigma), toothing.flank_motion(frames, sf, sigma)
 
 
 def cross(
-    one: Callable[[Array], tuple[Plane, Plane]],
-    two: Callable[[Array], tuple[Plane, Plane]],
-    x: Array,
-    y: Array,
-    enough: float,
+    toothing: Toothing,
+    one: _Way,
+    two: _Way,
+    phi: Array,
 ) -> tuple[Array, Array, Array]:
-    """Find where curves cross, n pairs at once, by Newton's method.
+    """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
     Parameters
     ----------
+    toothing : Toothing
+        The wheel.
     one, two : callable
-        ``one(x)`` returns points, mm, and their derivatives.
-    x, y : (n,) arrays
-        Parameters to begin with.
-    enough : float, mm
-        Distance at which a crossing is found.
+        ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
+    phi : (2, n) array, rad
+        Driver angles to begin with, on both.
 
     Returns
     -------
-    x, y : (n,) arrays
-        Parameters on both curves.
+    x, y : (n,) arrays, rad
+        Driver angles on both curves.
     miss : (n,) array, mm
         How far their points are apart one step before.
     """
-    miss = np.full(x.shape, np.inf, dtype=complex)
+    miss = np.full(phi.shape[1:], np.inf, dtype=complex)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(_STEPS):
-            (p, move), (q, slide) = one(x), two(y)
+            frames = toothing.frames(phi)
+            (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
             miss = p - q
-            first = -np.imag(np.conj(slide) * miss) / np.imag(np.conj(slide) * move)
-            second = np.imag(np.conj(move) * miss) / np.imag(np.conj(move) * slide)
-            good = np.isfinite(first) & np.isfinite(second)
-            x, y = x + np.where(good, first, 0.0), y + np.where(good, second, 0.0)
-            if not np.any(np.abs(miss) > enough):
+            # both steps over one determinant: the curves' directions against each other
+            steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
+            steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
+            phi = phi + np.where(np.isfinite(steps).all(axis=0), steps, 0.0)
+            if not np.any(np.abs(miss) > near(toothing)):
                 break
-    return x, y, np.abs(miss)
+    return phi[0], phi[1], np.abs(miss)
 
 
 def flank_crossings(
@@ -176,7 +177,7 @@ def flank_crossings(
         Whether they cross.
     """
     one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
-    first, second, miss = cross(one, two, start[0], start[1], near(toothing))
+    first, second, miss = cross(toothing, one, two, start)
     return np.stack([first, second]), miss <= ROUGH * near(toothing)
 
 
@@ -211,10 +212,8 @@ def _search(
             return value - addendum, slope
 
         first = start[at] + (end - start)[at] * np.clip(addendum / height[at], 0.0, 1.0)
-        tolerance = _ANGLE * track.arc.period
-        phi[at] = newton_in_bracket(
-            over, start[at], end[at], first, tolerance, _ROUNDING * track.length
-        )
+        tolerance, noise = _ANGLE * track.arc.period, _ROUNDING * track.length
+        phi[at] = newton_in_bracket(over, start[at], end[at], first, tolerance, noise)
         height[at], _, foot[at] = distance(phi[at], at)
     return phi, foot, height, full
 

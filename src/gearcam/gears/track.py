@@ -27,7 +27,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.hermite import hermite_cubic
 from gearcam.numeric.roots import newton_in_bracket
@@ -41,8 +41,13 @@ _ROWS = 1025
 _PAD = 1e-12
 """What brackets of the inverse are widened by, in periods: the table is rounded."""
 
-_ANGLE = 4e-16
-"""Step of Newton's method at which the inverse ends, in periods: rounding."""
+_ANGLE = 1e-10
+"""Step of Newton's method at which the inverse ends, in periods: what it misses then goes with the
+square of the step, and is less than rounding wherever the arc length has an expansion."""
+
+_ROUNDING = 4e-16
+"""What an arc length is missed by at which it ends too, in those of a period: rounding; steps stay
+larger where the curve hardly moves."""
 
 _ROUNDING = 4e-16
 """What an arc length is missed by at which it ends too, in those of a period: rounding; steps stay
@@ -69,6 +74,10 @@ class Frames(NamedTuple):
     kappa: Array
     speed: Array
     s: Array
+
+    def some(self, which: Ints | int) -> Frames:
+        """Return those at some of the parameters; a curvature that is left out stays so."""
+        return Frames(*(values[which] if values.size else values for values in self))
 
 
 class LeastRadius(NamedTuple):

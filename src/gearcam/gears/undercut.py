@@ -91,11 +91,13 @@ def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Ar
     first = np.argmax(negative, axis=1)
     hit = np.flatnonzero(negative.any(axis=1))
     result = np.full(sf.shape, np.copysign(np.inf, reach))
+    before, after = (hit, np.maximum(first[hit] - 1, 0)), (hit, first[hit])
     phi = bracketed_root(
         lambda x: regularity(x, hit),
-        grid[hit, np.maximum(first[hit] - 1, 0)],
-        grid[hit, first[hit]],
+        grid[before],
+        grid[after],
         _ANGLE * toothing.track.arc.period,
+        (values[before], values[after]),
     )
     result[hit] = sigma[hit] * (sf[hit] - toothing.track.arc_length(phi))
     return result

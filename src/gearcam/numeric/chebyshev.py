@@ -70,10 +70,10 @@ class Expansion:
     def __call__(self, x: ArrayLike) -> Array:
         """Return the values at the points `x` (beyond the ends the end intervals are continued)."""
         x = np.asarray(x, dtype=float)
-        index = np.searchsorted(self.knots[1:-1], x, side="right")
+        index = self.knots[1:-1].searchsorted(x, side="right")
         center, scale, powers = self._powers
-        t = (x - np.take(center, index)) * np.take(scale, index)
-        columns = np.take(powers, index, axis=1, mode="clip")
+        t = (x - center.take(index, mode="clip")) * scale.take(index, mode="clip")
+        columns = powers.take(index, 1, mode="clip")
         value = columns[-1]
         for column in columns[-2::-1]:
             value *= t

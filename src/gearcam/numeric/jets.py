@@ -71,14 +71,16 @@ class Jet:
     __radd__ = __add__
 
     def __sub__(self, other: Jet | Value) -> Jet:
-        return self + (-other)
+        if not isinstance(other, Jet):
+            return Jet([self.c[0] - other, *self.c[1:]])
+        return Jet([a - b for a, b in zip(self.c, other.c, strict=True)])
 
     def __rsub__(self, other: Value) -> Jet:
         return -self + other
 
     def __mul__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
-            return Jet([value * other for value in self.c])
+            return Jet([value if _is_zero(value) else value * other for value in self.c])
         a, b = self.c, other.c
         left = [j for j, value in enumerate(a) if not _is_zero(value)]
         right = [not _is_zero(value) for value in b]
@@ -93,7 +95,7 @@ class Jet:
 
     def __truediv__(self, other: Jet | Value) -> Jet:
         if not isinstance(other, Jet):
-            return Jet([value / other for value in self.c])
+            return Jet([value if _is_zero(value) else value / other for value in self.c])
         quotient: list[Value] = []
         for k, value in enumerate(self.c):
             rest = value
@@ -189,9 +191,9 @@ def _oscillate(x: Jet, sine: bool) -> Jet:
     g: list[Value] = [np.cos(x.c[0]) if sine else -np.sin(x.c[0])]
     if all(_is_zero(value) for value in x.c[2:]):
         # A straight inner function: the derivatives are f, g, -f, -g, f, ...
-        factor: Value = 1.0
+        factor = x.c[1]
         for k in range(1, x.order + 1):
-            factor = factor * x.c[1] / k
+            factor = factor * x.c[1] / k if k > 1 else factor
             f.append((g[0] if k % 2 else f[0]) * (factor if k % 4 < 2 else -factor))
         return Jet(f)
     for k in range(1, x.order + 1):

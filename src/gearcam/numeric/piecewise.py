@@ -124,7 +124,7 @@ class Piecewise:
             here = np.flatnonzero(numbers[index] == number) if len(functions) > 1 else slice(None)
             which = index[here]
             if which.size:
-                jet = function(Jet.variable(x[here], order), *columns[:, which])
+                jet = function(Jet.variable(x[here], order), *columns.take(which, 1, mode="clip"))
                 for k, values in enumerate((jet + self.offsets[which]).derivatives()):
                     result[k, here] = values
         return result
@@ -250,9 +250,16 @@ def extremes(function: Callable[[Array], Sequence[Array]], knots: ArrayLike) -> 
     places, values : (k,) arrays
         Candidates for the largest and smallest value, in rising order of place.
     """
+    return extremes_of_each(lambda x: np.array(function(x))[:, None], knots)[0]
+
+
+def extremes_of_each(
+    functions: Callable[[Array], Array], knots: ArrayLike
+) -> list[tuple[Array, Array]]:
+    """Find the same of m functions at once, ``functions(x)`` of shape (2, m, ...)."""
     x = places_between(knots)
-    values, slopes = (found.reshape(x.shape) for found in function(x.ravel()))
-    return extremes_among(function, x, values, slopes)
+    values, slopes = (found.reshape(-1, *x.shape) for found in functions(x.ravel()))
+    return _extremes_among(functions, x, values, slopes)
 
 
 def extremes_among(
@@ -273,10 +280,27 @@ def extremes_among(
     -------
     places, values : arrays
     """
-    piece, cell = np.nonzero(slopes[:, :-1] * slopes[:, 1:] < 0.0)
-    width = _FLAT * float((x[:, -1] - x[:, 0]).min())
-    roots = bracketed_root(lambda t: function(t)[1], x[piece, cell], x[piece, cell + 1], width)
-    tops = function(roots)[0] if roots.size else roots
-    places = np.append(x[:, [0, -1]], roots)
-    order = np.argsort(places, kind="stable")
-    return places[order], np.append(values[:, [0, -1]], tops)[order]
+    return _extremes_among(
+        lambda t: np.array(function(t))[:, None], x, values[None], slopes[None]
+    )[0]
+
+
+def _extremes_among(
+    functions: Callable[[Array], Array], x: Array, values: Array, slopes: Array
+) -> list[tuple[Array, Array]]:
+    which, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
+    number = np.arange(which.size)
+    roots = bracketed_root(
+        lambda t: functions(t)[1, which, number],
+        x[piece, cell],
+        x[piece, cell + 1],
+        _FLAT * float((x[:, -1] - x[:, 0]).min()),
+        (slopes[which, piece, cell], slopes[which, piece, cell + 1]),
+    )
+    tops = functions(roots)[0, which, number] if roots.size else roots
+    found = []
+    for k, own in enumerate(values):
+        places = np.append(x[:, [0, -1]], roots[which == k])
+        order = np.argsort(places, kind="stable")
+        found.append((places[order], np.append(own[:, [0, -1]], tops[which == k])[order]))
+    return found

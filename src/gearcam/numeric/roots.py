@@ -65,7 +65,11 @@ def newton_in_bracket(
 
 
 def bracketed_root(
-    function: Callable[[Array], Array], low: ArrayLike, high: ArrayLike, tolerance: float
+    function: Callable[[Array], Array],
+    low: ArrayLike,
+    high: ArrayLike,
+    tolerance: float,
+    ends: tuple[Array, Array] | None = None,
 ) -> Array:
     """Find where a function changes sign between `low` and `high`, jumps included.
 
@@ -80,6 +84,8 @@ def bracketed_root(
         Brackets with opposite signs at their ends.
     tolerance : float
         Width at which a bracket counts as a point, in units of x.
+    ends : (array, array), optional
+        The function's values at `low` and `high`, where they are known already.
 
     Returns
     -------
@@ -89,7 +95,7 @@ def bracketed_root(
     a, b = (np.array(v, dtype=float) for v in np.broadcast_arrays(low, high))
     if a.size == 0:
         return a
-    fa, fb = function(a), function(b)
+    fa, fb = ends or (function(a), function(b))
     c, fc, t = a.copy(), fa.copy(), np.full_like(a, 0.5)
     for _ in range(_STEPS):
         x = a + t * (b - a)

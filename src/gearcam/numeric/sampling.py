@@ -166,15 +166,15 @@ class Sampler:
             bad = errors > _MARGIN * self.tolerance
             if not bad.any():
                 break
-            middle = 0.5 * (vertices[:-1] + vertices[1:])[bad]
+            middles = 0.5 * (vertices[:-1] + vertices[1:])[bad]
             old = np.arange(len(errors)).repeat(1 + bad)
             new = np.flatnonzero(old[1:] == old[:-1]) + 1
             ends_of = np.append(old, len(errors))
             vertices, points = vertices[ends_of], points[ends_of]
-            vertices[new], points[new] = middle, self.at(middle)[0]
+            vertices[new] = middles
             errors, rough = errors[old], rough[old]
             halves = np.concatenate([new - 1, new])
-            errors[halves] = self._measure(vertices, points, halves, rough[halves])
+            errors[halves] = self._measure(vertices, points, halves, rough[halves], new)
         return vertices, points[:-1] if self.closed else points, float(errors.max())
 
     def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
@@ -213,31 +213,40 @@ class Sampler:
         errors[unsure] = self._measure(vertices, ends[0], np.flatnonzero(unsure), rough[unsure])
         return errors, rough
 
-    def _measure(self, vertices: Array, points: Plane, chords: Ints, rough: Mask) -> Array:
+    def _measure(
+        self, vertices: Array, points: Plane, chords: Ints, rough: Mask, new: Ints | None = None
+    ) -> Array:
         """Distance of the curve from some chords: at quarters, of `rough` ones with more care.
 
         They are measured at eighths and around the best of them. A chord that only has uneven
-        neighbours is smooth: its distance is flat near its largest.
+        neighbours is smooth: its distance is flat near its largest. What `points` the vertices
+        `new` have is found by the way.
         """
-        direction = points[chords + 1] - points[chords]
-        direction /= np.maximum(np.abs(direction), np.finfo(float).tiny)
 
-        def off(number: Ints, share: Array) -> Array:
+        def places(number: Ints, share: Array) -> Array:
             k = chords[number]
-            j = vertices[k] + (vertices[k + 1] - vertices[k]) * share
-            return np.abs(np.imag(np.conj(direction[number]) * (self.at(j)[0] - points[k])))
+            return vertices[k] + (vertices[k + 1] - vertices[k]) * share
 
+        def off(number: Ints, seen: Plane) -> Array:
+            away = seen - points[chords[number]]
+            return np.abs(np.imag(np.conj(direction[number]) * away))
+
+        new = np.empty(0, dtype=np.int64) if new is None else new
         care, plain = np.flatnonzero(rough), np.flatnonzero(~rough)
         number = np.concatenate([care.repeat(len(_EIGHTHS)), plain.repeat(len(_QUARTERS))])
         shares = [np.tile(_EIGHTHS, care.size), np.tile(_QUARTERS, plain.size)]
-        found = off(number, np.concatenate(shares))
-        eighths, quarters = np.split(found, [shares[0].size])
+        wanted = np.concatenate([vertices[new], places(number, np.concatenate(shares))])
+        points[new], seen = np.split(self.at(wanted)[0], [new.size])
+        direction = points[chords + 1] - points[chords]
+        direction /= np.maximum(np.abs(direction), np.finfo(float).tiny)
+        eighths, quarters = np.split(off(number, seen), [shares[0].size])
         largest = np.empty(len(chords))
         largest[plain] = quarters.reshape(-1, len(_QUARTERS)).max(axis=1)
         if care.size:
             eighths = eighths.reshape(-1, len(_EIGHTHS))
             share = _EIGHTHS[eighths.argmax(axis=1)][:, None] + _AROUND
-            around = off(care.repeat(len(_AROUND)), share.ravel()).reshape(share.shape)
+            number = care.repeat(len(_AROUND))
+            around = off(number, self.at(places(number, share.ravel()))[0]).reshape(share.shape)
             largest[care] = np.maximum(eighths.max(axis=1), around.max(axis=1))
         return largest
 

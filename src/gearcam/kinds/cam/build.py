@@ -57,11 +57,9 @@ class CamResult(Result):
     def program(self) -> Program:
         """The lift over a turn."""
         with self.stage("program"):
-            program = make_program(
+            return make_program(
                 self.design.phases, self.tolerances, oscillating=self.design.follower.oscillating
             )
-            _ = self.design_hash  # now: points that a rise has read may change
-            return program
 
     @cached_property
     def mechanism(self) -> Mechanism:

@@ -71,9 +71,7 @@ class GearPairResult(Result):
     def law(self) -> RatioLaw:
         """The ratio law."""
         with self.stage("law"):
-            law = self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
-            _ = self.design_hash  # now: a table that the law has read may change
-            return law
+            return self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
 
     @cached_property
     def pair(self) -> GearPair:
