@@ -22,6 +22,11 @@ from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 
+_BLOCK = 1 << 16
+"""Points of rows that are found at once: of more, the arrays between leave the processor's cache,
+and the allocator gives them back (see `gearcam.numeric.memory`)."""
+
+
 class Curve(IntEnum):
     """The kinds of curve that an outline is made of."""
 
@@ -307,4 +312,10 @@ class WheelCurves:
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, mm, and forward unit tangents of rows at driver angles, rad."""
-        return trace(self.toothing, self.rows, index, parameter)
+        blocks = range(0, max(len(index), 1), _BLOCK)
+        parts = [
+            trace(self.toothing, self.rows, index[k : k + _BLOCK], parameter[k : k + _BLOCK])
+            for k in blocks
+        ]
+        points, tangents = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+        return points, tangents
