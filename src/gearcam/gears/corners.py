@@ -118,9 +118,7 @@ def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach
     ends = toothing.track.angle(sf - sigma * reach.reshape(sf.shape))
     corner = toothing.flank_points(toothing.frames(ends, curved=False), sf, sigma)
     rolls = np.arange(-_WINDOW * _ROLLS, (_WINDOW + sf.shape[1] - 1) * _ROLLS + 1) / _ROLLS
-    own = toothing.frames(
-        toothing.track.angle(sf[:, :1] + toothing.pitch * rolls), curved=False
-    )
+    own = toothing.frames(toothing.track.angle(sf[:, :1] + toothing.pitch * rolls), curved=False)
     up = np.conj(toothing.turn * own.t)
     base = np.real(up * own.p)
     count = round(2 * _WINDOW * _ROLLS) + 1

@@ -280,9 +280,9 @@ def extremes_among(
     -------
     places, values : arrays
     """
-    return _extremes_among(
-        lambda t: np.array(function(t))[:, None], x, values[None], slopes[None]
-    )[0]
+    return _extremes_among(lambda t: np.array(function(t))[:, None], x, values[None], slopes[None])[
+        0
+    ]
 
 
 def _extremes_among(
