@@ -128,9 +128,9 @@ def against_ncgears(tries: int = 3) -> Result:
     )
     return Result(
         title="(a) Both outlines of the nail machine against ncgears",
-        asked="at least 300 times faster",
+        asked="at least 500 times faster on the even swing",
         found=f"{verdict}; {second:.0f} times on a law that both build",
-        passed=(min(first, second) if built else second) >= 300 and even[0].built,
+        passed=second >= 500 and even[0].built,
         body=[
             *table([mine, theirs[0], *smooth, theirs[1]]),
             "",
@@ -161,9 +161,9 @@ def against_sweep(allowed: float = 1e-5, tries: int = 3) -> Result:
     ratio = theirs.median / mine.median
     return Result(
         title="(b) Both outlines against the boolean sweep",
-        asked="at least 100 times faster at a flank error of 10 nm",
+        asked="at least 150 times faster at a flank error of 10 nm",
         found=f"{ratio:.0f} times",
-        passed=ratio >= 100,
+        passed=ratio >= 150,
         body=[
             *table([mine, theirs]),
             "",
@@ -216,9 +216,9 @@ def whole_process(tries: int = 9) -> Result:
     ratio = timings[0].median / timings[1].median
     return Result(
         title="(c) The whole process",
-        asked='at most 3 times a bare `python -c "import numpy, shapely"`',
+        asked='at most 2.4 times a bare `python -c "import numpy, shapely"`',
         found=f"{ratio:.2f} times",
-        passed=ratio <= 3,
+        passed=ratio <= 2.4,
         body=table(timings),
     )
 

@@ -8,6 +8,7 @@ from pathlib import Path
 # the sweep is the witness of the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
+import before_cases
 import cam_cases
 import cases
 import law_cases
@@ -44,10 +45,14 @@ def main() -> int:
         cases.against_sweep,
         cases.against_ncgears,
         law_cases.against_ellipse,
+        before_cases.against_before,
+        before_cases.large_growth,
     ):
-        result = case()
-        results.append(result)
-        print(f"{'pass' if result.passed else 'FAIL'}  {result.title}: {result.found}", flush=True)
+        found = case()
+        for result in found if isinstance(found, list) else [found]:
+            results.append(result)
+            verdict = "pass" if result.passed else "FAIL"
+            print(f"{verdict}  {result.title}: {result.found}", flush=True)
     results.sort(key=lambda result: result.title)
     PAGE.parent.mkdir(exist_ok=True)
     PAGE.write_text(page(results), encoding="utf-8")

@@ -17,7 +17,7 @@ from gearcam.gears.spec import BasicRack
 from gearcam.gears.track import ArcLength, Frames, Track
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.span import Lobes
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes
 from gearcam.tolerances import DEFAULT
@@ -57,8 +57,10 @@ class Polar(Track):
     def rotation(self, phi: Array) -> Array:
         return phi
 
-    def knots_near(self, phi: Array) -> Array:
-        return 2.0 * math.pi * np.round(phi[..., None] / (2.0 * math.pi))
+    def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
+        turn = 2.0 * math.pi * np.ceil(low / (2.0 * math.pi))
+        inside = np.flatnonzero(turn < high)
+        return inside, turn[inside]
 
     @property
     def curvature_extremes(self) -> tuple[Array, Array]:

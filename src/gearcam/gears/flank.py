@@ -21,6 +21,10 @@ from gearcam.gears.cutter import Cutter
 from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
+_BLOCK = 1 << 16
+"""Points of rows that are found at once: of more, the arrays between leave the processor's cache,
+and the allocator gives them back (see `gearcam.numeric.memory`)."""
+
 
 class Curve(IntEnum):
     """The kinds of curve that an outline is made of."""
@@ -301,11 +305,16 @@ class WheelCurves:
         """Rows and driver angles, rad, of the law's knots inside rows."""
         rows = self.rows
         low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
-        phi = self.toothing.track.knots_near(0.5 * (low + high))
-        curved = rows.kind != Curve.ROUND  # an arc knows nothing of the law
-        row, knot = np.nonzero((phi >= low[:, None]) & (phi < high[:, None]) & curved[:, None])
-        return row, phi[row, knot]
+        row, place = self.toothing.track.knots_between(low, high)
+        curved = rows.kind[row] != Curve.ROUND  # an arc knows nothing of the law
+        return row[curved], place[curved]
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, mm, and forward unit tangents of rows at driver angles, rad."""
-        return trace(self.toothing, self.rows, index, parameter)
+        blocks = range(0, max(len(index), 1), _BLOCK)
+        parts = [
+            trace(self.toothing, self.rows, index[k : k + _BLOCK], parameter[k : k + _BLOCK])
+            for k in blocks
+        ]
+        points, tangents = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+        return points, tangents

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from gearcam.gears.guide import Guide, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.tolerances import Tolerances
@@ -182,9 +182,9 @@ class Centrode(Track):
         """Return how far it has turned at driver angles, rad (see `Track.rotation`)."""
         return phi if self.wheel == 1 else self.rolling.guide.nominal(phi)
 
-    def knots_near(self, phi: Array) -> Array:
-        """Return the law's knots near driver angles, rad (see `Track.knots_near`)."""
-        return self.rolling.law.knots_near(phi)
+    def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
+        """Return the law's knots in stretches of driver angle (see `Track.knots_between`)."""
+        return self.rolling.law.knots_between(low, high)
 
     @property
     def curvature_extremes(self) -> tuple[Array, Array]:

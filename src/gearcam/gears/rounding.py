@@ -19,7 +19,7 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
-from gearcam.gears.tips import MISS, ROUGH, TipEnds, cross, flank_at, flank_crossings
+from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
 from gearcam.gears.track import Frames
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
@@ -121,11 +121,11 @@ def _arcs(
     (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
-    near, there = MISS * toothing.pitch, tops.row >= 0
+    there = tops.row >= 0
     flank, first = partial(flank_at, toothing, centers, sigma), np.stack([tips.phi, tips.foot])
-    phi, foot, miss = cross(toothing, flank, curve, first, near)
+    phi, foot, miss = cross(toothing, flank, curve, first)
     place = foot + tops.tip_turn
-    fits = (tops.tip >= 0) & (miss <= ROUGH * near)
+    fits = (tops.tip >= 0) & (miss <= ROUGH * near(toothing))
     fits &= (place >= rows.start[tops.tip] - _EDGE) & (place <= rows.end[tops.tip] + _EDGE)
     # arcs that leave no tip between them become one; so do those of pointed teeth
     narrow = ~(fits[:z] & fits[z:]) | (foot[z:] >= foot[:z])

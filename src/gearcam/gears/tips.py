@@ -13,8 +13,12 @@ from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import newton_in_bracket
 
-MISS = 1e-12
-"""Distance at which curves meet, in addenda or pitches: rounding."""
+_MISS = 1e-12
+"""Distance at which curves meet, in pitches."""
+
+_ROUNDING = 2e-14
+"""The same in lengths of the centrode: places are rounded, and where the driver's radius grows
+fastest, along an ellipse of eccentricity 0.99, so far."""
 
 ROUGH = 1e3
 """Times that distance within which curves meet that Newton's method has no better place of."""
@@ -89,15 +93,20 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
     """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
-    near = np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
+    guess = np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
 
     def curve(_: Array, base: Frames) -> tuple[Plane, Plane]:
         slide = base.speed * (1.0 + base.kappa * addendum) * base.t
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(near), MISS * addendum)
-    return phi, foot, np.where(miss <= MISS * addendum, addendum, np.nan)
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess))
+    return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
+
+
+def near(toothing: Toothing) -> float:
+    """Return the distance at which curves of a wheel meet, mm: rounding."""
+    return max(_MISS * toothing.pitch, _ROUNDING * toothing.track.length)
 
 
 def flank_at(
@@ -112,7 +121,6 @@ def cross(
     one: _Way,
     two: _Way,
     phi: Array,
-    near: float,
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
@@ -124,15 +132,13 @@ def cross(
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
         Driver angles to begin with, on both.
-    near : float, mm
-        Distance at which a crossing is found.
 
     Returns
     -------
     x, y : (n,) arrays, rad
         Driver angles on both curves.
     miss : (n,) array, mm
-        How far their points are apart, at most one step before.
+        How far their points are apart one step before.
     """
     miss = np.full(phi.shape[1:], np.inf, dtype=complex)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -140,12 +146,12 @@ def cross(
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
             miss = p - q
-            if not np.any(np.abs(miss) > near):
-                break
             # both steps over one determinant: the curves' directions against each other
             steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
             steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
             phi = phi + np.where(np.isfinite(steps).all(axis=0), steps, 0.0)
+            if not np.any(np.abs(miss) > near(toothing)):
+                break
     return phi[0], phi[1], np.abs(miss)
 
 
@@ -171,9 +177,8 @@ def flank_crossings(
         Whether they cross.
     """
     one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
-    near = MISS * toothing.pitch
-    first, second, miss = cross(toothing, one, two, start, near)
-    return np.stack([first, second]), miss <= ROUGH * near
+    first, second, miss = cross(toothing, one, two, start)
+    return np.stack([first, second]), miss <= ROUGH * near(toothing)
 
 
 def _search(
@@ -182,9 +187,9 @@ def _search(
     """Search tip ends in their bracket: driver angles, feet, heights, whether they are full."""
     track, addendum, w = toothing.track, toothing.cutter.addendum, toothing.turn
     around = _around(toothing)
-    near = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
+    below = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
     start, end, low, high, guess = track.angle(
-        np.stack([sf, sf - sigma * highest, sf - around, sf + around, near])
+        np.stack([sf, sf - sigma * highest, sf - around, sf + around, below])
     )
 
     def distance(phi: Array, at: Ints | slice) -> tuple[Array, Array, Array]:
@@ -207,8 +212,8 @@ def _search(
             return value - addendum, slope
 
         first = start[at] + (end - start)[at] * np.clip(addendum / height[at], 0.0, 1.0)
-        tolerance = _ANGLE * track.arc.period
-        phi[at] = newton_in_bracket(over, start[at], end[at], first, tolerance)
+        tolerance, noise = _ANGLE * track.arc.period, _ROUNDING * track.length
+        phi[at] = newton_in_bracket(over, start[at], end[at], first, tolerance, noise)
         height[at], _, foot[at] = distance(phi[at], at)
     return phi, foot, height, full
 
@@ -243,4 +248,5 @@ def feet(toothing: Toothing, points: Plane, low: Array, high: Array, start: Arra
         return along, frames.speed * (1.0 + frames.kappa * out)
 
     inside = np.clip(start, np.minimum(low, high), np.maximum(low, high))
-    return newton_in_bracket(miss, low, high, inside, _ANGLE * toothing.track.arc.period)
+    tolerance, noise = _ANGLE * toothing.track.arc.period, _ROUNDING * toothing.track.length
+    return newton_in_bracket(miss, low, high, inside, tolerance, noise)

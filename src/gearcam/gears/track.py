@@ -240,8 +240,11 @@ class Track(ABC):
         """Return how far the wheel has turned at parameters, rad; of a rack how far it moved."""
 
     @abstractmethod
-    def knots_near(self, phi: Array) -> Array:
-        """Return for each parameter the nearest place of each knot, where kappa may jump: rad."""
+    def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
+        """Return the knots, where kappa may jump, in n stretches: their numbers, places (k,), rad.
+
+        The low end of a stretch belongs to it, the high end does not.
+        """
 
     @property
     @abstractmethod

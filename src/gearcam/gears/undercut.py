@@ -105,15 +105,16 @@ def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Ar
 
 def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
     """Driver angles from w = 0 to `reach`, a flank a row, both sides of every knot among them."""
-    start, end = toothing.track.angle(np.stack([sf, sf - sigma * reach]))[:, :, None]
+    start, end = toothing.track.angle(np.stack([sf, sf - sigma * reach]))
     span = end - start
-    columns = [np.broadcast_to(np.linspace(0.0, 1.0, _STEPS), (len(sf), _STEPS))]
-    for nearest in np.moveaxis(toothing.track.knots_near(0.5 * (start + end)[:, 0]), -1, 0):
-        columns += [
-            np.clip((nearest[:, None] - start) / span + side, 0.0, 1.0)
-            for side in (-_BESIDE, _BESIDE)
-        ]
-    return start + span * np.sort(np.concatenate(columns, axis=1), axis=1)
+    flank, knots = toothing.track.knots_between(np.minimum(start, end), np.maximum(start, end))
+    rank = np.arange(len(flank)) - np.searchsorted(flank, flank)
+    sides = np.zeros((len(sf), rank.max(initial=-1) + 1, 2))
+    share = ((knots - start[flank]) / span[flank])[:, None]
+    sides[flank, rank] = np.clip(share + np.array([-_BESIDE, _BESIDE]), 0.0, 1.0)
+    even = np.broadcast_to(np.linspace(0.0, 1.0, _STEPS), (len(sf), _STEPS))
+    shares = np.sort(np.concatenate([even, sides.reshape(len(sf), -1)], axis=1), axis=1)
+    return start[:, None] + span[:, None] * shares
 
 
 def _refine_minima(

@@ -245,8 +245,10 @@ def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
 
 def _uneven(pairs: FlankPairs, angles: Array) -> Mask:
     """Whether stretches of flank between driver angles, (2, n), hold a knot of the law."""
-    law, (start, end) = pairs.guide.law, np.sort(angles, axis=0)[..., None]
-    knots = pairs.track.knots_near(0.5 * (start + end)[:, 0])
+    law, (start, end) = pairs.guide.law, np.sort(angles, axis=0)
+    stretch, knots = pairs.track.knots_between(start, end)
     # a smooth law has no knots but the ends of its lobe
     smooth = law.lobes.closed and len(law.knots) == 2
-    return np.any((knots > start) & (knots < end), axis=1) & (not smooth)
+    uneven = np.zeros(len(start), dtype=bool)
+    uneven[stretch[knots > start[stretch]]] = not smooth
+    return uneven

@@ -20,6 +20,9 @@ from gearcam.numeric.arrays import Array
 Value = Array | float
 """A number, or one at each sample point."""
 
+_BLOCK: Final = 2048
+"""Points of which harmonics are summed at once."""
+
 
 class Jet:
     """Taylor coefficients of a function at sample points.
@@ -278,6 +281,45 @@ def polynomial(x: Jet, place: Value, *coefficients: Value) -> Jet:
     for row in rows[-2::-1]:
         about *= t
         about += row
+    return _composed(x, about)
+
+
+def harmonics(x: Jet, cosines: Sequence[float], sines: Sequence[float]) -> Jet:
+    """Return ``sum(a_k*cos(k*x) + b_k*sin(k*x))`` of a jet, k from 1.
+
+    Parameters
+    ----------
+    x : Jet
+        Of arrays.
+    cosines, sines : sequences of n floats
+        a_1, a_2, ...; b_1, b_2, ...
+
+    Returns
+    -------
+    Jet
+
+    Notes
+    -----
+    Horner's scheme in ``exp(1j*x)`` on all derivatives over their factorials at once, in blocks
+    that stay in the processor's cache.
+    """
+    orders, turns = np.arange(x.order + 1), 1j * np.arange(1, len(cosines) + 1)[:, None]
+    factorials = np.array([math.factorial(k) for k in orders])
+    rows = (np.array(cosines) - 1j * np.array(sines))[:, None] * turns**orders / factorials
+    waves = np.exp(1j * np.ravel(x.c[0]))
+    about = np.empty((len(orders), waves.size))
+    for start in range(0, waves.size, _BLOCK):
+        wave = waves[start : start + _BLOCK]
+        total = np.zeros((len(orders), wave.size), dtype=np.complex128)
+        for row in rows[::-1]:
+            total += row[:, None]
+            total *= wave
+        about[:, start : start + _BLOCK] = total.real
+    return _composed(x, about.reshape(len(orders), *np.shape(x.c[0])))
+
+
+def _composed(x: Jet, about: Array) -> Jet:
+    """Return f(x) of a jet from the derivatives of f over their factorials at its points."""
     if all(_is_zero(value) for value in x.c[2:]):
         return Jet([about[0], *(value * x.c[1] ** k for k, value in enumerate(about[1:], 1))])
     step, result = Jet([0.0, *x.c[1:]]), Jet([about[-1], *[0.0] * x.order])

@@ -303,7 +303,8 @@ class Sampler:
         for number, (start, end) in enumerate(pairwise(cuts.tolist())):
             p = np.append(points[start:end], last_points[number])
             t = np.append(tangents[start:end], last_tangents[number])
-            inside = joints[(joints > start) & (joints < end)] - start
+            first, last = np.searchsorted(joints, [start + 1, end])
+            inside = joints[first:last] - start
             run = Run(points=as_pairs(p), tangents=as_pairs(t), joints=tuple(inside.tolist()))
             runs.append(run.reversed if reverse else run)
         return tuple(runs[::-1] if reverse else runs)

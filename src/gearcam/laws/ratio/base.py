@@ -22,7 +22,7 @@ from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.span import RackTravel, Span, angle_text, continued, demand_smooth
 from gearcam.numerals import shown
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.registry import Registry
@@ -90,16 +90,28 @@ class RatioLaw(Displacement):
                 found.append(Jump(theta=place, order=order + 1, before=before, after=after))
         return tuple(found)
 
-    def knots_near(self, phi1: Array) -> Array:
-        """Return for each angle the place of every knot that is nearest to it: (..., n), rad.
+    def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
+        """Return the knots in n stretches of driver angle: numbers of stretches, places (k,), rad.
 
-        The ends of a lobe are one knot; the ends of an open pair, where it is continued, are two.
+        They rise. The low end of a stretch belongs to it, the high end does not. The ends of a lobe
+        are one knot; the ends of an open pair, where it is continued, are two.
         """
-        phi1 = np.asarray(phi1, dtype=float)[..., None]
-        if not self.lobes.closed:
-            return np.broadcast_to(self.knots, (*phi1.shape[:-1], len(self.knots)))
-        knots, period = self.knots[:-1], self.lobes.period
-        return knots + period * np.round((phi1 - knots) / period)
+        closed, period = self.lobes.closed, self.lobes.period
+        knots = self.knots[:-1] if closed else self.knots
+
+        def before(phi: Array) -> Ints:
+            turns = np.floor(phi / period) if closed else np.zeros(phi.shape)
+            inside = np.searchsorted(knots, phi - turns * period)
+            return turns.astype(np.int64) * len(knots) + inside
+
+        first = before(low) - 1  # and one more behind: turns are rounded
+        count = before(high) + 1 - first
+        stretch = np.repeat(np.arange(len(count)), count)
+        number = np.arange(len(stretch)) + np.repeat(first - np.cumsum(count) + count, count)
+        turn, knot = np.divmod(number, len(knots))
+        place = knots[knot] + period * turn
+        kept = (place >= low[stretch]) & (place < high[stretch]) & (closed | (turn == 0))
+        return stretch[kept], place[kept]
 
     def in_period(self, x: Array, order: int) -> list[Array]:
         """Return ``[phi2, i, i', ...]`` (see `Displacement.in_period`)."""

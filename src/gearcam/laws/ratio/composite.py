@@ -17,7 +17,7 @@ from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.phases import arcs_law, one_lobe
 from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.numerals import shown
-from gearcam.numeric.jets import Jet, cos, polynomial, primitive, sin
+from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
 from gearcam.tolerances import Tolerances
@@ -171,15 +171,12 @@ class Fourier:
         """
         n, mean = lobes.n1, lobes.advance / lobes.period
         if self.of == "ratio":  # their integrals are harmonics of phi2
-            waves = [(k, -b / (k * n), a / (k * n)) for k, a, b in self._harmonics()]
+            waves = [(-b / (k * n), a / (k * n)) for k, a, b in self._harmonics()]
         else:
-            waves = [(k, math.radians(a), math.radians(b)) for k, a, b in self._harmonics()]
+            waves = [(math.radians(a), math.radians(b)) for _, a, b in self._harmonics()]
 
         def phi2(x: Jet) -> Jet:
-            total = x
-            for k, a, b in waves:
-                total = total + (a * cos((k * n) * x) + b * sin((k * n) * x))
-            return mean * total
+            return mean * (x + harmonics(n * x, *np.reshape(waves, (-1, 2)).T))
 
         knots, pieces = [0.0, lobes.period], [Piece(derivative(phi2), phi2)]
         (place, smallest), _ = piecewise(knots, pieces).extremes

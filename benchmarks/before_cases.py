@@ -1,0 +1,226 @@
+"""How long things take over the commit before they were made faster, both measured here."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from contextlib import ExitStack
+from pathlib import Path
+
+from cases import NAIL, slope
+from measuring import ROOT, Result, Timing, commands, table
+
+sys.path.insert(0, str(ROOT / "tools"))
+from compare_sides import tree_of
+
+BEFORE = "44f8390"
+"""The last commit before designs became files at once: what every ratio here is to."""
+
+CHILD = """
+import sys, tempfile, time
+import gearcam
+from gearcam.numeric.memory import keep_freed_memory
+keep_freed_memory()
+nail, cam = (gearcam.load(path) for path in sys.argv[1:3])
+
+def outlines():
+    job = gearcam.build(nail)
+    job.gear1.outline, job.gear2.outline
+    return job
+
+def checked():
+    job = outlines()
+    job.findings
+    return job
+
+def whole(_):
+    with tempfile.TemporaryDirectory() as folder:
+        gearcam.build(nail).write(folder, files=("dxf", "stl", "csv"))
+
+none = lambda: None
+cases = {
+    "outlines": (none, lambda _: outlines()),
+    "profile": (none, lambda _: gearcam.build(cam).profile.vertices),
+    "checks": (outlines, lambda job: job.findings),
+    "dxf": (checked, lambda job: job.files("dxf")),
+    "step": (checked, lambda job: job.files("step")),
+    "warm": (none, whole),
+}
+for line in sys.stdin:
+    prepare, act = cases[line.strip()]
+    given = prepare()
+    start = time.process_time()
+    act(given)
+    print(time.process_time() - start, flush=True)
+"""
+CALL = """
+import sys
+sys.path.insert(0, sys.argv.pop(1))
+from gearcam.cli import main
+sys.exit(main())
+"""
+CASES = {
+    "dxf": ("(i) DXF of the nail machine", 0.25, 9),
+    "outlines": ("(j) Outlines of the nail machine", 0.4, 25),
+    "profile": ("(k) A cam's profile", 0.7, 25),
+    "checks": ("(l) Checks of the nail machine", 0.3, 25),
+    "warm": ("(m) The nail machine's dxf, stl and csv in one process", 0.35, 9),
+    "step": ("(n) STEP of the nail machine", 0.6, 5),
+}
+"""What is compared, the largest ratio asked, and how many samples."""
+CAM = ROOT / "profiles" / "plate_cam_offset_roller.toml"
+NOTE = f"Processor time, of both sides in turns; before: commit {BEFORE}."
+
+
+def against_before(fewer: int = 1) -> list[Result]:
+    """(i) to (o) What a stage takes over what it took before, each in the same run."""
+    with ExitStack() as stack:
+        before = stack.enter_context(tree_of(BEFORE))
+        trees = {"before": before, "now": ROOT}
+        sides = {name: stack.enter_context(_side(tree)) for name, tree in trees.items()}
+        results = [
+            _ratio(title, asked, _in_turns(sides, case, max(tries // fewer, 1)), NOTE)
+            for case, (title, asked, tries) in CASES.items()
+        ]
+        return [*results, _cold(trees, max(9 // fewer, 1))]
+
+
+def _side(tree: Path) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", CHILD, str(NAIL), str(CAM)],
+        env={**os.environ, "PYTHONPATH": str(tree / "src")},
+        text=True,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    )
+
+
+def _in_turns(sides: dict[str, subprocess.Popen[str]], case: str, count: int) -> list[Timing]:
+    """Samples of a case from both sides, in turns; the first round does not count."""
+    samples: dict[str, list[float]] = {name: [] for name in sides}
+    for _ in range(count + 1):
+        for name, side in sides.items():
+            assert side.stdin is not None
+            assert side.stdout is not None
+            print(case, file=side.stdin, flush=True)
+            samples[name].append(float(side.stdout.readline()))
+    return [Timing(name, tuple(values[1:])) for name, values in samples.items()]
+
+
+def _cold(trees: dict[str, Path], tries: int) -> Result:
+    """The whole command in a process of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = ["build", str(NAIL), "--only", "dxf,stl,csv", "-o", folder]
+        timings = commands(
+            {
+                name: [sys.executable, "-c", CALL, str(tree / "src"), *words]
+                for name, tree in trees.items()
+            },
+            tries,
+        )
+    note = f"Whole processes, in turns; before: commit {BEFORE}."
+    return _ratio("(o) The nail machine's dxf, stl and csv by the command", 0.55, timings, note)
+
+
+def _ratio(title: str, asked: float, timings: list[Timing], note: str) -> Result:
+    before, now = timings
+    ratio = now.median / before.median
+    return Result(
+        title=f"{title} against the commit before",
+        asked=f"at most {asked:g} of its time",
+        found=f"{ratio:.3f} of it",
+        passed=ratio <= asked,
+        body=[*table(timings), "", note],
+    )
+
+
+GROWING = """
+import statistics, sys, time
+import gearcam
+from gearcam.numeric.memory import keep_freed_memory
+keep_freed_memory()
+design = gearcam.load(sys.argv[1])
+for _ in range(int(sys.argv[2])):
+    start = time.process_time()
+    job = gearcam.build(design)
+    job.gear1.outline, job.gear2.outline
+    print(time.process_time() - start)
+"""
+PAIR = """
+kind = "gear-pair"
+name = "growing"
+law = {{ {law} }}
+pair = {{ module_mm = {module}, teeth = [{teeth}, {teeth}] }}
+output = {{ files = ["csv"] }}
+"""
+TEETH = [625, 1250, 2500, 5000, 10000]
+GROWTHS = {
+    "teeth of an ellipse of eccentricity 0.99": TEETH,
+    "knots of phases": [25, 50, 100, 200, 400],
+    "rows of a table": [625, 1250, 2500, 5000, 10000],
+    "harmonics": [4, 8, 16, 32, 64],
+}
+
+
+def large_growth(tries: int = 3) -> Result:
+    """(p) Outlines over teeth to 10 000, knots, rows of tables and harmonics."""
+    rows, slopes, worst = [], {}, 0.0
+    for what, counts in GROWTHS.items():
+        medians = []
+        for count in counts:
+            timing = _growing(_design(what, count), f"{count} {what}", tries)
+            medians.append(timing.median)
+            rows.append(timing.line())
+        slopes[what] = slope(counts, medians)
+        worst = max(worst, medians[-1] / medians[-2])
+    listed = ", ".join(f"{what} n^{value:.2f}" for what, value in slopes.items())
+    return Result(
+        title="(p) To 10 000 teeth, 400 knots, 10 000 rows and 64 harmonics",
+        asked="time grows no worse than linearly",
+        found=f"{listed}; the last doubling takes {worst:.2f} times as long at most",
+        passed=max(slopes.values()) <= 1.0 and worst <= 2.2,
+        body=[
+            "| what | median | samples |",
+            "|---|---|---|",
+            *rows,
+            "",
+            "Both outlines in processor time; 40 teeth of module 2 mm where not the teeth grow.",
+        ],
+    )
+
+
+def _growing(text: str, name: str, tries: int) -> Timing:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "design.toml"
+        path.write_text(text, encoding="utf-8")
+        done = subprocess.run(
+            [sys.executable, "-c", GROWING, str(path), str(tries)],
+            check=True,
+            capture_output=True,
+            text=True,
+        )
+    return Timing(name, tuple(float(line) for line in done.stdout.split()))
+
+
+def _design(what: str, count: int) -> str:
+    teeth, module = 40, 2.0
+    angles = [360.0 * k / (count - 1) for k in range(count)]
+    waves = [round(math.cos(math.radians(angle)), 12) for angle in angles]
+    match what.split()[0]:
+        case "teeth":
+            teeth, module = count, 20.0 / count
+            law = 'type = "ellipse", eccentricity = 0.99'
+        case "knots":
+            # so shallow that no arc between knots bends too much for the teeth
+            ratios = [1.0 + 1e-4 * wave for wave in waves]
+            values = ", ".join(['"solve"' if k == 1 else f"{r}" for k, r in enumerate(ratios)])
+            law = f'type = "phases", knots_deg = {angles}, ratios = [{values}]'
+        case "rows":
+            law = f'type = "table", phi1_deg = {angles}, ratio = {[1 + 0.3 * w for w in waves]}'
+        case _:
+            cosines = [0.1 * math.sin(k) / k**2 for k in range(1, count + 1)]
+            law = f'type = "fourier", cosines = {cosines}'
+    return PAIR.format(law=law, teeth=teeth, module=module)
