@@ -17,13 +17,14 @@ from gearcam.version import __version__
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Mapping
 
     from gearcam.advice import Remedies
     from gearcam.designs import Design
     from gearcam.errors import InfeasibleError
     from gearcam.result import Result
 
-__all__ = ["__version__", "build", "load", "remedies"]
+__all__ = ["__version__", "build", "design", "load", "loads", "remedies"]
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -47,6 +48,52 @@ def load(path: str | os.PathLike[str]) -> Design:
     from gearcam.designs import load as read
 
     return read(path)
+
+
+def loads(text: str) -> Design:
+    """Read the text of a design file.
+
+    Parameters
+    ----------
+    text : str
+        TOML; a key ``name`` is needed. CSV files are looked for in the current folder.
+
+    Returns
+    -------
+    Design
+        As from `load`.
+
+    Raises
+    ------
+    DesignError
+        With every problem of the text at once, each with its line.
+    """
+    from gearcam.designs import loads as read
+
+    return read(text)
+
+
+def design(document: Mapping[str, Any]) -> Design:
+    """Make a design of nested dictionaries that hold what a design file would.
+
+    Parameters
+    ----------
+    document : mapping
+        With the keys and the units of a file: ``kind`` and ``name`` among them.
+
+    Returns
+    -------
+    Design
+        As from `load`.
+
+    Raises
+    ------
+    DesignError
+        With every problem at once, each with its key.
+    """
+    from gearcam.designs import design as made
+
+    return made(document)
 
 
 def build(design: Design) -> Any:

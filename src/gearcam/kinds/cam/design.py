@@ -83,7 +83,7 @@ class CamOutputSpec(OutputSpec):
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class CamDesign(Design):
     """A cam with its follower as it is asked for (see `Design`).
 

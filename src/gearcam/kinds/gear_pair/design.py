@@ -47,7 +47,7 @@ class PairOutputSpec(OutputSpec):
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class GearPairDesign(Design):
     """A pair of non-circular gears as it is asked for (see `Design`).
 
