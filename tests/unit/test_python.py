@@ -138,3 +138,29 @@ def test_a_pool_of_two_builds_the_same_to_the_last_bit() -> None:
     designs = [gc.design(PAIR).with_({"law.eccentricity": e}) for e in np.linspace(0.01, 0.4, 12)]
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         assert list(pool.map(_outline, designs)) == [_outline(design) for design in designs]
+
+
+def test_names_at_the_top_are_shown_and_brought_in_when_asked_for() -> None:
+    names = dir(gc)
+    for name in names:
+        assert getattr(gc, name) is not None
+    assert {"GearPairDesign", "CamDesign", "PairSpec", "RisePhase", "FollowerSpec", "laws"} <= {
+        *names
+    }
+    assert {"Ellipse", "Phases"} <= {*dir(gc.laws)}
+    assert "Cycloidal" in dir(gc.rises)
+    with pytest.raises(AttributeError, match="gearcam has no Gearpair"):
+        gc.Gearpair  # noqa: B018  # pyright: ignore
+    with pytest.raises(AttributeError, match="there is no law Elipse"):
+        gc.laws.Elipse  # noqa: B018  # pyright: ignore
+
+
+def test_a_design_is_made_of_what_the_top_gives() -> None:
+    namespace: Any = gc
+    design = namespace.GearPairDesign(
+        name="mine",
+        law=namespace.laws.Ellipse(eccentricity=0.3),
+        pair=namespace.PairSpec(teeth=(20, 20), module=2.0),
+    )
+    assert design == gc.design(PAIR)
+    assert design.law_type == "ellipse"

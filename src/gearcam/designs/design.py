@@ -66,7 +66,9 @@ class Design:
 
     def __eq__(self, other: object) -> bool:
         """Whether another design is of the same kind and asks for the same, whatever its source."""
-        return type(self) is type(other) and self._value == other._value
+        if not isinstance(other, Design) or type(self) is not type(other):
+            return NotImplemented
+        return self._value == other._value
 
     def __hash__(self) -> int:
         return hash(self._value)

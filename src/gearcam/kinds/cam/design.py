@@ -226,3 +226,8 @@ KIND: Final = DesignKind(
         "cam": "prime_radius_mm or base_radius_mm; a flat follower has base_radius_mm",
     },
 )
+
+PUBLIC: Final = (
+    CamDesign, FollowerSpec, CamSpec, WheelBlank, CamOutputSpec, *PHASES.values()
+)  # fmt: skip
+"""What people who write Python make designs of."""
