@@ -136,7 +136,7 @@ class Facts(Mapping[str, Any]):
         self._title = title
 
     def with_group(self, name: str, group: Any) -> Facts:
-        """Return the facts with a `group` more, or as they are where it is empty."""
+        """Return the facts with a `group` of that `name` more, or as they are where it is empty."""
         return Facts({**self._tree, name: group}, self._headline, self._title) if group else self
 
     @cached_property

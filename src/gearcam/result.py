@@ -114,10 +114,10 @@ class Result(ABC):
         return self._facts({})
 
     def _facts(self, measured: Mapping[str, Any]) -> Facts:
-        from gearcam.laws.columns import tables_in
-
         made = KINDS[self.design.kind].room("facts").facts(self, measured)
-        notes = [Fact(it.note, Path(it.file).name, shown=True) for it in tables_in(self.design)]
+        columns = sys.modules.get("gearcam.laws.columns")  # not loaded where no design read a file
+        tables = columns.tables_in(self.design) if columns else ()
+        notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         return made.with_group("tables", [{"note": one} for one in notes if one.value])
 
     def files(self, kind: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:

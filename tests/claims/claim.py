@@ -8,7 +8,7 @@ from typing import Protocol
 
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import ONE_LOBE, Lobes
-from gearcam.laws.rises.base import Rise
+from gearcam.laws.rises.base import RiseParameters
 from gearcam.tolerances import Tolerances
 
 
@@ -17,14 +17,6 @@ class LawParameters(Protocol):
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`, or raise `InfeasibleError`."""
-        ...
-
-
-class RiseParameters(Protocol):
-    """What the parameters of a rise can do."""
-
-    def build(self, tolerances: Tolerances) -> Rise:
-        """Return the rise, to `tolerances`, or raise `InfeasibleError`."""
         ...
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from claims.claim import RiseClaim, RiseParameters
+from claims.claim import RiseClaim
+from gearcam.laws.rises.base import RiseParameters
 from gearcam.laws.rises.polynomials import (
     Polynomial,
     Polynomial23,

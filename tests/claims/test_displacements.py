@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from claims.claim import RiseParameters
 from claims.of_laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
 from gearcam.laws.displacement import Displacement
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase, SegmentPhase
 from gearcam.laws.program import make_program
+from gearcam.laws.rises.base import RiseParameters
 from gearcam.tolerances import DEFAULT
 
 Array = NDArray[np.float64]

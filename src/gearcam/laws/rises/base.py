@@ -14,7 +14,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Protocol
 
 from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
@@ -45,6 +45,14 @@ class Rise:
     function: Piecewise
     mirrored: bool = False
     cuts: Sequence[float] = ()
+
+
+class RiseParameters(Protocol):
+    """What the parameters of a rise can do."""
+
+    def build(self, tolerances: Tolerances) -> Rise:
+        """Return the rise, to `tolerances`, or raise `InfeasibleError`."""
+        ...
 
 
 class ClosedForm(ABC):
