@@ -104,7 +104,6 @@ def ours(text: str, teeth: int) -> tuple[Gear, Gear]:
     """Build both wheels at module 1 mm."""
     design = GearPairDesign(
         name="peer",
-        law_type="formula",
         law=Formula(phi2=text),
         pair=PairSpec(module=1.0, teeth=(teeth, teeth)),
         output=PairOutputSpec(chord_tolerance=CHORD),

@@ -14,7 +14,6 @@ import gearcam
 from gearcam.gears.spec import PairSpec, Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
-from gearcam.laws.ratio.base import LAWS
 from gearcam.parts.blank import Blank
 
 PROFILES = Path(__file__).parent.parent / "profiles"
@@ -35,13 +34,11 @@ def job(
     backlash: float = 0.0,
 ) -> GearPairResult:
     """Return the job of a design made in Python; lengths in mm, limits in inner units."""
-    name = next(name for name, entry in LAWS.items() if entry.parameters is type(law))
     if module is None and distance is None:
         module = 1.0
     return gearcam.build(
         GearPairDesign(
             name="sample",
-            law_type=name,
             law=law,
             pair=PairSpec(
                 center_distance=distance, module=module, teeth=teeth, x=x, backlash=backlash

@@ -6,7 +6,8 @@
     result.write("output", files=["dxf"])
     gearcam.remedies(result).found  # where it is refused or has errors: what would work
 
-Importing the package loads nothing else: `load` and `build` bring in what they need.
+Importing the package loads nothing else: what is asked for brings in what it needs. Classes of
+designs and of their parts are attributes too; ``dir(gearcam)`` tells of all.
 """
 
 from __future__ import annotations
@@ -17,13 +18,62 @@ from gearcam.version import __version__
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Mapping
 
+    from gearcam import laws
     from gearcam.advice import Remedies
     from gearcam.designs import Design
-    from gearcam.errors import InfeasibleError
+    from gearcam.errors import (
+        DesignError,
+        GearcamError,
+        InfeasibleError,
+        MissingExtraError,
+        WriteError,
+    )
+    from gearcam.findings import Finding
+    from gearcam.laws import rises
     from gearcam.result import Result
+    from gearcam.tolerances import Tolerances
 
-__all__ = ["__version__", "build", "load", "remedies"]
+__all__ = [
+    "DesignError", "Finding", "GearcamError", "InfeasibleError", "MissingExtraError", "Tolerances",
+    "WriteError", "__version__", "build", "design", "laws", "load", "loads", "remedies", "rises",
+]  # fmt: skip
+
+_HOMES = {
+    **dict.fromkeys(
+        ("DesignError", "GearcamError", "InfeasibleError", "MissingExtraError", "WriteError"),
+        "gearcam.errors",
+    ),
+    "Finding": "gearcam.findings",
+    "Tolerances": "gearcam.tolerances",
+    "laws": "gearcam.laws",
+    "rises": "gearcam.laws.rises",
+}
+"""Modules of names that are brought in when they are asked for; those of kinds are found."""
+
+
+def __getattr__(name: str) -> Any:
+    """Return what is brought in when it is asked for: classes of designs, laws, errors."""
+    from importlib import import_module
+
+    if name in _HOMES:
+        module = import_module(_HOMES[name])
+        return getattr(module, name, module)
+    made = _of_kinds() if name[:1].isupper() else {}
+    if name in made:
+        return made[name]
+    raise AttributeError(f"gearcam has no {name}; dir(gearcam) tells of all")
+
+
+def __dir__() -> list[str]:
+    return sorted({*__all__, *_of_kinds()})
+
+
+def _of_kinds() -> dict[str, type]:
+    from gearcam.designs.kind import KINDS
+
+    return {one.__name__: one for kind in KINDS.values() for one in kind.room("design").PUBLIC}
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -47,6 +97,52 @@ def load(path: str | os.PathLike[str]) -> Design:
     from gearcam.designs import load as read
 
     return read(path)
+
+
+def loads(text: str) -> Design:
+    """Read the text of a design file.
+
+    Parameters
+    ----------
+    text : str
+        TOML; a key ``name`` is needed. CSV files are looked for in the current folder.
+
+    Returns
+    -------
+    Design
+        As from `load`.
+
+    Raises
+    ------
+    DesignError
+        With every problem of the text at once, each with its line.
+    """
+    from gearcam.designs import loads as read
+
+    return read(text)
+
+
+def design(document: Mapping[str, Any]) -> Design:
+    """Make a design of nested dictionaries that hold what a design file would.
+
+    Parameters
+    ----------
+    document : mapping
+        With the keys and the units of a file: ``kind`` and ``name`` among them.
+
+    Returns
+    -------
+    Design
+        As from `load`.
+
+    Raises
+    ------
+    DesignError
+        With every problem at once, each with its key.
+    """
+    from gearcam.designs import design as made
+
+    return made(document)
 
 
 def build(design: Design) -> Any:

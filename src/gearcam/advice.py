@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.designs.design import Design, changed, document_of, value_at
+from gearcam.designs.design import Design, document_of, value_at
 from gearcam.designs.kind import KINDS
 from gearcam.errors import DesignError, InfeasibleError, Way
 
@@ -159,7 +159,7 @@ class Search:
         """Whether the changed design builds, without the errors and without others."""
         self.tried |= dict.fromkeys(changes)
         try:
-            other = type(self.result)(changed(self.result.design, changes), self.result.tolerances)
+            other = type(self.result)(self.result.design.with_(changes), self.result.tolerances)
             if self.advice.hopeless(other):
                 return False
             findings = other.findings
@@ -171,7 +171,7 @@ class Search:
 
     def keep(self, changes: Changes, less: Changes | None = None) -> None:
         """Write a remedy down: its `changes`, and the next smaller ones, `less`."""
-        design = changed(self.result.design, changes)
+        design = self.result.design.with_(changes)
         self.found.append(Remedy(changes=changes, less=less or {}, design=design))
 
     def along(self, way: Way) -> bool:

@@ -13,6 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 from gearcam.numerals import shown
 
@@ -71,6 +73,9 @@ class DesignError(GearcamError, ValueError):
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = tuple(problems)
         super().__init__("\n".join(str(problem) for problem in self.problems))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.problems,)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +141,10 @@ class InfeasibleError(GearcamError, ValueError):
         )
         super().__init__("; ".join(part for part in (text, numbers, nearest) if part))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        names = ("where", "value", "limit", "unit", "nearest", "ways", "more_teeth")
+        return partial(type(self), self.what, **{name: getattr(self, name) for name in names}), ()
+
 
 class MissingExtraError(GearcamError, ImportError):
     """A library that only some need is not installed.
@@ -149,7 +158,11 @@ class MissingExtraError(GearcamError, ImportError):
     """
 
     def __init__(self, what: str, extra: str) -> None:
+        self.what, self.extra = what, extra
         super().__init__(f'{what} need the optional extra: pip install "gearcam[{extra}]"')
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.what, self.extra)
 
 
 class WriteError(GearcamError, OSError):

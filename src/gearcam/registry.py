@@ -6,8 +6,8 @@ A home is imported when its entry is asked for: a design with one law loads that
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator, Mapping
-from typing import Generic, Protocol, TypeVar
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Generic, Protocol, TypeVar
 
 
 class Named(Protocol):
@@ -56,6 +56,11 @@ class Registry(Mapping[str, E], Generic[E]):
                 raise ValueError(f"{self._what} {entry.name!r} is registered twice")
             self._entries[entry.name] = entry
 
+    @property
+    def loaded(self) -> tuple[E, ...]:
+        """The entries whose homes have been imported."""
+        return tuple(self._entries.values())
+
     def __getitem__(self, name: str) -> E:
         if name not in self._entries and name in self._homes:
             importlib.import_module(self._homes[name])
@@ -69,3 +74,39 @@ class Registry(Mapping[str, E], Generic[E]):
 
     def __contains__(self, name: object) -> bool:
         return name in self._homes or name in self._entries
+
+
+def name_of(registry: Registry[Any], part: object) -> str:
+    """Return the name of the entry of a `registry` whose parameters a `part` is, or nothing."""
+    # an object's class has been imported, and with it the entry been registered
+    return next((one.name for one in registry.loaded if one.parameters is type(part)), "")
+
+
+def classes_in(registry: Registry[Any]) -> dict[str, type]:
+    """Return the classes of parameters of all entries of a `registry`, by their own names."""
+    return {one.parameters.__name__: one.parameters for one in registry.values()}
+
+
+def lazy_classes(
+    what: str, load: Callable[[], Mapping[str, Any]]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Return ``__getattr__`` and ``__dir__`` of a package that gives classes by their names.
+
+    Parameters
+    ----------
+    what : str
+        What a class is, for messages.
+    load : callable
+        Returns the classes by name; asked only for names that begin as those of classes do.
+
+    Returns
+    -------
+    getattr, dir : callable
+    """
+
+    def find(name: str) -> Any:
+        if name[:1].isupper() and name in (known := load()):
+            return known[name]
+        raise AttributeError(f"there is no {what} {name}; dir() tells of all")
+
+    return find, lambda: sorted(load())

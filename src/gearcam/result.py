@@ -84,6 +84,13 @@ class Result(ABC):
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.design, self.tolerances)  # computed again where it is read
+
+    def __repr__(self) -> str:
+        done = ", ".join(self.timings) or "nothing"
+        return f'<{type(self).__name__} of "{self.design.name}", computed: {done}>'
+
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time what is done within, under a `name`."""

@@ -40,7 +40,6 @@ def test_a_design_made_in_python_equals_the_one_read() -> None:
     assert isinstance(read, GearPairDesign)
     made = GearPairDesign(
         name="good",
-        law_type="phases",
         law=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
         pair=PairSpec(center_distance=180.0, teeth=(36, 36)),
         output=PairOutputSpec(files=("csv",)),
@@ -58,7 +57,6 @@ def test_a_design_made_in_python_equals_the_one_read() -> None:
 def test_a_design_made_in_python_meets_the_same_rules() -> None:
     good: dict[str, Any] = {
         "name": "e",
-        "law_type": "ellipse",
         "law": Ellipse(eccentricity=0.3),
         "pair": PairSpec(module=1.0, teeth=(41, 41)),
     }
@@ -72,8 +70,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     both = PairSpec(module=1.0, center_distance=1.0, teeth=(41, 41))
     assert refused("exactly one", pair=both).problems[0].line is None
     refused("out of range", law=Ellipse(eccentricity=1.0))
-    refused("not a law", law_type="elipse")
-    refused("instance of Phases", law_type="phases")
+    refused("instance of Phases or .* or Ellipse or ", law="ellipse")
     refused("instance of PairSpec", pair=3)
     refused(r"limits\.no_such", limits={"no_such": 1.0})
     refused(r"limits\.tip_thickness", limits={"tip_thickness": -1.0})
@@ -84,7 +81,6 @@ def test_numbers_from_numpy_serve_in_python() -> None:
     knots = tuple(np.radians([0.0, 160.0, 360.0]))
     design = GearPairDesign(
         name="n",
-        law_type="phases",
         law=Phases(knots=knots, ratios=tuple(np.array([1.6, 0.4, 1.6]))),
         pair=PairSpec(center_distance=np.float64(180), teeth=tuple(np.array([36, 36]))),  # pyright: ignore
     )

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from gearcam import build, load
-from gearcam.designs.design import changed
 from gearcam.designs.kind import KINDS
 from gearcam.drawings import OUTLINE, Drawing, Feature, Path, pair_drawing, placed
 from gearcam.export.shared import sheet_rows
@@ -262,6 +261,6 @@ def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.Monke
         "valve_lever": {},
     }
     for name, change in changes.items():
-        build(changed(load(f"profiles/{name}.toml"), change)).files("drawing-svg")
+        build(load(f"profiles/{name}.toml").with_(change)).files("drawing-svg")
     assert len(asked) > 25
     assert asked - known == set()

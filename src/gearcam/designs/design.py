@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import InitVar, dataclass, field
-from typing import Any, ClassVar, Final
+from functools import cached_property
+from typing import Any, ClassVar, Final, Self
 
 from gearcam.designs.examine import examine
 from gearcam.designs.kind import KINDS
@@ -21,7 +23,7 @@ Wanted = tuple[str, Any, tuple[type, ...]]
 """Key of a part, the part, and of which types it may be."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Design:
     """What every design has; each kind adds the fields of its tables.
 
@@ -61,6 +63,60 @@ class Design:
             faults = examine(document_of(self)).faults
             if faults:
                 raise DesignError(fault.problem(self.source) for fault in faults)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another design is of the same kind and asks for the same, whatever its source."""
+        if not isinstance(other, Design) or type(self) is not type(other):
+            return NotImplemented
+        return self._value == other._value
+
+    def __hash__(self) -> int:
+        return hash(self._value)
+
+    def __repr__(self) -> str:
+        return f'<{type(self).__name__} "{self.name}">'
+
+    @cached_property
+    def _value(self) -> str:
+        """Everything that it asks for, with the rows of CSV files instead of their names."""
+        document = document_of(self)
+        with contextlib.suppress(InfeasibleError):  # of a file that cannot be read the name counts
+            document = _with_rows(document, self)
+        return json.dumps(document, sort_keys=True)
+
+    def with_(self, changes: Mapping[str, object]) -> Self:
+        """Return the design with other values of some keys.
+
+        Parameters
+        ----------
+        changes : mapping of str to value
+            New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units.
+
+        Returns
+        -------
+        Design
+            Of the same kind, examined anew.
+
+        Raises
+        ------
+        DesignError
+            If a design of this kind has no such key, or a value is not what the file may hold.
+        """
+        document = document_of(self)
+        for key, value in changes.items():
+            *path, last = path_of(key)
+            place: Any = document
+            try:
+                for step in path:
+                    place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
+                place[last] = value
+            except (IndexError, KeyError, TypeError):
+                problem = Problem("there is no such place", self.source, key=key)
+                raise DesignError([problem]) from None
+        found = examine(document)
+        if found.faults:
+            raise DesignError(fault.problem(self.source) for fault in found.faults)
+        return type(self)(source=self.source, examined=True, **found.parts)
 
     def _settle(self) -> None:
         """Bring what is given into one form."""
@@ -194,39 +250,6 @@ def _rows(file: str, design: Design) -> Any:
         return next((rows.cells for rows in tables_in(design) if rows.file == file), None)
     except ColumnsError as error:
         raise InfeasibleError(str(error), where=file) from error
-
-
-def changed(design: Any, changes: Mapping[str, object]) -> Any:
-    """Return a design with other values of some keys.
-
-    Parameters
-    ----------
-    design : Design
-        A design of any kind.
-    changes : mapping of str to value
-        New values by dotted keys of the design file, such as ``law.ratios[1]``, in its units.
-
-    Returns
-    -------
-    Design
-        Of the same kind.
-
-    Raises
-    ------
-    DesignError
-        If a value is not what the file may hold.
-    """
-    document = document_of(design)
-    for key, value in changes.items():
-        *path, last = path_of(key)
-        place: Any = document
-        for step in path:
-            place = place[step]
-        place[last] = value
-    found = examine(document)
-    if found.faults:
-        raise DesignError(fault.problem(design.source) for fault in found.faults)
-    return type(design)(source=design.source, examined=True, **found.parts)
 
 
 def value_at(document: Any, key: str) -> Any:

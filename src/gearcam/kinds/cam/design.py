@@ -83,7 +83,7 @@ class CamOutputSpec(OutputSpec):
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class CamDesign(Design):
     """A cam with its follower as it is asked for (see `Design`).
 
@@ -226,3 +226,8 @@ KIND: Final = DesignKind(
         "cam": "prime_radius_mm or base_radius_mm; a flat follower has base_radius_mm",
     },
 )
+
+PUBLIC: Final = (
+    CamDesign, FollowerSpec, CamSpec, WheelBlank, CamOutputSpec, *PHASES.values()
+)  # fmt: skip
+"""What people who write Python make designs of."""

@@ -23,6 +23,7 @@ from gearcam.numerals import shown
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 from gearcam.quantities import COUNT, param
+from gearcam.registry import classes_in, name_of
 
 NAME: Final = "gear-pair"
 """As in a file."""
@@ -47,16 +48,14 @@ class PairOutputSpec(OutputSpec):
     )
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class GearPairDesign(Design):
     """A pair of non-circular gears as it is asked for (see `Design`).
 
     Parameters
     ----------
-    law_type : str
-        Name of the law in the registry.
     law : object
-        The law's parameters, an instance of ``LAWS[law_type].parameters``.
+        The law's parameters, such as `gearcam.laws.Ellipse`.
     pair : PairSpec
         Centre distance or module, tooth counts, width.
     rack : Rack
@@ -73,7 +72,6 @@ class GearPairDesign(Design):
 
     kind = NAME
 
-    law_type: str
     law: Any
     pair: PairSpec
     rack: Rack = field(default_factory=Rack)
@@ -82,9 +80,13 @@ class GearPairDesign(Design):
     output: PairOutputSpec = field(default_factory=PairOutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
 
+    @property
+    def law_type(self) -> str:
+        """Name of the law in the registry; empty where it is no law."""
+        return name_of(LAWS, self.law)
+
     def _wanted(self) -> list[Wanted]:
-        law = LAWS.get(self.law_type)
-        return [("law", self.law, (law.parameters,))] if law else []
+        return [] if self.law_type else [("law", self.law, tuple(classes_in(LAWS).values()))]
 
 
 def law_table(law_type: str) -> Table:
@@ -111,13 +113,11 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
     law, problems = made_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
     found.faults += [*faults, *problems]
     if law is not None and not faults and not problems:
-        found.parts |= {"law_type": law_type, "law": law}
+        found.parts["law"] = law
 
 
 def _law_of(design: GearPairDesign) -> dict[str, Any]:
-    law: dict[str, Any] = {"type": design.law_type}
-    known = design.law_type in LAWS
-    return law | table_of("law", type(design.law)).document(design.law) if known else law
+    return {"type": design.law_type} | law_table(design.law_type).document(design.law)
 
 
 def _homes() -> Mapping[str, str]:
@@ -255,3 +255,8 @@ KIND: Final = DesignKind(
         "pair": "exactly one of center_distance_mm and module_mm; the other is solved",
     },
 )
+
+PUBLIC: Final = (
+    GearPairDesign, PairSpec, Rack, Blank, StepsSpec, PairOutputSpec, MeshingSpec
+)  # fmt: skip
+"""What people who write Python make designs of."""

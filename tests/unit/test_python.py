@@ -1,0 +1,166 @@
+"""What the package gives to people who write Python: designs as values, results that travel."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.designs.design import document_of
+from gearcam.errors import (
+    DesignError,
+    InfeasibleError,
+    MissingExtraError,
+    Problem,
+    Way,
+    WriteError,
+)
+from gearcam.tolerances import Tolerances
+
+PROFILES = sorted(Path("profiles").glob("*.toml"))
+PAIR: dict[str, Any] = {
+    "kind": "gear-pair",
+    "name": "mine",
+    "law": {"type": "ellipse", "eccentricity": 0.3},
+    "pair": {"teeth": [20, 20], "module_mm": 2.0},
+}
+
+
+@pytest.mark.parametrize("path", PROFILES, ids=lambda path: path.stem)
+def test_designs_compare_by_value_and_come_back_from_their_documents(path: Path) -> None:
+    one, two = gc.load(path), gc.load(path)
+    assert one == two
+    assert hash(one) == hash(two)
+    assert pickle.loads(pickle.dumps(one)) == one == copy.deepcopy(one)
+    assert gc.design(document_of(one)) == one
+    assert one.with_({"name": "other"}) != one
+    assert "\n" not in repr(one) and len(repr(one)) < 80  # noqa: PT018
+
+
+def test_designs_of_two_tables_differ_where_only_their_rows_do(tmp_path: Path) -> None:
+    text = Path("profiles/measured.toml").read_text(encoding="utf-8")
+    rows = Path("profiles/measured.csv").read_text(encoding="utf-8").splitlines()
+    made = []
+    for name, drop in (("one", None), ("two", 10), ("three", None)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "measured.csv").write_text(
+            "\n".join(row for k, row in enumerate(rows) if k != drop), encoding="utf-8"
+        )
+        (tmp_path / name / "measured.toml").write_text(text, encoding="utf-8")
+        made.append(gc.load(tmp_path / name / "measured.toml"))
+    assert made[0] != made[1]
+    assert made[0] == made[2]
+    assert made[0] != "measured"
+
+
+def test_a_design_is_made_of_a_dict_with_the_numbers_of_numpy() -> None:
+    pair = {"teeth": tuple(np.array([20, 20])), "module_mm": np.float64(2.0)}
+    design = gc.design({**PAIR, "pair": pair})
+    assert design == gc.design(PAIR)
+    assert design.pair.module == 2.0  # pyright: ignore
+    text = 'kind = "gear-pair"\nname = "mine"\n[law]\ntype = "ellipse"\neccentricity = 0.3\n'
+    assert design == gc.loads(text + "[pair]\nteeth = [20, 20]\nmodule_mm = 2\n")
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "words"),
+    [
+        ({"law.eccentricity": 1.5}, "law.eccentricity", "1.5 is out of range"),
+        ({"law.eccentricty": 0.2}, "law.eccentricty", "did you mean eccentricity?"),
+        ({"pair.teeth[2]": 7}, "pair.teeth[2]", "there is no such place"),
+        ({"name.first": 7}, "name.first", "there is no such place"),
+        ({"limits.contact_ratio": "high"}, "limits.contact_ratio", "is not a number"),
+    ],
+)
+def test_bad_changes_are_refused_with_the_words_of_a_file(
+    change: dict[str, object], key: str, words: str
+) -> None:
+    design = gc.design(PAIR)
+    with pytest.raises(DesignError) as caught:
+        design.with_(change)
+    (problem,) = caught.value.problems
+    assert problem.key == key
+    assert problem.line is None
+    assert words in str(problem)
+    assert design == gc.design(PAIR)
+
+
+def test_a_changed_design_is_a_checked_copy() -> None:
+    design = gc.design(PAIR)
+    other = design.with_({"law.eccentricity": 0.4, "limits.contact_ratio": 1.3})
+    assert document_of(other)["law"]["eccentricity"] == 0.4
+    assert other.limits["contact_ratio"] == 1.3
+    assert document_of(design) == document_of(gc.design(PAIR))
+
+
+ERRORS = (
+    DesignError([Problem("is wrong", "a.toml", 3, "law.type", 1, "this", "that"), Problem("too")]),
+    InfeasibleError(
+        "cannot be", where="here", value=1.0, limit=2.0, unit="mm", nearest="no",
+        ways=[Way(near={"pair.x": 0.1})], more_teeth=1.5,
+    ),
+    MissingExtraError("STEP files", "step"),
+    WriteError(28, "no space left", "a.dxf"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("error", ERRORS, ids=lambda error: type(error).__name__)
+def test_errors_pickle_whole(error: Exception) -> None:
+    back = pickle.loads(pickle.dumps(error))
+    assert type(back) is type(error)
+    assert str(back) == str(error)
+    assert vars(back) == vars(error)
+
+
+def test_a_result_travels_as_its_design_and_is_computed_again() -> None:
+    result = gc.build(gc.design(PAIR))
+    result.tolerances = Tolerances(oversampling=5)
+    outline = result.gear1.outline
+    assert repr(result) == '<GearPairResult of "mine", computed: law, centrodes, gear1>'
+    back = pickle.loads(pickle.dumps(result))
+    assert back.tolerances == result.tolerances
+    assert not back.timings
+    assert (back.gear1.outline == outline).all()
+
+
+def _outline(design: Any) -> bytes:
+    return gc.build(design).gear1.outline.tobytes()
+
+
+def test_a_pool_of_two_builds_the_same_to_the_last_bit() -> None:
+    designs = [gc.design(PAIR).with_({"law.eccentricity": e}) for e in np.linspace(0.01, 0.4, 12)]
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        assert list(pool.map(_outline, designs)) == [_outline(design) for design in designs]
+
+
+def test_names_at_the_top_are_shown_and_brought_in_when_asked_for() -> None:
+    names = dir(gc)
+    for name in names:
+        assert getattr(gc, name) is not None
+    assert {"GearPairDesign", "CamDesign", "PairSpec", "RisePhase", "FollowerSpec", "laws"} <= {
+        *names
+    }
+    assert {"Ellipse", "Phases"} <= {*dir(gc.laws)}
+    assert "Cycloidal" in dir(gc.rises)
+    with pytest.raises(AttributeError, match="gearcam has no Gearpair"):
+        gc.Gearpair  # noqa: B018  # pyright: ignore
+    with pytest.raises(AttributeError, match="there is no law Elipse"):
+        gc.laws.Elipse  # noqa: B018  # pyright: ignore
+
+
+def test_a_design_is_made_of_what_the_top_gives() -> None:
+    namespace: Any = gc
+    design = namespace.GearPairDesign(
+        name="mine",
+        law=namespace.laws.Ellipse(eccentricity=0.3),
+        pair=namespace.PairSpec(teeth=(20, 20), module=2.0),
+    )
+    assert design == gc.design(PAIR)
+    assert design.law_type == "ellipse"
