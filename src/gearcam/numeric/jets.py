@@ -284,7 +284,7 @@ def polynomial(x: Jet, place: Value, *coefficients: Value) -> Jet:
     return _composed(x, about)
 
 
-def harmonics(x: Jet, cosines: Sequence[float], sines: Sequence[float]) -> Jet:
+def harmonics(x: Jet, cosines: Sequence[float] | Array, sines: Sequence[float] | Array) -> Jet:
     """Return ``sum(a_k*cos(k*x) + b_k*sin(k*x))`` of a jet, k from 1.
 
     Parameters
