@@ -90,11 +90,11 @@ def spline_area(contour: Contour, tolerance: float) -> float:
     basis = np.stack([s**3, 3 * s * s * t, 3 * s * t * t, t**3])
     slopes = 3 * np.stack([s * s, 2 * s * t, t * t])
     total = 0.0
-    for run in contour.runs:
-        for piece in run.pieces:
-            x, y = np.moveaxis(cubics(fit_splines([piece], tolerance)[0]), 2, 0)
-            swept = (x @ basis) * (np.diff(y) @ slopes) - (y @ basis) * (np.diff(x) @ slopes)
-            total += 0.25 * float((swept @ weight).sum())
+    # all at once, as the file's: how many are fitted together decides on lengths that are tried
+    for spline in fit_splines([piece for run in contour.runs for piece in run.pieces], tolerance):
+        x, y = np.moveaxis(cubics(spline), 2, 0)
+        swept = (x @ basis) * (np.diff(y) @ slopes) - (y @ basis) * (np.diff(x) @ slopes)
+        total += 0.25 * float((swept @ weight).sum())
     return total
 
 

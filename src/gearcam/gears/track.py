@@ -243,7 +243,7 @@ class Track(ABC):
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
         """Return the knots, where kappa may jump, in n stretches: their numbers, places (k,), rad.
 
-        The low end of a stretch belongs to it, the high end does not.
+        The `low` end of a stretch belongs to it, the `high` end does not.
         """
 
     @property

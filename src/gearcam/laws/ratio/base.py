@@ -93,7 +93,7 @@ class RatioLaw(Displacement):
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
         """Return the knots in n stretches of driver angle: numbers of stretches, places (k,), rad.
 
-        They rise. The low end of a stretch belongs to it, the high end does not. The ends of a lobe
+        They rise. The `low` end of a stretch belongs to it, the `high` end does not. The ends of a lobe
         are one knot; the ends of an open pair, where it is continued, are two.
         """
         closed, period = self.lobes.closed, self.lobes.period
