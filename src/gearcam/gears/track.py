@@ -241,9 +241,17 @@ class Track(ABC):
 
     @abstractmethod
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
-        """Return the knots, where kappa may jump, in n stretches: their numbers, places (k,), rad.
+        """Return the knots, where kappa may jump, in stretches.
 
-        The `low` end of a stretch belongs to it, the `high` end does not.
+        Parameters
+        ----------
+        low, high : (n,) arrays, rad
+            Ends of the stretches; the low one belongs to its stretch, the high one does not.
+
+        Returns
+        -------
+        number, place : (k,) int array, (k,) array, rad
+            Of the stretch, and of the knot.
         """
 
     @property

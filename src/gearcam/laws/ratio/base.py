@@ -91,10 +91,19 @@ class RatioLaw(Displacement):
         return tuple(found)
 
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
-        """Return the knots in n stretches of driver angle: numbers of stretches, places (k,), rad.
+        """Return the knots in stretches of driver angle.
 
-        They rise. The `low` end of a stretch belongs to it, the `high` end does not. The ends of a lobe
-        are one knot; the ends of an open pair, where it is continued, are two.
+        The ends of a lobe are one knot; the ends of an open pair, where it is continued, are two.
+
+        Parameters
+        ----------
+        low, high : (n,) arrays, rad
+            Ends of the stretches; the low one belongs to its stretch, the high one does not.
+
+        Returns
+        -------
+        number, place : (k,) int array, (k,) array, rad
+            Of the stretch, and of the knot.
         """
         closed, period = self.lobes.closed, self.lobes.period
         knots = self.knots[:-1] if closed else self.knots
