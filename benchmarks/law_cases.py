@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 import gearcam
 from cases import load
+from gearcam.meshing.numbers import numbers
 from gearcam.meshing.study import study
 from measuring import Result, in_turns, table
 
@@ -70,8 +72,8 @@ def _study(law: str) -> partial[object]:
     return partial(_numbers, job.gears, design.meshing)
 
 
-def _numbers(gears: object, spec: object) -> object:
-    return study(gears, spec).summary
+def _numbers(gears: Any, spec: Any) -> object:
+    return numbers(study(gears, spec))
 
 
 def _table(e: float) -> str:
