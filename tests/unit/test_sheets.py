@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from gearcam import build, load
 from gearcam.designs.kind import KINDS
 from gearcam.drawings import OUTLINE, Drawing, Feature, Path, pair_drawing, placed
+from gearcam.export.dxf_read import read_dxf
 from gearcam.export.shared import sheet_rows
 from gearcam.facts import Facts
 from gearcam.numerals import decimal
@@ -264,3 +266,14 @@ def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.Monke
         build(load(f"profiles/{name}.toml").with_(change)).files("drawing-svg")
     assert len(asked) > 25
     assert asked - known == set()
+
+
+@pytest.mark.parametrize("name", ["ellipse", "tappet"])
+def test_drawings_are_of_the_kind_that_is_asked_for(name: str) -> None:
+    made = build(load(f"profiles/{name}.toml"))
+    for file, data in made.files("drawing-dxf").items():
+        assert file.endswith("_drawing.dxf")
+        assert len(list(read_dxf(data).modelspace())) > 20
+    for file, data in made.files("drawing-svg").items():
+        assert file.endswith("_drawing.svg")
+        assert ElementTree.fromstring(data).tag.endswith("svg")
