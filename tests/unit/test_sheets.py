@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -276,4 +276,4 @@ def test_drawings_are_of_the_kind_that_is_asked_for(name: str) -> None:
         assert len(list(read_dxf(data).modelspace())) > 20
     for file, data in made.files("drawing-svg").items():
         assert file.endswith("_drawing.svg")
-        assert ElementTree.fromstring(data).tag.endswith("svg")
+        assert ET.fromstring(data).tag.endswith("svg")
