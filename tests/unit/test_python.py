@@ -98,6 +98,11 @@ def test_a_changed_design_is_a_checked_copy() -> None:
     assert document_of(other)["law"]["eccentricity"] == 0.4
     assert other.limits["contact_ratio"] == 1.3
     assert document_of(design) == document_of(gc.design(PAIR))
+    assert design.with_({"pair.teeth": np.array([30, 30])}) == design.with_(
+        {"pair.teeth": [30, 30]}
+    )
+    with pytest.raises(DesignError, match="law: unknown table"):
+        design.with_({"kind": "cam"})
 
 
 ERRORS = (

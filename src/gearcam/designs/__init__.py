@@ -11,8 +11,8 @@ kinds of design that this version does not build.
 
 from __future__ import annotations
 
-from gearcam.designs.design import Design, demand_kind, document_of, hash_of
+from gearcam.designs.design import Design, demand_kind, design, document_of, hash_of
 from gearcam.designs.kind import KINDS
-from gearcam.designs.reader import design, load, loads
+from gearcam.designs.reader import load, loads
 
 __all__ = ["KINDS", "Design", "demand_kind", "design", "document_of", "hash_of", "load", "loads"]

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import InitVar, dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Final, Self
+from typing import Any, ClassVar, Final
 
 from gearcam.designs.examine import examine
 from gearcam.designs.kind import KINDS
@@ -84,7 +84,7 @@ class Design:
             document = _with_rows(document, self)
         return json.dumps(document, sort_keys=True)
 
-    def with_(self, changes: Mapping[str, object]) -> Self:
+    def with_(self, changes: Mapping[str, object]) -> Any:
         """Return the design with other values of some keys.
 
         Parameters
@@ -113,10 +113,7 @@ class Design:
             except (IndexError, KeyError, TypeError):
                 problem = Problem("there is no such place", self.source, key=key)
                 raise DesignError([problem]) from None
-        found = examine(document)
-        if found.faults:
-            raise DesignError(fault.problem(self.source) for fault in found.faults)
-        return type(self)(source=self.source, examined=True, **found.parts)
+        return design(document, self.source)
 
     def _settle(self) -> None:
         """Bring what is given into one form."""
@@ -198,6 +195,42 @@ def document_of(design: Design) -> dict[str, Any]:
             for name, value in design.limits.items()
         }
     return document
+
+
+def design(document: Mapping[str, Any], source: str = "") -> Any:
+    """Return the design of nested dictionaries that hold what a design file would.
+
+    Parameters
+    ----------
+    document : mapping
+        With the keys and the units of a file, ``kind`` and ``name`` among them; a tuple stands for
+        a list. CSV files are looked for in the current folder.
+    source : str
+        The file that it came from, for messages.
+
+    Returns
+    -------
+    Design
+        In mm and rad, of the document's kind.
+
+    Raises
+    ------
+    DesignError
+        For everything that is wrong in it, each with its key.
+    """
+    plain = _plain(document)
+    found = examine(plain)
+    if found.faults:
+        raise DesignError(fault.problem(source) for fault in found.faults)
+    return KINDS[plain["kind"]].design(source=source, examined=True, **found.parts)
+
+
+def _plain(value: Any) -> Any:
+    """Return a document of the types that TOML has: numbers of numpy become those of Python."""
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    value = value.tolist() if hasattr(value, "tolist") else value
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def hash_of(design: Design) -> str:

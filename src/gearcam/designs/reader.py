@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
@@ -131,40 +131,6 @@ def loads(text: str, *, file: str = "") -> Design:
     if found.faults:
         raise DesignError(problems_of(found.faults, text, file))
     return KINDS[document["kind"]].design(source=file, examined=True, **found.parts)
-
-
-def design(document: Mapping[str, Any]) -> Design:
-    """Return the design of nested dictionaries that hold what a design file would.
-
-    Parameters
-    ----------
-    document : mapping
-        With the keys and the units of a file, ``kind`` and ``name`` among them; a tuple stands for
-        a list. CSV files are looked for in the current folder.
-
-    Returns
-    -------
-    Design
-        In mm and rad, of the document's kind.
-
-    Raises
-    ------
-    DesignError
-        For everything that is wrong in it, each with its key.
-    """
-    plain = _plain(document)
-    found = examine(plain)
-    if found.faults:
-        raise DesignError(fault.problem("") for fault in found.faults)
-    return KINDS[plain["kind"]].design(examined=True, **found.parts)
-
-
-def _plain(value: Any) -> Any:
-    """Return a document of the types that TOML has: numbers of numpy become those of Python."""
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    value = value.tolist() if hasattr(value, "tolist") else value
-    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def _find_tables(value: Any, folder: Path) -> None:

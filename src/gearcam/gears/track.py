@@ -49,10 +49,6 @@ _ROUNDING = 4e-16
 """What an arc length is missed by at which it ends too, in those of a period: rounding; steps stay
 larger where the curve hardly moves."""
 
-_ROUNDING = 4e-16
-"""What an arc length is missed by at which it ends too, in those of a period: rounding; steps stay
-larger where the curve hardly moves."""
-
 
 class Frames(NamedTuple):
     """Frames of a track at parameters: arrays of one shape.
