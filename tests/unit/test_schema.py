@@ -249,6 +249,7 @@ def test_reader_and_schema_refuse_the_same_cams(edits: Edits) -> None:
         (("motion", 0, "lift_mm"), 0),
         (("motion", 0, "lift_deg"), 10),
         (("motion", 0, "angle_deg"), 361),
+        (("motion", 0, "angle_deg"), "solve"),
         (("motion", 0, "b"), None),
         (("motion", 1, "lift_mm"), 10),
         (("motion", 1, "law"), "cycloidal"),
@@ -334,6 +335,7 @@ def test_names_that_both_can_judge_are_judged_alike() -> None:
 
 
 def test_good_is_good() -> None:
-    for good in (GOOD, CAM):
+    resting = _edited([(("motion", 3, "angle_deg"), "rest")], CAM)
+    for good in (GOOD, CAM, resting):
         assert not list(SHARED.iter_errors(good))
         assert not examine(good).faults

@@ -142,7 +142,7 @@ class DesignKind:
                     key = made_of.key(name)
                     # nan: the design decides
                     known = None if math.isnan(default) else default
-                    entries[key] = Key(name, key, made_of, float, None, False, known)
+                    entries[key] = Key(name, key, made_of, float, None, "", known)
         return Table("limits", None, entries)
 
 

@@ -25,6 +25,7 @@ from gearcam.laws.phases_of_lift import (
     ReturnPhase,
     RisePhase,
     SegmentPhase,
+    angles_of,
     levels,
     program_problems,
 )
@@ -220,8 +221,9 @@ def make_program(
     for number, _, message, rule in program_problems(phases, oscillating=oscillating):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    share = _TURN / sum(phase.angle for phase in phases)
-    angles = np.cumsum([0.0, *(phase.angle * share for phase in phases)])
+    widths = angles_of(phases)
+    share = _TURN / sum(widths)
+    angles = np.cumsum([0.0, *(width * share for width in widths)])
     angles[-1] = _TURN
     heights = levels(phases)
     heights[-1] = 0.0

@@ -209,7 +209,7 @@ KIND: Final = DesignKind(
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
             {"type": "dwell", "angle_deg": 60},
             {"type": "return", "angle_deg": 120, "law": "cycloidal"},
-            {"type": "dwell", "angle_deg": 60},
+            {"type": "dwell", "angle_deg": "rest"},
         ],
         "follower": {"type": "roller", "motion": "translating", "roller_radius_mm": 8},
         "cam": {"prime_radius_mm": 40, "thickness_mm": 12},
@@ -222,7 +222,7 @@ KIND: Final = DesignKind(
         "wire": {"output": {"files": ["dxf"], "kerf_mm": 0.3}},
     },
     notes={
-        "motion": "The lift over a turn of the cam: 360 deg in all, from 0 back to 0.",
+        "motion": "The lift over a turn of the cam, 360 deg in all; one phase may take the rest.",
         "cam": "prime_radius_mm or base_radius_mm; a flat follower has base_radius_mm",
     },
 )
