@@ -209,21 +209,21 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
 
 def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     angles = angles_of(phases)
-    total = sum(angles)
+    miss = _TURN - sum(angles)
     rests = [number for number, phase in enumerate(phases) if phase.angle == "rest"]
     for number in rests[1:]:
         rule = f"an angle: motion[{rests[0]}] takes the rest"
         yield number, "angle", "only one phase can take the rest", rule
     if rests:
         left = angles[rests[0]]
-        if len(rests) == 1 and left <= TURN_MISS:
-            others = shown(math.degrees(total - left), 10)
+        if left <= TURN_MISS:
+            others = shown(math.degrees(_TURN - left), 10)
             message = f"the other phases take {others} deg, which leaves nothing"
             yield rests[0], "angle", message, "less than 360 deg in the others"
-    elif abs(total - _TURN) > TURN_MISS:
-        last = math.degrees(_TURN - total + angles[-1])
+    elif abs(miss) > TURN_MISS:
+        last = math.degrees(miss + angles[-1])
         hint = f"; the last phase would take {shown(last, 10)} deg" if last > 0 else ""
-        message = f"the phases take {shown(math.degrees(total), 10)} deg"
+        message = f"the phases take {shown(math.degrees(_TURN - miss), 10)} deg"
         yield None, "", message, f'360 deg in all, or "rest" for one of them{hint}'
 
 
