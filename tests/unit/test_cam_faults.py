@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from gearcam.designs import document_of
 from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems, read
 
 
@@ -68,7 +69,7 @@ def test_what_is_wrong_is_told_where_it_stands(
 
 def test_the_rest_of_the_turn_in_a_file() -> None:
     rest = changed("angle_deg = 90", 'angle_deg = "rest"')
-    assert read(rest).phases[0].angle == "rest"
+    assert document_of(read(rest))["motion"][0]["angle_deg"] == "rest"
     twice = only(changed("angle_deg = 90", 'angle_deg = "rest"', rest))
     assert (twice.key, twice.line, twice.value) == ("motion[1].angle_deg", 11, "rest")
     assert twice.allowed == "an angle: motion[0] takes the rest"

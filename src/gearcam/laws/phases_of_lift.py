@@ -41,7 +41,8 @@ _LIFT_MISS: Final = 1e-9
 Problem = tuple[int | None, str, str, str]
 """Number of the phase, field, what is wrong, what is allowed."""
 
-_TURN: Final = 2.0 * math.pi
+TURN: Final = 2.0 * math.pi
+"""A turn of the cam, rad."""
 
 _ANGLE: Final = "cam angle that it takes, or what the others leave"
 
@@ -143,7 +144,7 @@ def angles_of(phases: Sequence[Phase]) -> list[float]:
     list of float
         The rest is 0 or less where they leave nothing.
     """
-    rest = _TURN - math.fsum(phase.angle for phase in phases if phase.angle != "rest")
+    rest = TURN - math.fsum(phase.angle for phase in phases if phase.angle != "rest")
     return [rest if phase.angle == "rest" else phase.angle for phase in phases]
 
 
@@ -209,7 +210,7 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
 
 def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     angles = angles_of(phases)
-    miss = _TURN - sum(angles)
+    miss = TURN - sum(angles)
     rests = [number for number, phase in enumerate(phases) if phase.angle == "rest"]
     for number in rests[1:]:
         rule = f"an angle: motion[{rests[0]}] takes the rest"
@@ -217,13 +218,13 @@ def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     if rests:
         left = angles[rests[0]]
         if left <= TURN_MISS:
-            others = shown(math.degrees(_TURN - left), 10)
+            others = shown(math.degrees(TURN - left), 10)
             message = f"the other phases take {others} deg, which leaves nothing"
             yield rests[0], "angle", message, "less than 360 deg in the others"
     elif abs(miss) > TURN_MISS:
         last = math.degrees(miss + angles[-1])
         hint = f"; the last phase would take {shown(last, 10)} deg" if last > 0 else ""
-        message = f"the phases take {shown(math.degrees(_TURN - miss), 10)} deg"
+        message = f"the phases take {shown(math.degrees(TURN - miss), 10)} deg"
         yield None, "", message, f'360 deg in all, or "rest" for one of them{hint}'
 
 
