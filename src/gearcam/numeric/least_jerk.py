@@ -170,7 +170,8 @@ def _solved(diagonal: Array, beside: Array, wanted: Array) -> Array:
             matrix[k, :, after] += beside[k]
             matrix[after, :, k] += beside[k].T
         found = np.empty_like(wanted)
-        found.flat = np.linalg.solve(matrix.reshape(count * size, -1), wanted.ravel())
+        flat = matrix.reshape(count * size, -1)
+        found[...] = np.linalg.solve(flat, wanted.ravel()).reshape(wanted.shape)
         return found
     odd = np.arange(1, count, 2) if count % 2 == 0 else np.arange(1, count - 1, 2)
     before, after = beside[odd - 1], beside[odd].transpose(0, 2, 1)
