@@ -10,7 +10,7 @@ import dataclasses
 import math
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -62,7 +62,7 @@ class Key:
         """Turn a value that has been checked from the file's unit into mm, rad and tuples."""
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
-        if self.length is not None:
+        if isinstance(value, list | tuple):
             return tuple(self._inward(item) for item in value)
         return self._inward(value)
 
@@ -86,6 +86,14 @@ class Key:
         written = value / factor
         # degrees that went through radians get their digits back
         return float(f"{written:.13g}") if math.isfinite(written) else written
+
+
+def functions_of(value: Any) -> tuple[Callable[..., Any], ...]:
+    """Return the Python functions that stand for one text: a function, or a list of functions."""
+    if callable(value):
+        return (value,)
+    many = value if isinstance(value, list | tuple) else ()
+    return tuple(many) if all(map(callable, many)) else ()
 
 
 @dataclass(frozen=True, eq=False)

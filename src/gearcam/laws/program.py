@@ -85,11 +85,14 @@ class Program(Displacement):
         Its phases; a segment counts as a rise or return by its direction.
     cuts : (m,) array, rad
         The knots, and more places where a law bends sharply: between them extremes are sought.
+    error : float, mm or rad
+        Estimated error of the lift beyond rounding.
     """
 
     lift: Piecewise
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
+    error: float = 0.0
 
     @property
     def knots(self) -> Array:
@@ -260,7 +263,13 @@ def make_program(
         stretches.append(PlacedPhase(kind=kind, start=place.start, end=place.end))
     knots, parts = zip(*pieces, strict=True)
     lift = piecewise([0.0, *knots], list(parts))
-    return Program(lift=lift, stretches=tuple(stretches), cuts=np.union1d(lift.knots, cuts))
+    swing = max(heights) - min(heights)
+    return Program(
+        lift=lift,
+        stretches=tuple(stretches),
+        cuts=np.union1d(lift.knots, cuts),
+        error=swing * max((rise.error for rise in rises.values()), default=0.0),
+    )
 
 
 @dataclass(frozen=True)
