@@ -10,7 +10,7 @@ import dataclasses
 import math
 import types
 import typing
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -86,14 +86,6 @@ class Key:
         written = value / factor
         # degrees that went through radians get their digits back
         return float(f"{written:.13g}") if math.isfinite(written) else written
-
-
-def functions_of(value: Any) -> tuple[Callable[..., Any], ...]:
-    """Return the Python functions that stand for one text: a function, or a list of functions."""
-    if callable(value):
-        return (value,)
-    many = value if isinstance(value, list | tuple) else ()
-    return tuple(many) if all(map(callable, many)) else ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from gearcam.designs.faults import Fault, allowed, is_of, key_hint, show, value_fault
+from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
-from gearcam.designs.table import Key, Table, functions_of
+from gearcam.designs.table import Key, Table
 
 
 def faults_of(
