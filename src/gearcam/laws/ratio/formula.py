@@ -95,8 +95,9 @@ class Formula:
         if self.ratio is None:
             law = law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
             # di = (1 + i)^2/c*dr, from i = r/(c - r)
-            most = (1.0 + law.ratio_range[1][1]) ** 2 / law.solved["center_distance_over_scale"]
-            return replace(law, function_error=most * error * span.period)
+            ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
+            rate = float(((1.0 + ratio) ** 2).mean()) / law.solved["center_distance_over_scale"]
+            return replace(law, function_error=rate * error * span.period)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
         factor = span.advance / total.antiderivative().last
