@@ -61,6 +61,8 @@ class Param:
         The key's word where the field cannot bear it, such as ``from``.
     both : bool
         Whether a single value may stand for both wheels.
+    function : bool
+        Whether Python functions may stand for a text.
     """
 
     quantity: Quantity = NUMBER
@@ -73,6 +75,7 @@ class Param:
     doc: str = ""
     word: str = ""
     both: bool = False
+    function: bool = False
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""

@@ -18,7 +18,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
-from gearcam.designs.design import Design, document_of, hash_of
+from gearcam.designs.design import Design, hash_of, summary_of
 from gearcam.designs.kind import KINDS
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Fact, Facts
@@ -278,7 +278,7 @@ class Result(ABC):
                 "findings": [finding.as_dict() for finding in findings],
                 "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
                 "versions": _versions(),
-                "design": document_of(self.design),
+                "design": summary_of(self.design),
             }
         )
         text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Key
 from gearcam.errors import Problem
@@ -50,6 +51,7 @@ class Fault:
     def problem(self, file: str, line: int | None = None) -> Problem:
         """Return it as it is told of a `file`, at a `line` of it where that is known."""
         value = None if self.value is MISSING else self.value
+        value = show(value) if functions_of(value) else value  # a problem must pickle
         return Problem(self.message, file, line, dotted(self.path), value, self.allowed, self.hint)
 
 
@@ -75,6 +77,8 @@ def show(value: Any) -> str:
         text = "[" + ", ".join(show(item) for item in value[:12]) + "]"
     elif isinstance(value, Mapping):
         text = "a table"
+    elif callable(value):
+        text = "a Python function"
     elif isinstance(value, int) and abs(value) > 10**15:
         text = f"{value // 10**15}..." if value < 10**40 else "a very large number"
     else:

@@ -62,7 +62,7 @@ class Key:
         """Turn a value that has been checked from the file's unit into mm, rad and tuples."""
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
-        if self.length is not None:
+        if isinstance(value, list | tuple):
             return tuple(self._inward(item) for item in value)
         return self._inward(value)
 

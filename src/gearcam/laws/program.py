@@ -282,7 +282,13 @@ def make_program(
         stretches.append(PlacedPhase(kind=kind, start=place.start, end=place.end))
     knots, parts = zip(*pieces, strict=True)
     lift = piecewise([0.0, *knots], list(parts))
-    return Program(lift=lift, stretches=tuple(stretches), cuts=np.union1d(lift.knots, cuts))
+    swing = max(heights) - min(heights)
+    return Program(
+        lift=lift,
+        stretches=tuple(stretches),
+        cuts=np.union1d(lift.knots, cuts),
+        error=swing * max((rise.error for rise in rises.values()), default=0.0),
+    )
 
 
 @dataclass(frozen=True)

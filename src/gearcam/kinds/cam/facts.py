@@ -197,6 +197,11 @@ def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
     reach = float(np.abs(result.profile.vertices).max())
     rounding = 16.0 * np.finfo(float).eps * reach
     rows = {"profile_mm": (rounding, "rounding of closed forms at the largest radius")}
+    if result.program.error:
+        given = result.design.follower
+        lever = (given.arm or given.pivot_distance or 0.0) if given.oscillating else 1.0
+        how = "the lift, between the places that it was computed from, and rounding"
+        rows = {"profile_mm": (lever * result.program.error + rounding, how)}
     if not result.design.blank.clearance:
         size = result.cam.size
         how = "Gauss-Legendre quadrature with half the cells, and rounding"

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.formula import compiled, formula_problems
+from gearcam.laws.formula import Axis, Given, formula_problems, function_of
 from gearcam.laws.rises.base import RISES, Rise
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
@@ -23,16 +23,32 @@ from gearcam.tolerances import Tolerances
 _ODD_PLACE: Final = 0.3819660112501052
 """Where the search for corners is cut first: a corner at a round place then lies inside a part."""
 
+_OF_FUNCTION: Final = 1e-6
+"""Roughness of a derivative that does not count, in its largest value, where it is that of the
+expansion of a function: this has lost digits, and its smoothness is proven already."""
+
 _VARIABLE: Final = "x"
 _WHERE: Final = "motion.formula"
+_AXIS: Final = Axis(
+    name="S",
+    high=1.0,
+    place=lambda x: f"{_WHERE}, x = {shown(round(x, 5))}",
+    variable=_VARIABLE,
+    remedy='a law of type "table" takes such values: its curve has no corners',
+)
 _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''")
 
 
 @dataclass(frozen=True, kw_only=True)
 class FormulaRise:
-    """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic."""
+    """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic.
 
-    formula: str = param(TEXT, doc="S over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)")
+    From Python it may be a function, or a tuple of a function and its first derivatives.
+    """
+
+    formula: Given = param(
+        TEXT, function=True, doc="S over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)"
+    )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -46,8 +62,9 @@ class FormulaRise:
         InfeasibleError
             Where the formula is not finite or not smooth, or does not go from 0 to 1.
         """
-        shape = compiled(self.formula, _VARIABLE)
-        cuts = _demand_smooth(shape, tolerances)
+        shape, error = function_of(self.formula, _AXIS, tolerances.expansion)
+        exact = isinstance(self.formula, str)
+        cuts = _demand_smooth(shape, tolerances.expansion if exact else _OF_FUNCTION)
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
             if not abs(value - place) <= TYPED:
@@ -60,19 +77,22 @@ class FormulaRise:
                 )
         scale = 1.0 / (end - start)
         piece = Piece(lambda x: (shape(x) - start) * scale)
-        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts[1:-1].tolist())
+        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts[1:-1].tolist(), error=error)
 
 
-def _from_corner_to_corner(formula: str, start: float, end: float) -> str:
+def _from_corner_to_corner(formula: Given, start: float, end: float) -> str:
     if not abs(end - start) > TYPED:
         return "it is the same at both ends"
+    if not isinstance(formula, str):
+        off = f"subtract {start:.17g} and " if abs(start) > TYPED else ""
+        return f"{off}divide by {end - start:.17g}"
     top = f"({formula})" if start == 0.0 else f"(({formula}) - ({start:.17g}))"
     return f"this one does: {top}/({end - start:.17g})"
 
 
-def _demand_smooth(shape: Callable[[Jet], Jet], tolerances: Tolerances) -> Array:
+def _demand_smooth(shape: Callable[[Jet], Jet], tolerance: float) -> Array:
     """Refuse a formula that has no jerk, or a rough one; return the places that show its peaks."""
-    *_, cuts = [_cuts(shape, order, tolerances) for order in range(len(_NAMES))]
+    *_, cuts = [_cuts(shape, order, tolerance) for order in range(len(_NAMES))]
     ends = np.array(shape(Jet.variable([0.0, 1.0], len(_NAMES))).derivatives())
     for place, found in zip((0.0, 1.0), ends.T, strict=True):
         if not np.isfinite(found).all():
@@ -85,7 +105,7 @@ def _demand_smooth(shape: Callable[[Jet], Jet], tolerances: Tolerances) -> Array
     return cuts
 
 
-def _cuts(shape: Callable[[Jet], Jet], order: int, tolerances: Tolerances) -> Array:
+def _cuts(shape: Callable[[Jet], Jet], order: int, tolerance: float) -> Array:
     """Return the knots that an expansion of a derivative needs."""
 
     def values(x: Array) -> Array:
@@ -93,7 +113,7 @@ def _cuts(shape: Callable[[Jet], Jet], order: int, tolerances: Tolerances) -> Ar
         return 1.0 + shape(Jet.variable(x, order)).derivatives()[order]
 
     try:
-        return expand(values, [0.0, _ODD_PLACE, 1.0], tolerances.expansion).knots
+        return expand(values, [0.0, _ODD_PLACE, 1.0], tolerance).knots
     except NotSmoothError as error:
         state = "smooth" if error.finite else "finite"
         place = f"{_WHERE}, x = {shown(round(error.place, 5))}"
