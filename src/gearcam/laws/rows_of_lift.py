@@ -47,9 +47,9 @@ half the digits."""
 _ORDER: Final = 6
 """Power of the step with which the error of a smooth lift falls."""
 
-_BESIDE: Final = 1.5
-"""A miss is seen in the middle between rows; beside it, where a derivative jumps at a row, it may
-be half as large again."""
+_BESIDE: Final = 2.0
+"""A miss is seen in the middle between rows; beside it, where a derivative jumps near a row, it may
+be twice as large."""
 
 
 def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
@@ -129,7 +129,7 @@ def _error(theta: Array, lift: Array) -> float:
         max(_missed(np.roll(theta, -k), np.roll(lift, -k), step) for k in range(step))
         for step in (2, 4)
     )
-    rounding = np.finfo(float).eps * float(np.abs(lift).max())
+    rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max())
     falls = min(max(four / max(two, rounding), 1.0), 2.0**_ORDER)
     return _BESIDE * two / falls + rounding
 
