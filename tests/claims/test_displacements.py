@@ -35,19 +35,19 @@ def program(law: str, shape: RiseParameters) -> Displacement:
     return make_program(phases, DEFAULT)
 
 
-def rows(**smoothing: float) -> Displacement:
+def rows(tolerance: float | None = None) -> Displacement:
     """A motion by rows that begin beside the turn's end, uneven and noisy, as measured."""
     theta = TURN * (np.arange(90) + 0.3 + 0.2 * np.sin(np.arange(90))) / 90
     noise = 0.002 * np.sin(1e3 * np.arange(90))
     lift = tuple((4.0 * (1.0 - np.cos(theta)) ** 2 + noise).tolist())
-    table = MotionTable(theta=tuple(theta.tolist()), length=lift, **smoothing)
+    table = MotionTable(theta=tuple(theta.tolist()), length=lift, smoothing_length=tolerance)
     return table.program(DEFAULT)
 
 
 MOVING = (
     [
         pytest.param(rows(), id="rows"),
-        pytest.param(rows(smoothing_length=0.01), id="rows, smoothed"),
+        pytest.param(rows(0.01), id="rows, smoothed"),
         pytest.param(
             MotionFormula(lift="4*(1 - cos(theta))**2").program(DEFAULT), id="formula of the lift"
         ),
