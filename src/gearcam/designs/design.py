@@ -90,8 +90,10 @@ class Design:
         return self
 
     def __getstate__(self) -> dict[str, Any]:
-        rule = "a function that is defined with def in a module"
-        _demand(pickles, document_of(self), self.source, "cannot be pickled", rule)
+        document, rule = document_of(self), "a function that is defined with def in a module"
+        _demand(pickles, document, self.source, "cannot be pickled", rule)
+        if any(functions_in(document)):
+            _ = self._token  # which the copy keeps
         return vars(self)
 
     @cached_property
