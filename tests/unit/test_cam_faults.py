@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from gearcam.designs import document_of
 from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems, read
 
 
@@ -29,6 +30,8 @@ from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, probl
         ("angle_deg = 90\n", "", 4, "motion[0].angle_deg", "is missing"),
         ("angle_deg = 90", "angle_deg = 0", 7, "motion[0].angle_deg", "out of range"),
         ("angle_deg = 90", 'angle_deg = "90"', 7, "motion[0].angle_deg", "without quotes"),
+        ("angle_deg = 90", 'angle_deg = "rset"', 7, "motion[0].angle_deg", "mean rest"),
+        ("angle_deg = 90", 'angle_deg = "all"', 7, "motion[0].angle_deg", '360 deg, or "rest"'),
         ("lift_mm = 10\n", "", 4, "motion[0].lift_mm", "is missing"),
         ("angle_deg = 90", "angle_deg = 80", 4, "motion", "take 350 deg.*\n.*would take 100 deg"),
         (RISE, 'type = "dwell"\nangle_deg = 90\n', 10, "motion[2].lift_mm", "no lift to return"),
@@ -62,6 +65,19 @@ def test_what_is_wrong_is_told_where_it_stands(
     assert key in found, list(found)
     assert found[key].line == line
     assert re.search(words, str(found[key])), str(found[key])
+
+
+def test_the_rest_of_the_turn_in_a_file() -> None:
+    rest = changed("angle_deg = 90", 'angle_deg = "rest"')
+    assert document_of(read(rest))["motion"][0]["angle_deg"] == "rest"
+    twice = only(changed("angle_deg = 90", 'angle_deg = "rest"', rest))
+    assert (twice.key, twice.line, twice.value) == ("motion[1].angle_deg", 11, "rest")
+    assert twice.allowed == "an angle: motion[0] takes the rest"
+    full = only(rest.replace("angle_deg = 90", "angle_deg = 120"))
+    assert (full.key, full.line) == ("motion[0].angle_deg", 7)
+    assert "take 360 deg, which leaves nothing" in full.message
+    short = only(changed("angle_deg = 90", "angle_deg = 80"))
+    assert 'or "rest" for one of them' in short.allowed
 
 
 def test_lifts_are_of_the_followers_kind() -> None:

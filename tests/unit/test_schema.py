@@ -20,7 +20,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.reader import examine
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
-from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table
+from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, rows_table
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
@@ -81,6 +81,7 @@ def test_every_key_is_described_and_no_other_is_allowed(
         for title in (*kind.tables, "limits"):
             expected[f"{name}-{title}"] = set(kind.table(title).entries)
     expected |= {f"law-{name}": {"type", *law_table(name).entries} for name in LAWS}
+    expected["motion-table"] = set(rows_table().entries)
     for name in PHASES:
         if name not in WITH_LAW:
             expected[name] = {"type", *phase_table(name).entries}
@@ -249,6 +250,7 @@ def test_reader_and_schema_refuse_the_same_cams(edits: Edits) -> None:
         (("motion", 0, "lift_mm"), 0),
         (("motion", 0, "lift_deg"), 10),
         (("motion", 0, "angle_deg"), 361),
+        (("motion", 0, "angle_deg"), "solve"),
         (("motion", 0, "b"), None),
         (("motion", 1, "lift_mm"), 10),
         (("motion", 1, "law"), "cycloidal"),
@@ -334,6 +336,7 @@ def test_names_that_both_can_judge_are_judged_alike() -> None:
 
 
 def test_good_is_good() -> None:
-    for good in (GOOD, CAM):
+    resting = _edited([(("motion", 3, "angle_deg"), "rest")], CAM)
+    for good in (GOOD, CAM, resting):
         assert not list(SHARED.iter_errors(good))
         assert not examine(good).faults

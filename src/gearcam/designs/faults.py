@@ -164,14 +164,14 @@ def _single(entry: Key) -> str:
         return _KINDS[entry.base]
     words = [f"a {_KINDS[entry.base]}", bounds(entry)]
     text = " ".join(word for word in words if word)
-    return f'{text}, or "solve"' if entry.solve else text
+    return f'{text}, or "{entry.literal}"' if entry.literal else text
 
 
 def _plural(entry: Key) -> str:
     if entry.param.choices:
         return "words out of " + ", ".join(f'"{word}"' for word in entry.param.choices)
     text = " ".join(word for word in (f"{_KINDS[entry.base]}s", bounds(entry)) if word)
-    return f'{text}, or "solve"' if entry.solve else text
+    return f'{text}, or "{entry.literal}"' if entry.literal else text
 
 
 def quoted(words: Iterable[str]) -> str:
@@ -227,9 +227,9 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
         if isinstance(value, list):
             return Fault(path, _count(value), value, rule)
         return Fault(path, f"{show(value)} is not a list", value, rule)
-    choices = entry.param.choices or (("solve",) if entry.solve else ())
+    choices = entry.param.choices or ((entry.literal,) if entry.literal else ())
     if isinstance(value, str) and choices:
-        hint = did_you_mean(value, choices)
+        hint = did_you_mean(value, choices) or _type_hint(value, entry)
         return Fault(path, f"{show(value)} is not known here", value, rule, hint)
     if not is_of(value, entry.base):
         hint = _type_hint(value, entry)

@@ -34,8 +34,8 @@ class Key:
         Type of a single value: float, int, str or bool.
     length : int or None
         Entries of a list: a number, 0 for any number of them, None where the value is no list.
-    solve : bool
-        Whether the word ``"solve"`` may stand for a value.
+    literal : str
+        The word that may stand for a value, such as ``solve``; empty where none may.
     default : object
         In inner units; `REQUIRED` where the file must give the key, None where the program finds a
         value by itself.
@@ -46,7 +46,7 @@ class Key:
     param: Param
     base: type
     length: int | None
-    solve: bool
+    literal: str
     default: Any
 
     @property
@@ -153,20 +153,20 @@ def table_of(title: str, owner: type) -> Table:
 
 
 def _entry(name: str, made_of: Param, hint: Any, default: Any) -> Key:
-    hint, _ = _split(hint)
+    hint, literal = _split(hint)
     length: int | None = None
     if typing.get_origin(hint) is tuple:
         items = typing.get_args(hint)
         length = 0 if items[-1] is Ellipsis else len(items)
-        hint = items[0]
-    hint, solve = _split(hint)
-    return Key(name, made_of.key(name), made_of, hint, length, solve, default)
+        hint, literal = _split(items[0])
+    return Key(name, made_of.key(name), made_of, hint, length, literal, default)
 
 
-def _split(hint: Any) -> tuple[Any, bool]:
-    """Take None and the word "solve" out of a union; say whether the word was there."""
+def _split(hint: Any) -> tuple[Any, str]:
+    """Take None and a word such as "solve" out of a union; return the word, if it was there."""
     if typing.get_origin(hint) not in (typing.Union, types.UnionType):
-        return hint, False
+        return hint, ""
     rest = [part for part in typing.get_args(hint) if part is not types.NoneType]
     plain = [part for part in rest if typing.get_origin(part) is not typing.Literal]
-    return plain[0], len(plain) < len(rest)
+    words = [typing.get_args(part)[0] for part in rest if part not in plain]
+    return plain[0], "".join(words)

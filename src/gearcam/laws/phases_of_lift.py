@@ -4,10 +4,11 @@ The *lift* is a length for translating followers and an angle for oscillating on
 one or the other (``lift_mm``, ``lift_deg``). A *rise* goes up by its lift after a law on the unit
 square, a *return* comes down after one (by all that was risen, if it gives no lift), a *dwell*
 stands still, and a *segment* goes from the state in which the phase before it ends to a lift with
-a velocity and an acceleration, so that phases join without a dwell.
+a velocity and an acceleration, so that phases join without a dwell. The angle of one phase may be
+``"rest"``: what the others leave of the turn.
 
-Refused by reading: phases that do not fill a turn, programs that end at another lift than they
-begin with, lifts of the wrong kind.
+Refused by reading: phases that do not fill a turn, a rest that is none, programs that end at
+another lift than they begin with, lifts of the wrong kind.
 
 Depends on quantities only.
 """
@@ -17,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from gearcam.numerals import shown
 from gearcam.quantities import (
@@ -40,12 +41,17 @@ _LIFT_MISS: Final = 1e-9
 Problem = tuple[int | None, str, str, str]
 """Number of the phase, field, what is wrong, what is allowed."""
 
+TURN: Final = 2.0 * math.pi
+"""A turn of the cam, rad."""
+
+_ANGLE: Final = "cam angle that it takes, or what the others leave"
+
 
 @dataclass(frozen=True, kw_only=True)
 class DwellPhase:
     """The follower stands still."""
 
-    angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")
+    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +61,7 @@ class RisePhase:
     The law's parameters stand in `shape`, made by its entry in `gearcam.laws.rises.base.RISES`.
     """
 
-    angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")
+    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
     law: str
     shape: Any
     length: float | None = param(
@@ -89,7 +95,7 @@ class SegmentPhase:
     `velocity_swing` and `acceleration_swing` of an oscillating one.
     """
 
-    angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")
+    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
     to_length: float | None = param(
         LENGTH, default=None, ge=-1e6, le=1e6, word="to", doc="lift at its end (translating)"
     )
@@ -123,6 +129,23 @@ PHASES: Final[dict[str, type]] = {
 
 _OF_LENGTH: Final = ("length", "to_length", "velocity_length", "acceleration_length")
 _OF_SWING: Final = ("swing", "to_swing", "velocity_swing", "acceleration_swing")
+
+
+def angles_of(phases: Sequence[Phase]) -> list[float]:
+    """Return the cam angle of each phase, rad; ``"rest"`` becomes what the others leave.
+
+    Parameters
+    ----------
+    phases : sequence of Phase
+        Of a turn; at most one takes the rest.
+
+    Returns
+    -------
+    list of float
+        The rest is 0 or less where they leave nothing.
+    """
+    rest = TURN - math.fsum(phase.angle for phase in phases if phase.angle != "rest")
+    return [rest if phase.angle == "rest" else phase.angle for phase in phases]
 
 
 def levels(phases: Sequence[Phase]) -> list[float]:
@@ -185,13 +208,28 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
         yield from _closure_problems(phases, right[0])
 
 
-def _closure_problems(phases: Sequence[Phase], lift: str) -> Iterator[Problem]:
-    total = sum(phase.angle for phase in phases)
-    if abs(total - 2.0 * math.pi) > TURN_MISS:
-        last = math.degrees(2.0 * math.pi - total + phases[-1].angle)
+def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
+    angles = angles_of(phases)
+    miss = TURN - sum(angles)
+    rests = [number for number, phase in enumerate(phases) if phase.angle == "rest"]
+    for number in rests[1:]:
+        rule = f"an angle: motion[{rests[0]}] takes the rest"
+        yield number, "angle", "only one phase can take the rest", rule
+    if rests:
+        left = angles[rests[0]]
+        if left <= TURN_MISS:
+            others = shown(math.degrees(TURN - left), 10)
+            message = f"the other phases take {others} deg, which leaves nothing"
+            yield rests[0], "angle", message, "less than 360 deg in the others"
+    elif abs(miss) > TURN_MISS:
+        last = math.degrees(miss + angles[-1])
         hint = f"; the last phase would take {shown(last, 10)} deg" if last > 0 else ""
-        message = f"the phases take {shown(math.degrees(total), 10)} deg"
-        yield None, "", message, f"360 deg in all{hint}"
+        message = f"the phases take {shown(math.degrees(TURN - miss), 10)} deg"
+        yield None, "", message, f'360 deg in all, or "rest" for one of them{hint}'
+
+
+def _closure_problems(phases: Sequence[Phase], lift: str) -> Iterator[Problem]:
+    yield from _turn_problems(phases)
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:

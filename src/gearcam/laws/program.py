@@ -9,7 +9,6 @@ Source: 000 section 3.3, eqs. (3.3)-(3.5).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,11 +19,13 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import JUMP, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
+    TURN,
     DwellPhase,
     Phase,
     ReturnPhase,
     RisePhase,
     SegmentPhase,
+    angles_of,
     levels,
     program_problems,
 )
@@ -38,9 +39,7 @@ from gearcam.tolerances import Tolerances
 _INNER = slice(5, -5, 6)
 """Surveyed places at which the size of derivatives is known well enough to judge jumps."""
 
-_TURN = 2.0 * math.pi
-
-_KNOT = 4.0 * np.finfo(float).eps * _TURN
+_KNOT = 4.0 * np.finfo(float).eps * TURN
 """Rounding of a knot, rad."""
 
 
@@ -51,6 +50,22 @@ class PlacedPhase:
     kind: str
     start: float
     end: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deviation:
+    """The largest distance of a lift from the rows that it was made from.
+
+    Parameters
+    ----------
+    theta : float, rad
+        Where.
+    value : float, mm or rad
+        How far, positive where the lift is above the row.
+    """
+
+    theta: float
+    value: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -87,12 +102,15 @@ class Program(Displacement):
         The knots, and more places where a law bends sharply: between them extremes are sought.
     error : float, mm or rad
         Estimated error of the lift beyond rounding.
+    deviation : Deviation, optional
+        What smoothing took off rows.
     """
 
     lift: Piecewise
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
     error: float = 0.0
+    deviation: Deviation | None = None
 
     @property
     def knots(self) -> Array:
@@ -102,7 +120,7 @@ class Program(Displacement):
     @property
     def period(self) -> float:
         """A turn of the cam, rad."""
-        return _TURN
+        return TURN
 
     def cuts_between(self, low: float, high: float) -> Array:
         """Return the cuts between two cam angles, with both of these.
@@ -116,7 +134,7 @@ class Program(Displacement):
         -------
         (n,) array, rad
         """
-        cuts = np.append(self.cuts, self.cuts + _TURN)
+        cuts = np.append(self.cuts, self.cuts + TURN)
         return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
 
     def phases(self, kind: str) -> list[tuple[float, float]]:
@@ -223,9 +241,10 @@ def make_program(
     for number, _, message, rule in program_problems(phases, oscillating=oscillating):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    share = _TURN / sum(phase.angle for phase in phases)
-    angles = np.cumsum([0.0, *(phase.angle * share for phase in phases)])
-    angles[-1] = _TURN
+    widths = angles_of(phases)
+    share = TURN / sum(widths)
+    angles = np.cumsum([0.0, *(width * share for width in widths)])
+    angles[-1] = TURN
     heights = levels(phases)
     heights[-1] = 0.0
     shapes = [phase.shape for phase in phases if isinstance(phase, RisePhase)]

@@ -1,14 +1,14 @@
-"""The array ``[[motion]]`` of a cam: its phases, each with the keys of its type and of its law.
+"""The motion of a cam: an array ``[[motion]]`` of phases, or a table ``[motion]`` of rows.
 
-A rise and a return have a ``law`` of the registry `gearcam.laws.rises.base.RISES`, whose parameters
-stand beside the keys of the phase.
+Each phase has the keys of its type and of its law. A rise and a return have a ``law`` of the
+registry `gearcam.laws.rises.base.RISES`, whose parameters stand beside the keys of the phase.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.examine import chosen
 from gearcam.designs.faults import Fault, quoted, show
@@ -18,6 +18,9 @@ from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
 from gearcam.laws.rises.base import RISES
+
+if TYPE_CHECKING:
+    from gearcam.laws.motion_table import MotionTable
 
 TITLE: Final = "motion"
 
@@ -73,33 +76,68 @@ def summary(phase: type) -> str:
 def examine_motion(
     document: Mapping[str, Any], found: Examined, home: Callable[[str], str]
 ) -> None:
-    """Examine the phases of a document, and the program that they make.
+    """Examine the motion of a document, and the program that its phases or rows make.
 
     Parameters
     ----------
     document : mapping
         As read from TOML.
     found : Examined
-        Gets the faults, or ``phases``.
+        Gets the faults, or ``motion``.
     home : callable
         Gives the words that say where a key of another place belongs.
     """
     raw = document.get(TITLE)
-    rule = f"[[{TITLE}]] for each phase, with type = {quoted(PHASES)}"
+    rule = f"[[{TITLE}]] for each phase, with type = {quoted(PHASES)}; or [{TITLE}] with rows"
+    oscillating = _oscillating(document.get("follower", {}))
     if TITLE not in document:
         found.faults.append(Fault((TITLE,), f"there is no [[{TITLE}]]", allowed=rule))
-    elif isinstance(raw, Mapping):
+    elif isinstance(raw, Mapping) and "type" in raw:
         hint = f"write [[{TITLE}]] in double brackets"
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
+    elif isinstance(raw, Mapping):
+        _examine_rows(raw, oscillating, found, home)
     elif not isinstance(raw, list) or not raw:
         message = "the list is empty" if raw == [] else f"{show(raw)} is no list of tables"
         found.faults.append(Fault((TITLE,), message, raw, rule))
     else:
         before = len(found.faults)
         phases = [_phase((TITLE, k), item, found, home) for k, item in enumerate(raw)]
-        _examine_program(phases, raw, document.get("follower", {}), found)
+        _examine_program(phases, raw, oscillating, found)
         if len(found.faults) == before:
-            found.parts["phases"] = tuple(phases)
+            found.parts[TITLE] = tuple(phases)
+
+
+def _oscillating(follower: Any) -> bool | None:
+    """Return whether a follower oscillates; None where its table does not say."""
+    motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
+    return motion == "oscillating" if motion in ("translating", "oscillating") else None
+
+
+def motion_table() -> type[MotionTable]:
+    """Return the class of a motion by rows, loaded only where there is one."""
+    from gearcam.laws.motion_table import MotionTable
+
+    return MotionTable
+
+
+def rows_table() -> Table:
+    """Return the table of a motion by rows."""
+    return table_of(TITLE, motion_table())
+
+
+def _examine_rows(
+    raw: Mapping[str, Any], oscillating: bool | None, found: Examined, home: Callable[[str], str]
+) -> None:
+    known = rows_table()
+    faults = list(faults_of(known, raw, home=home))
+    made, problems = made_of(known, motion_table(), raw, faults, (TITLE,))
+    if made is not None and not problems and oscillating is not None:
+        told = made.kind_problems(oscillating=oscillating)
+        problems = list(told_faults(told, known, raw, (TITLE,)))
+    found.faults += [*faults, *problems]
+    if not faults and not problems:
+        found.parts[TITLE] = made
 
 
 def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> Phase | None:
@@ -137,13 +175,15 @@ def _asked(key: str) -> bool:
 
 
 def _examine_program(
-    phases: Sequence[Phase | None], raw: Sequence[Any], follower: Any, found: Examined
+    phases: Sequence[Phase | None],
+    raw: Sequence[Any],
+    oscillating: bool | None,
+    found: Examined,
 ) -> None:
-    motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
-    if motion not in ("translating", "oscillating"):
+    if oscillating is None:
         return
     readable = [_UNREADABLE if phase is None else phase for phase in phases]
-    told = program_problems(readable, oscillating=motion == "oscillating")
+    told = program_problems(readable, oscillating=oscillating)
     for number, name, message, rule in told:
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))
@@ -152,11 +192,13 @@ def _examine_program(
             found.faults += told_faults([(name, None, message, rule)], known, raw[number], at)
 
 
-def motion_of(phases: Sequence[Phase]) -> list[dict[str, Any]]:
-    """Return what a file would hold of phases: a table for each."""
+def motion_of(motion: Sequence[Phase] | MotionTable) -> list[dict[str, Any]] | dict[str, Any]:
+    """Return what a file would hold of a motion: a table for each phase, or one of rows."""
+    if not isinstance(motion, tuple):
+        return rows_table().document(motion)
     names = {owner: name for name, owner in PHASES.items()}
     tables = []
-    for phase in phases:
+    for phase in motion:
         name = names[type(phase)]
         table: dict[str, Any] = {"type": name}
         if isinstance(phase, RisePhase):
@@ -169,7 +211,7 @@ def motion_of(phases: Sequence[Phase]) -> list[dict[str, Any]]:
 
 
 def homes() -> dict[str, str]:
-    """Return where the keys of phases belong, in words."""
+    """Return where the keys of a motion belong, in words."""
     by_phase: dict[str, list[str]] = {"law": list(WITH_LAW)}
     for name in PHASES:
         for key in phase_table(name).entries:
@@ -180,4 +222,5 @@ def homes() -> dict[str, str]:
             by_law.setdefault(key, []).append(law)
     found = {key: f"with law = {quoted(laws)}" for key, laws in by_law.items()}
     found |= {key: f"of type {quoted(names)}" for key, names in by_phase.items()}
-    return {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
+    told = {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
+    return dict.fromkeys(rows_table().entries, f"this key belongs under [{TITLE}]") | told
