@@ -22,12 +22,12 @@ Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 
-def program(law: str, shape: RiseParameters) -> Displacement:
+def program(law: RiseParameters) -> Displacement:
     """A rise, a return by a segment to half way and by the law, and a dwell."""
     phases: list[Phase] = [
-        RisePhase(angle=1.5, law=law, shape=shape, length=8.0),
-        SegmentPhase(angle=1.0, to_length=4.0),
-        ReturnPhase(angle=1.2, law=law, shape=shape, length=4.0),
+        RisePhase(angle=1.5, law=law, lift=8.0),
+        SegmentPhase(angle=1.0, to=4.0),
+        ReturnPhase(angle=1.2, law=law, lift=4.0),
         DwellPhase(angle=TURN - 3.7),
     ]
     return make_program(phases, DEFAULT)
@@ -38,7 +38,7 @@ MOVING = [
     for name, claims in LAW_CLAIMS.items()
     for number, claim in enumerate(claims)
 ] + [
-    pytest.param(program(name, claim.parameters), id=f"program {name}-{number}")
+    pytest.param(program(claim.parameters), id=f"program {name}-{number}")
     for name, claims in RISE_CLAIMS.items()
     for number, claim in enumerate(claims)
 ]

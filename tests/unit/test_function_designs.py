@@ -39,7 +39,7 @@ def pair(law: Any, **changes: Any) -> Any:
 def cam(formula: Any) -> Any:
     return gc.CamDesign(
         name="mine",
-        phases=(rise("formula", 150.0, 10.0, formula=formula), dwell(60.0), back("2-3", 150.0)),
+        motion=(rise("formula", 150.0, 10.0, formula=formula), dwell(60.0), back("2-3", 150.0)),
         follower=gc.FollowerSpec(type="roller", roller_radius=6.0),
         cam=gc.CamSpec(prime_radius=40.0, thickness=8.0),
     )
@@ -170,7 +170,7 @@ def test_functions_compare_by_identity() -> None:
     assert changed.law.phi2 is one
     assert changed != design
     assert design.with_({"law.phi2": TEXT}) == pair(Formula(phi2=TEXT))
-    assert cam(one).with_({"motion[0].lift_mm": 8.0}).phases[0].shape.formula is one
+    assert cam(one).with_({"motion[0].lift_mm": 8.0}).motion[0].law.formula is one
 
 
 def test_a_document_takes_functions_and_none_gives_them() -> None:
