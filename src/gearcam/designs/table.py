@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import operator
 import types
 import typing
 from collections.abc import Iterator, Mapping
@@ -191,3 +192,30 @@ def _split(hint: Any) -> tuple[Any, str]:
     plain = [part for part in rest if typing.get_origin(part) is not typing.Literal]
     words = [typing.get_args(part)[0] for part in rest if part not in plain]
     return plain[0], "".join(words)
+
+
+def settled(part: Any) -> Any:
+    """Return what people gave with tuples for lists and arrays, and plain numbers for numpy's.
+
+    Parameters
+    ----------
+    part : object
+        A value, or a dataclass with values at any depth.
+
+    Returns
+    -------
+    object
+        The same one where nothing changes.
+    """
+    if hasattr(part, "tolist"):
+        part = part.tolist()
+    if isinstance(part, list | tuple):
+        items = tuple(map(settled, part))
+        same = isinstance(part, tuple) and all(map(operator.is_, items, part))
+        return part if same else items
+    if not dataclasses.is_dataclass(part) or isinstance(part, type):
+        return part
+    given = {item.name: getattr(part, item.name) for item in dataclasses.fields(part)}
+    made = {name: settled(value) for name, value in given.items()}
+    changed = {name: value for name, value in made.items() if value is not given[name]}
+    return replace(part, **changed) if changed else part
