@@ -63,6 +63,8 @@ class Param:
         Whether a single value may stand for both wheels.
     function : bool
         Whether Python functions may stand for a text.
+    angular : Param or None
+        The same where lifts are angles: a file then has another key for it.
     """
 
     quantity: Quantity = NUMBER
@@ -76,6 +78,7 @@ class Param:
     word: str = ""
     both: bool = False
     function: bool = False
+    angular: Param | None = None
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""

@@ -24,12 +24,12 @@ Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 
-def program(law: str, shape: RiseParameters) -> Displacement:
+def program(law: RiseParameters) -> Displacement:
     """A rise, a return by a segment to half way and by the law, and a dwell."""
     phases: list[Phase] = [
-        RisePhase(angle=1.5, law=law, shape=shape, length=8.0),
-        SegmentPhase(angle=1.0, to_length=4.0),
-        ReturnPhase(angle=1.2, law=law, shape=shape, length=4.0),
+        RisePhase(angle=1.5, law=law, lift=8.0),
+        SegmentPhase(angle=1.0, to=4.0),
+        ReturnPhase(angle=1.2, law=law, lift=4.0),
         DwellPhase(angle=TURN - 3.7),
     ]
     return make_program(phases, DEFAULT)
@@ -38,31 +38,26 @@ def program(law: str, shape: RiseParameters) -> Displacement:
 def rows(tolerance: float | None = None) -> Displacement:
     """A motion by rows that begin beside the turn's end, uneven and noisy, as measured."""
     theta = TURN * (np.arange(90) + 0.3 + 0.2 * np.sin(np.arange(90))) / 90
-    noise = 0.002 * np.sin(1e3 * np.arange(90))
-    lift = tuple((4.0 * (1.0 - np.cos(theta)) ** 2 + noise).tolist())
-    table = MotionTable(theta=tuple(theta.tolist()), length=lift, smoothing_length=tolerance)
-    return table.program(DEFAULT)
+    lift = 4.0 * (1.0 - np.cos(theta)) ** 2 + 0.002 * np.sin(1e3 * np.arange(90))
+    given = {"theta": tuple(theta.tolist()), "lift": tuple(lift.tolist())}
+    return MotionTable(**given, smoothing_tolerance=tolerance).program(DEFAULT)
 
 
-MOVING = (
-    [
-        pytest.param(rows(), id="rows"),
-        pytest.param(rows(0.01), id="rows, smoothed"),
-        pytest.param(
-            MotionFormula(lift="4*(1 - cos(theta))**2").program(DEFAULT), id="formula of the lift"
-        ),
-    ]
-    + [
+MOVING = [
+    pytest.param(rows(), id="rows"),
+    pytest.param(rows(0.01), id="rows, smoothed"),
+    pytest.param(MotionFormula(lift="4*(1 - cos(theta))**2").program(DEFAULT), id="formula"),
+    *(
         pytest.param(claim.parameters.build(claim.lobes, DEFAULT), id=f"law {name}-{number}")
         for name, claims in LAW_CLAIMS.items()
         for number, claim in enumerate(claims)
-    ]
-    + [
-        pytest.param(program(name, claim.parameters), id=f"program {name}-{number}")
+    ),
+    *(
+        pytest.param(program(claim.parameters), id=f"program {name}-{number}")
         for name, claims in RISE_CLAIMS.items()
         for number, claim in enumerate(claims)
-    ]
-)
+    ),
+]
 
 
 def inside(moving: Displacement, shares: Array) -> Array:

@@ -82,12 +82,9 @@ def test_the_rest_of_the_turn_in_a_file() -> None:
 
 def test_lifts_are_of_the_followers_kind() -> None:
     found = problems(changed("lift_mm = 10", "lift_deg = 10"))
-    assert [(one.line, one.key) for one in found] == [
-        (4, "motion[0].lift_mm"),
-        (8, "motion[0].lift_deg"),
-    ]
-    assert "10: is of the wrong kind for a translating follower" in found[1].message
-    assert found[1].value == 10
+    assert [(one.line, one.key) for one in found] == [(8, "motion[0].lift_deg")]
+    assert "10: is of the wrong kind for a translating follower" in found[0].message
+    assert (found[0].value, found[0].allowed) == (10, "the key in _mm")
     found = problems(changed("lift_deg", "lift_mm", SWINGING))
     assert "wrong kind for an oscillating follower" in found[-1].message
 
@@ -185,6 +182,7 @@ pressure_angle_deg = "x"
         (2, "name"),
         (5, "motion[0].law"),
         (6, "motion[0].angle_deg"),
+        (7, "motion[0].lift_deg"),
         (9, "motion[1].type"),
         (10, "motion[2].angle_deg"),
         (13, "motion[2].angel_deg"),
@@ -207,7 +205,6 @@ def test_phases_that_can_be_read_are_judged_beside_those_that_cannot() -> None:
     assert found == {"motion[0].angle_deg"}
     mixed = changed('"dwell"', '"dwel"').replace("lift_mm", "lift_deg")
     assert {problem.key for problem in problems(mixed)} == {
-        "motion[0].lift_mm",
         "motion[0].lift_deg",
         "motion[1].type",
     }

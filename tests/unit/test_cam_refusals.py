@@ -82,7 +82,7 @@ def test_levels_of_phases() -> None:
     phases = [
         rise("2-3", 60.0, 5.0),
         dwell(60.0),
-        SegmentPhase(angle=1.0, to_length=2.0),
+        SegmentPhase(angle=1.0, to=2.0),
         back("2-3", 60.0),
     ]
     assert levels([*phases, rise("2-3", 60.0, 4.0), back("2-3", 60.0, 3.0)]) == [
@@ -95,13 +95,9 @@ REFUSED: dict[str, tuple[list[Phase], str]] = {
     "half back": ([rise("2-3", 180.0, 5.0), back("2-3", 180.0, 4.0)], r"ends at a lift of 1 mm"),
     "nothing to return": ([back("2-3", 180.0), dwell(180.0)], "no lift to return from"),
     "only dwells": ([dwell(180.0), dwell(180.0)], "never moves"),
-    "degrees": (
-        [rise("2-3", 180.0, 5.0, swings=True), back("2-3", 180.0)],
-        "of the wrong kind for a translating follower",
-    ),
     "no lift": (
         [
-            RisePhase(angle=math.pi, law="2-3", shape=law("2-3")),
+            RisePhase(angle=math.pi, law=law("2-3")),
             back("2-3", 180.0),
         ],
         "is missing",
@@ -118,13 +114,16 @@ def test_programs_that_cannot_be_are_refused(name: str) -> None:
 
 
 def test_the_wrong_phase_is_named() -> None:
-    phases = [dwell(90.0), rise("2-3", 90.0, 5.0, swings=True), back("2-3", 180.0)]
+    phases = [dwell(90.0), replace(rise("2-3", 90.0, 5.0), lift=None), back("2-3", 180.0)]
     problems = list(program_problems(phases, oscillating=False))
-    assert [(number, field) for number, field, *_ in problems] == [(1, "swing"), (1, "length")]
-    assert list(program_problems(phases, oscillating=True)) == []
-    swing = SegmentPhase(angle=1.0, to_swing=0.1, velocity_length=3.0)
-    named = [(n, field) for n, field, *_ in program_problems([swing], oscillating=True)]
-    assert named == [(0, "velocity_length")]
+    assert [problem[:2] for problem in problems] == [(1, "lift")]
+    assert (
+        list(program_problems([phases[0], rise("2-3", 90.0, 5.0), phases[2]], oscillating=True))
+        == []
+    )
+    segment = SegmentPhase(angle=1.0, velocity=3.0)
+    named = [problem[:2] for problem in program_problems([segment], oscillating=True)]
+    assert named == [(0, "to")]
     with pytest.raises(InfeasibleError, match=r"ends at a lift of 5 deg"):
         program([rise("2-3", 180.0, 5.0, swings=True), dwell(180.0)], swings=True)
 

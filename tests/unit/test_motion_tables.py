@@ -26,7 +26,7 @@ def angles(count: int, shift: float = 0.0) -> Array:
 
 
 def table(theta: Array, lift: Array, **more: Any) -> MotionTable:
-    return MotionTable(theta=tuple(theta.tolist()), length=tuple(lift.tolist()), **more)
+    return MotionTable(theta=tuple(theta.tolist()), lift=tuple(lift.tolist()), **more)
 
 
 def made(theta: Array, lift: Array, **more: Any) -> Program:
@@ -182,7 +182,7 @@ def test_no_row_is_farther_off_than_the_tolerance(name: str, tolerance: float) -
     """Nearly all of it is used, and what is told is the largest distance, with its place."""
     theta = angles(360, 0.1)
     lift = noisy(name, theta)
-    found = made(theta, lift, smoothing_length=tolerance)
+    found = made(theta, lift, smoothing_tolerance=tolerance)
     off = lift_of(found, theta) - lift
     assert found.deviation is not None
     worst = int(np.abs(off).argmax())
@@ -197,7 +197,7 @@ def test_smoothing_finds_the_motion_below_the_noise(name: str) -> None:
     """Velocity, acceleration and jerk of a smooth motion, which the rows have lost."""
     theta = angles(360)
     motion, rough = MOTIONS[name], made(theta, noisy(name, theta))
-    found = made(theta, noisy(name, theta), smoothing_length=0.005)
+    found = made(theta, noisy(name, theta), smoothing_tolerance=0.005)
     for order, part in ((0, 5e-4), (1, 0.01), (2, 0.15)):
         exact = motion.derivatives(FINE, order)[order]
         off = np.abs(found.derivatives(FINE, order)[order] - exact).max()
@@ -211,7 +211,7 @@ def test_more_tolerance_gives_less_jerk() -> None:
     lift = noisy("harmonic", theta)
     jerks = []
     for tolerance in (0.0031, 0.004, 0.006, 0.01, 0.05, 0.5):
-        found = made(theta, lift, smoothing_length=tolerance)
+        found = made(theta, lift, smoothing_tolerance=tolerance)
         jerks.append(float((found.derivatives(FINE, 3)[3] ** 2).mean()))
     assert (np.diff(jerks) < 0.0).all()
 
@@ -219,7 +219,7 @@ def test_more_tolerance_gives_less_jerk() -> None:
 def test_a_tolerance_below_all_noise_is_the_curve_through_the_rows() -> None:
     theta = angles(36)
     lift = noisy("harmonic", theta)
-    found = made(theta, lift, smoothing_length=1e-13)
+    found = made(theta, lift, smoothing_tolerance=1e-13)
     np.testing.assert_allclose(lift_of(found, theta), lift, atol=1e-13)
     assert found.deviation is not None
     assert abs(found.deviation.value) <= 1e-13
@@ -229,12 +229,12 @@ def test_a_tolerance_below_all_noise_is_the_curve_through_the_rows() -> None:
 def test_dwells_are_found_below_the_noise(count: int) -> None:
     """To the width of the shortest wave that is left, 10 degrees or so; tops are no dwells."""
     theta = angles(count)
-    found = kinds(made(theta, noisy("cycloidal", theta), smoothing_length=0.005))
+    found = kinds(made(theta, noisy("cycloidal", theta), smoothing_tolerance=0.005))
     around = [entry for entry in found if entry[2] - entry[1] > 5.0]
     assert [kind for kind, _, _ in around] == ["rise", "dwell", "return", "dwell"]
     np.testing.assert_allclose([ends[0] for _, *ends in around], [0, 90, 180, 270], atol=6.0)
     for name, top in (("harmonic back", 120.0), ("eccentric", 180.0)):
-        found = kinds(made(theta, noisy(name, theta), smoothing_length=0.005))
+        found = kinds(made(theta, noisy(name, theta), smoothing_tolerance=0.005))
         assert {kind for kind, _, _ in found} == {"rise", "return"}
         assert [end for kind, _, end in found if kind == "rise" and end < 300.0] == [
             pytest.approx(top, abs=2.0)
@@ -246,7 +246,7 @@ def test_a_slow_way_is_no_dwell_however_slow() -> None:
     theta = angles(360)
     way = np.where(theta < math.pi, 0.2 * theta / math.pi, 5.2 - 5.0 * np.cos(theta - math.pi))
     way = np.where(theta < math.pi, way, 0.2 * (TURN - theta) / math.pi + 5.0 * np.sin(theta) ** 2)
-    found = kinds(made(theta, way, smoothing_length=0.02))
+    found = kinds(made(theta, way, smoothing_tolerance=0.02))
     assert ("rise", True) in {(kind, start < 30.0 and end > 150.0) for kind, start, end in found}
 
 
@@ -255,14 +255,14 @@ def test_the_two_ends_of_the_turn_may_differ_by_the_tolerance() -> None:
     theta = np.append(angles(120), TURN)
     lift = lift_of(MOTIONS["cycloidal"], theta)
     lift[-1] += 0.004
-    found = made(theta, lift, smoothing_length=0.005)
+    found = made(theta, lift, smoothing_tolerance=0.005)
     off = lift_of(found, theta[:-1]) - lift[:-1]
     last = float(lift_of(found, theta[:1])[0] - lift[-1])
     assert found.deviation is not None
     assert abs(found.deviation.value) == pytest.approx(max(abs(last), np.abs(off).max()), abs=1e-9)
     assert abs(found.deviation.value) <= 0.005
     with pytest.raises(InfeasibleError, match=r"it jumps by 0\.004 mm"):
-        made(theta, lift, smoothing_length=0.0039)
+        made(theta, lift, smoothing_tolerance=0.0039)
 
 
 # --- refusals ------------------------------------------------------------------------------------
@@ -313,9 +313,9 @@ REFUSED = {
 def test_rows_that_make_no_motion_are_refused(change: str, tmp_path: Path) -> None:
     """With the number of the row; of a file with its line."""
     theta, lift = BAD[change]
-    more: dict[str, Any] = {"smoothing_length": 5.0} if change == "smooth" else {}
+    more: dict[str, Any] = {"smoothing_tolerance": 5.0} if change == "smooth" else {}
     row, message, rule = REFUSED[change]
-    ((_, found, told, allowed),) = table(theta, lift, **more).problems()
+    ((_, found, told, allowed),) = table(theta, lift, **more).turn_problems(oscillating=False)
     assert found == row
     assert message in told
     assert rule in allowed
@@ -326,8 +326,8 @@ def test_rows_that_make_no_motion_are_refused(change: str, tmp_path: Path) -> No
         f"{math.degrees(a)!r},{b!r}\n" for a, b in zip(theta.tolist(), lift.tolist(), strict=True)
     )
     file.write_text("# a comment\ntheta_deg,lift_mm\n" + rows)
-    ((name, _, told, _),) = MotionTable(file=str(file), **more).problems()
-    assert name == "file"
+    ((name, _, told, _),) = MotionTable(file=str(file), **more).turn_problems(oscillating=False)
+    assert name == ("smoothing_tolerance" if change == "smooth" else "file")
     assert message.split(" deg ")[-1] in told
     assert ("line" in told) == (row is not None)
     if row is not None:
@@ -339,7 +339,8 @@ def test_rows_that_make_no_motion_are_refused(change: str, tmp_path: Path) -> No
     [
         ("theta_deg,lift_mm\n", "has 0 rows"),
         ("theta_deg,lift\n0,1\n", "line 1: the columns are theta_deg, lift"),
-        ("theta_deg,lift_mm,lift_deg\n0,1,2\n", "line 1: the columns are theta_deg, lift_mm, l"),
+        ("theta_deg,lift_deg\n0,1\n", "line 1: lift_deg is of the wrong kind for a translating"),
+        ("theta_deg,lift_mm,lift_deg\n0,1,2\n", "has 1 rows"),
         ("theta_deg,lift_mm\n0,x\n", "line 2: 'x' is not a number"),
         ("theta_deg,lift_mm\n0,nan\n", "line 2: 'nan' is not finite"),
         ("", "is empty"),
@@ -348,36 +349,34 @@ def test_rows_that_make_no_motion_are_refused(change: str, tmp_path: Path) -> No
 def test_files_that_hold_no_rows_are_refused(text: str, message: str, tmp_path: Path) -> None:
     file = tmp_path / "motion.csv"
     file.write_text(text)
-    ((name, _, told, _),) = MotionTable(file=str(file)).problems()
+    ((name, _, told, _),) = MotionTable(file=str(file)).turn_problems(oscillating=False)
     assert name == "file"
     assert message in told
 
 
 def test_rows_are_given_once_and_whole() -> None:
-    lift = tuple(LIFT.tolist())
-    theta = tuple(THETA.tolist())
-    for given, message in (
-        (MotionTable(), "no rows are given"),
-        (MotionTable(theta=theta), "no lift is given"),
-        (MotionTable(length=lift), "no rows are given"),
-        (MotionTable(theta=theta, length=lift, swing=lift), "length and swing given"),
-        (MotionTable(theta=theta, length=lift[:-1]), "11 lifts for 12 angles"),
-        (MotionTable(file="a.csv", theta=theta), "the rows are given twice"),
-        (MotionTable(file="nowhere.csv"), "cannot be read"),
+    lift, theta = tuple(LIFT.tolist()), tuple(THETA.tolist())
+    for given, name, message in (
+        (MotionTable(), "theta", "is missing"),
+        (MotionTable(theta=theta), "lift", "is missing"),
+        (MotionTable(lift=lift), "theta", "is missing"),
+        (MotionTable(theta=theta, lift=lift[:-1]), "lift", "11 lifts for 12 angles"),
+        (MotionTable(file="a.csv", theta=theta), "file", "the rows are given twice"),
     ):
-        ((_, _, told, _),) = given.problems()
+        ((found, _, told, _),) = given.problems()
+        assert found == name
         assert message in told
+    ((_, _, told, _),) = MotionTable(file="nowhere.csv").turn_problems(oscillating=False)
+    assert "cannot be read" in told
 
 
-def test_lifts_are_of_the_followers_kind() -> None:
-    lift = tuple(np.radians(LIFT).tolist())
-    swing = MotionTable(theta=tuple(THETA.tolist()), swing=lift, smoothing_swing=1e-4)
-    assert list(swing.kind_problems(oscillating=True)) == []
-    told = [(name, message) for name, _, message, _ in swing.kind_problems(oscillating=False)]
-    words = "is of the wrong kind for a translating follower"
-    assert told == [("swing", words), ("smoothing_swing", words)]
-    assert swing.program(DEFAULT, oscillating=True).range[1] == pytest.approx(
-        math.radians(10.0), abs=2e-4
-    )
-    with pytest.raises(InfeasibleError, match="wrong kind for a translating"):
-        swing.program(DEFAULT)
+def test_a_file_has_the_lift_of_the_followers_kind(tmp_path: Path) -> None:
+    rows = "".join(f"{30 * k},{b}\n" for k, b in enumerate(LIFT.tolist()))
+    for unit, oscillating in (("mm", False), ("deg", True)):
+        file = tmp_path / f"{unit}.csv"
+        file.write_text(f"theta_deg,lift_{unit}\n{rows}")
+        found = MotionTable(file=str(file)).program(DEFAULT, oscillating=oscillating)
+        high = math.radians(10.0) if oscillating else 10.0
+        assert found.range[1] == pytest.approx(high, rel=1e-12)
+        with pytest.raises(InfeasibleError, match=rf"line 1: lift_{unit} is of the wrong kind"):
+            MotionTable(file=str(file)).program(DEFAULT, oscillating=not oscillating)

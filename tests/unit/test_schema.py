@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from claims.of_laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
 from gearcam.designs import load
+from gearcam.designs.functions import functions_in
 from gearcam.designs.kind import KINDS
 from gearcam.designs.reader import examine
 from gearcam.designs.schema import schema
@@ -115,6 +116,8 @@ def test_every_law_has_a_branch_that_takes_its_examples(
     for claim in LAW_CLAIMS[name]:
         values = vars(claim.parameters)
         law = {"type": name} | law_table(name).outward(values)
+        if any(functions_in(law)):
+            continue  # which no file can hold
         validator.validate(GOOD | {"law": law})
         assert not list(validator.iter_errors(GOOD | {"law": law}))
         assert list(validator.iter_errors(GOOD | {"law": law | {"no_such_key": 1}}))
@@ -128,6 +131,8 @@ def test_every_rise_has_branches_that_take_its_examples(
     for law, claims in RISE_CLAIMS.items():
         for claim in claims:
             own = rise_table(law).document(claim.parameters)
+            if any(functions_in(own)):
+                continue
             made = {"type": phase, "law": law, "angle_deg": 90, "lift_mm": 10, **own}
             document = copy.deepcopy(CAM)
             document["motion"][number] = made

@@ -12,7 +12,7 @@ import json
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import InitVar, dataclass, field
+from dataclasses import InitVar, dataclass, field, fields
 from functools import cached_property
 from typing import Any, ClassVar, Final
 
@@ -21,6 +21,7 @@ from gearcam.designs.faults import dotted
 from gearcam.designs.functions import Function, function_name, functions_in, never, pickles
 from gearcam.designs.kind import KINDS
 from gearcam.designs.outputs import OutputSpec
+from gearcam.designs.table import settled
 from gearcam.errors import DesignError, InfeasibleError, Problem
 
 HASH_DIGITS: Final = 16
@@ -63,7 +64,11 @@ class Design:
     examined: InitVar[bool] = False
 
     def __post_init__(self, examined: bool) -> None:
-        object.__setattr__(self, "limits", dict(self.limits))
+        if isinstance(self.limits, Mapping):
+            object.__setattr__(self, "limits", dict(self.limits))
+        if not examined:
+            for item in fields(self):
+                object.__setattr__(self, item.name, settled(getattr(self, item.name)))
         self._settle()
         if not examined:
             _demand_types(self)
@@ -90,8 +95,10 @@ class Design:
         return self
 
     def __getstate__(self) -> dict[str, Any]:
-        rule = "a function that is defined with def in a module"
-        _demand(pickles, document_of(self), self.source, "cannot be pickled", rule)
+        document, rule = document_of(self), "a function that is defined with def in a module"
+        _demand(pickles, document, self.source, "cannot be pickled", rule)
+        if any(functions_in(document)):
+            _ = self._token  # which the copy keeps
         return vars(self)
 
     @cached_property
@@ -197,6 +204,7 @@ def _demand_types(design: Design) -> None:
     kind = KINDS[design.kind]
     owners = ((title, kind.table(title).owner) for title in kind.tables)
     tables = [(title, getattr(design, title), (owner,)) for title, owner in owners if owner]
+    wanted = (("limits", design.limits, (Mapping,)), *tables, *design._wanted())
     problems = [
         Problem(
             f"is a {type(part).__name__}",
@@ -204,7 +212,7 @@ def _demand_types(design: Design) -> None:
             key=key,
             allowed=f"an instance of {' or '.join(owner.__name__ for owner in types)}",
         )
-        for key, part, types in (*tables, *design._wanted())
+        for key, part, types in wanted
         if not isinstance(part, types)
     ]
     if problems:

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import operator
 import types
 import typing
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -39,6 +40,8 @@ class Key:
     default : object
         In inner units; `REQUIRED` where the file must give the key, None where the program finds a
         value by itself.
+    swings : bool or None
+        Of a lift: whether it is given so where lifts are angles; None of everything else.
     """
 
     name: str
@@ -48,6 +51,7 @@ class Key:
     length: int | None
     literal: str
     default: Any
+    swings: bool | None = None
 
     @property
     def required(self) -> bool:
@@ -106,6 +110,13 @@ class Table:
     owner: type | None
     entries: Mapping[str, Key]
 
+    def of_lifts(self, *, oscillating: bool) -> Table:
+        """Return the table with the keys of lifts that are angles, `oscillating`, or lengths."""
+        kept = {
+            k: entry for k, entry in self.entries.items() if entry.swings in (None, oscillating)
+        }
+        return Table(self.title, self.owner, kept)
+
     def inward(self, raw: Mapping[str, Any]) -> dict[str, Any]:
         """Return inner values by parameter name, for the keys given."""
         return {
@@ -141,15 +152,26 @@ def table_of(title: str, owner: type) -> Table:
     Returns
     -------
     Table
-        With an entry for each field, in order.
+        With an entry for each field, in order; with two for a lift.
     """
     hints = typing.get_type_hints(owner)
     defaults = {field.name: field.default for field in dataclasses.fields(owner)}
     made = (
-        _entry(name, made_of, hints[name], defaults[name])
+        entry
         for name, made_of in params_of(owner).items()
+        for entry in _entries(name, made_of, hints[name], defaults[name])
     )
     return Table(title, owner, {entry.key: entry for entry in made})
+
+
+def _entries(name: str, made_of: Param, hint: Any, default: Any) -> Iterator[Key]:
+    entry = _entry(name, made_of, hint, default)
+    if made_of.angular is None:
+        yield entry
+    else:
+        angular = made_of.angular
+        yield replace(entry, swings=False)
+        yield replace(entry, swings=True, key=angular.key(name), param=angular)
 
 
 def _entry(name: str, made_of: Param, hint: Any, default: Any) -> Key:
@@ -170,3 +192,30 @@ def _split(hint: Any) -> tuple[Any, str]:
     plain = [part for part in rest if typing.get_origin(part) is not typing.Literal]
     words = [typing.get_args(part)[0] for part in rest if part not in plain]
     return plain[0], "".join(words)
+
+
+def settled(part: Any) -> Any:
+    """Return what people gave with tuples for lists and arrays, and plain numbers for numpy's.
+
+    Parameters
+    ----------
+    part : object
+        A value, or a dataclass with values at any depth.
+
+    Returns
+    -------
+    object
+        The same one where nothing changes.
+    """
+    if hasattr(part, "tolist"):
+        part = part.tolist()
+    if isinstance(part, list | tuple):
+        items = tuple(map(settled, part))
+        same = isinstance(part, tuple) and all(map(operator.is_, items, part))
+        return part if same else items
+    if not dataclasses.is_dataclass(part) or isinstance(part, type):
+        return part
+    given = {item.name: getattr(part, item.name) for item in dataclasses.fields(part)}
+    made = {name: settled(value) for name, value in given.items()}
+    changed = {name: value for name, value in made.items() if value is not given[name]}
+    return replace(part, **changed) if changed else part

@@ -57,7 +57,7 @@ class MotionFormula:
         """Yield what is wrong by reading: field, index, message, allowed."""
         yield from formula_problems("lift", self.lift, _VARIABLE)
 
-    def kind_problems(self, *, oscillating: bool) -> Iterator[tuple[str, int | None, str, str]]:  # noqa: ARG002  (a formula has no unit)
+    def turn_problems(self, *, oscillating: bool) -> Iterator[tuple[str, int | None, str, str]]:  # noqa: ARG002  (as of a table)
         """Yield nothing: a formula suits followers of either kind."""
         yield from ()
 

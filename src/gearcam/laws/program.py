@@ -247,7 +247,7 @@ def make_program(
     angles[-1] = TURN
     heights = levels(phases)
     heights[-1] = 0.0
-    shapes = [phase.shape for phase in phases if isinstance(phase, RisePhase)]
+    shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
         _Place(*ends, *lifts)
@@ -260,7 +260,7 @@ def make_program(
             case SegmentPhase() as phase:
                 return phase.end[1:]
             case RisePhase() as phase:
-                return places[number].end_state(rises[phase.shape])
+                return places[number].end_state(rises[phase.law])
             case DwellPhase():
                 return 0.0, 0.0
 
@@ -277,8 +277,8 @@ def make_program(
                 pieces.append((place.end, place.quintic(end_state(number - 1), phase.end[1:])))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
-                pieces += place.pieces(rises[phase.shape])
-                cuts = np.append(cuts, place.cuts(rises[phase.shape]))
+                pieces += place.pieces(rises[phase.law])
+                cuts = np.append(cuts, place.cuts(rises[phase.law]))
         stretches.append(PlacedPhase(kind=kind, start=place.start, end=place.end))
     knots, parts = zip(*pieces, strict=True)
     lift = piecewise([0.0, *knots], list(parts))

@@ -24,6 +24,7 @@ from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param
+from gearcam.registry import classes_in, name_of
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.motion import Motion
@@ -124,8 +125,8 @@ class CamDesign(Design):
             return
         for number, phase in enumerate(self.motion):
             yield f"motion[{number}]", phase, tuple(PHASES.values())
-            if isinstance(phase, RisePhase) and phase.law in RISES:
-                yield f"motion[{number}].shape", phase.shape, (RISES[phase.law].parameters,)
+            if isinstance(phase, RisePhase) and not name_of(RISES, phase.law):
+                yield f"motion[{number}].law", phase.law, tuple(classes_in(RISES).values())
 
 
 def _unmarked(blank: WheelBlank, source: str) -> WheelBlank:
@@ -192,7 +193,7 @@ KIND: Final = DesignKind(
     design=CamDesign,
     main=TITLE,
     examine_main=_examine_motion,
-    main_of=lambda design: motion_of(design.motion),
+    main_of=lambda design: motion_of(design.motion, oscillating=design.follower.oscillating),
     homes=homes,
     tables={
         "follower": partial(table_of, "follower", FollowerSpec),

@@ -7,7 +7,7 @@ whole turn is told by a formula, ``lift``, or by rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -19,6 +19,7 @@ from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
 from gearcam.laws.rises.base import RISES
+from gearcam.registry import name_of
 
 if TYPE_CHECKING:
     from gearcam.laws.motion_formula import MotionFormula
@@ -34,7 +35,7 @@ WITH_LAW: Final = tuple(name for name, owner in PHASES.items() if issubclass(own
 LIFT: Final = {"rise": "lift", "segment": "to"}
 """What a phase must give, as a length or as an angle, without the suffix of its unit."""
 
-_UNREADABLE: Final = RisePhase(angle=1.0, law="", shape=None)
+_UNREADABLE: Final = RisePhase(angle=1.0, law=None)
 """Stands for a phase that cannot be read: without a lift, so that nothing is said of the sum."""
 
 
@@ -66,8 +67,7 @@ def twins(known: Table) -> dict[str, tuple[str, ...]]:
     """Return the keys that say the same as a length and as an angle, by their common word."""
     words: dict[str, list[str]] = {}
     for key, entry in known.entries.items():
-        if entry.param.word:
-            words.setdefault(entry.param.word, []).append(key)
+        words.setdefault(entry.param.word or entry.name, []).append(key)
     return {word: tuple(keys) for word, keys in words.items() if len(keys) > 1}
 
 
@@ -107,7 +107,7 @@ def examine_motion(
         found.faults.append(Fault((TITLE,), message, raw, rule))
     else:
         before = len(found.faults)
-        phases = [_phase((TITLE, k), item, found, home) for k, item in enumerate(raw)]
+        phases = [_phase((TITLE, k), item, oscillating, found, home) for k, item in enumerate(raw)]
         _examine_program(phases, raw, oscillating, found)
         if len(found.faults) == before:
             found.parts[TITLE] = tuple(phases)
@@ -139,16 +139,19 @@ def _examine_turn(
     by_formula = "lift" in raw
     known, owner = turn_tables()[by_formula], whole_turns()[by_formula]
     faults = list(faults_of(known, raw, home=home))
+    faults += _wrong_kind(known, raw, (TITLE,), oscillating)
+    known = known.of_lifts(oscillating=bool(oscillating))
     made, problems = made_of(known, owner, raw, faults, (TITLE,))
-    if made is not None and not problems and oscillating is not None:
-        told = made.kind_problems(oscillating=oscillating)
+    if not faults and not problems and oscillating is not None:
+        told = made.turn_problems(oscillating=oscillating)
         problems = list(told_faults(told, known, raw, (TITLE,)))
-    found.faults += [*faults, *problems]
-    if not faults and not problems:
         found.parts[TITLE] = made
+    found.faults += [*faults, *problems]
 
 
-def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> Phase | None:
+def _phase(
+    at: Path, raw: Any, oscillating: bool | None, found: Examined, home: Callable[[str], str]
+) -> Phase | None:
     """Examine one phase; what can be read of it serves to judge the program."""
     if not isinstance(raw, Mapping):
         rule = f"a table with type = {quoted(PHASES)}"
@@ -158,24 +161,35 @@ def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> P
     if not name:
         return None
     rest = {key: value for key, value in raw.items() if key != "type"}
-    own = phase_table(name)
+    own, make, problems = phase_table(name), PHASES[name], []
     if name not in WITH_LAW:
         faults = list(faults_of(own, rest, home=home, at=at))
-        phase, problems = made_of(own, PHASES[name], rest, faults, at)
-        found.faults += [*faults, *problems]
-        return phase
-    law = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
-    rest.pop("law", None)
-    if not law:  # whatever any law asks for may be meant
-        rest = {key: value for key, value in rest.items() if key in own.entries or not _asked(key)}
-    faults = list(faults_of(phase_table(name, law), rest, home=home, at=at))
-    shape, problems = None, []
-    if law:
-        shape, problems = made_of(rise_table(law), RISES[law].parameters, rest, faults, at)
-    make = partial(PHASES[name], law=law, shape=shape)
+    else:
+        chose = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
+        rest.pop("law", None)
+        if not chose:  # whatever any law asks for may be meant
+            rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
+        faults = list(faults_of(phase_table(name, chose), rest, home=home, at=at))
+        law = None
+        if chose:
+            law, problems = made_of(rise_table(chose), RISES[chose].parameters, rest, faults, at)
+        make = partial(make, law=law)
+    other = list(_wrong_kind(own, rest, at, oscillating))
+    own = own.of_lifts(oscillating=bool(oscillating))
     phase, own_problems = made_of(own, make, rest, faults, at)
-    found.faults += [*faults, *problems, *own_problems]
-    return phase
+    found.faults += [*faults, *problems, *own_problems, *other]
+    return None if other else phase
+
+
+def _wrong_kind(
+    known: Table, raw: Mapping[str, Any], at: Path, oscillating: bool | None
+) -> Iterator[Fault]:
+    """Yield the faults of lifts that are lengths for a follower that oscillates, or angles."""
+    kind, unit = ("an oscillating", "_deg") if oscillating else ("a translating", "_mm")
+    for key, entry in known.entries.items():
+        if key in raw and oscillating is not None and entry.swings is (not oscillating):
+            message = f"{show(raw[key])}: is of the wrong kind for {kind} follower"
+            yield Fault((*at, key), message, raw[key], f"the key in {unit}")
 
 
 def _asked(key: str) -> bool:
@@ -196,24 +210,39 @@ def _examine_program(
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))
         elif phases[number] is not None:
-            known, at = phase_table(raw[number]["type"]), (TITLE, number)
+            known = phase_table(raw[number]["type"]).of_lifts(oscillating=oscillating)
+            at = (TITLE, number)
             found.faults += told_faults([(name, None, message, rule)], known, raw[number], at)
 
 
-def motion_of(motion: Motion) -> list[dict[str, Any]] | dict[str, Any]:
-    """Return what a file would hold of a motion: a table for each phase, or one for the turn."""
+def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | dict[str, Any]:
+    """Return what a file would hold of a motion: a table for each phase, or one for the turn.
+
+    Parameters
+    ----------
+    motion : tuple of Phase, MotionTable or MotionFormula
+        As a design has it.
+    oscillating : bool
+        Whether lifts are angles.
+
+    Returns
+    -------
+    list of dict, or dict
+    """
     if not isinstance(motion, tuple):
-        return table_of(TITLE, type(motion)).document(motion)
+        return table_of(TITLE, type(motion)).of_lifts(oscillating=oscillating).document(motion)
     names = {owner: name for name, owner in PHASES.items()}
     tables = []
     for phase in motion:
         name = names[type(phase)]
         table: dict[str, Any] = {"type": name}
-        if isinstance(phase, RisePhase):
-            table |= {"law": phase.law}
-        table |= phase_table(name).document(phase)
-        if isinstance(phase, RisePhase) and phase.law in RISES:
-            table |= rise_table(phase.law).document(phase.shape)
+        law = name_of(RISES, phase.law) if isinstance(phase, RisePhase) else ""
+        if law:
+            table |= {"law": law}
+        known = phase_table(name).of_lifts(oscillating=oscillating)
+        table |= known.document(phase)
+        if law:
+            table |= rise_table(law).document(phase.law)
         tables.append(table)
     return tables
 
