@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 import mpmath
 
@@ -40,6 +40,9 @@ def _scca_speed(b: float, c: float, d: float) -> float:
     peak = 4 * pi**2 / ((pi**2 - 8) * (b**2 - d**2) - 2 * pi * (pi - 2) * b + pi**2)
     return peak * ((b + d) / pi + c / 2)
 
+
+READ: Final = math.radians(110)
+"""Angle of the rise of 12 mm, 4-5-6-7, that is read with up to 4 um of noise."""
 
 WORST, FIRST, LAST = _undercut()
 HIGHEST = math.hypot(10, math.sqrt(60**2 - 10**2) + 27.6) - 8
@@ -87,6 +90,14 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
     "valve_lever": {
         "cam.start_angle_deg": (DEG * math.asin(51 / 70), 1e-12),
         "motion.peak_acceleration": (6 * 10 / math.radians(70) ** 2, 1e-11),
+    },
+    "measured_cam": {
+        "motion.deviation": (0.0, 0.006),
+        "motion.lift.max": (12.0, 0.006 + 0.004),
+        "motion.lift.min": (0.0, 0.006 + 0.004),
+        "motion.peak_velocity": (35 / 16 * 12 / READ, 0.03),
+        "motion.peak_acceleration": (84 * math.sqrt(5) / 25 * 12 / READ**2, 0.3),
+        "motion.peak_jerk": (52.5 * 12 / READ**3, 2.0),
     },
     "tappet": {
         "cam.base_radius_mm": (35.0, 1e-13),
