@@ -283,6 +283,36 @@ def test_both_refuse_a_cam(place: tuple[Any, ...], value: Any) -> None:
     assert not SHARED.is_valid(document)
 
 
+ROWS = {"theta_deg": [0, 60, 120, 180, 240, 300], "lift_mm": [0, 2, 4, 6, 4, 2]}
+
+
+@pytest.mark.parametrize(
+    ("motion", "good"),
+    [
+        (ROWS, True),
+        (ROWS | {"smoothing_tolerance_mm": 0.1}, True),
+        ({"lift": "cos(theta)"}, True),
+        ({}, False),
+        ({"lift": 3}, False),
+        ({"lift": "cos(theta)", "file": "a.csv"}, False),
+        ({"file": 3}, False),
+        (ROWS | {"file": "a.csv"}, False),
+        (ROWS | {"lift_deg": ROWS["lift_mm"]}, False),
+        (ROWS | {"lift_mm": ROWS["lift_mm"][:5]}, False),
+        (ROWS | {"lift_mm": 3}, False),
+        (ROWS | {"theta_deg": [*ROWS["theta_deg"][:5], 361]}, False),
+        (ROWS | {"smoothing_tolerance_mm": 0}, False),
+        (ROWS | {"smoothing": 1}, False),
+        ({"theta_deg": ROWS["theta_deg"]}, False),
+        ({"lift_mm": ROWS["lift_mm"]}, False),
+    ],
+)
+def test_both_judge_a_motion_of_the_whole_turn_alike(motion: dict[str, Any], good: bool) -> None:
+    document = _edited([(("motion",), motion)], CAM)
+    assert (not examine(document).faults) is good
+    assert SHARED.is_valid(document) is good
+
+
 @pytest.mark.parametrize(
     ("place", "value"),
     [

@@ -114,7 +114,7 @@ class CamDesign(Design):
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
 
     def _settle(self) -> None:
-        if isinstance(self.motion, Sequence):
+        if isinstance(self.motion, Sequence) and not isinstance(self.motion, str):
             object.__setattr__(self, "motion", tuple(self.motion))
         if isinstance(self.blank, WheelBlank):
             object.__setattr__(self, "blank", _unmarked(self.blank, self.source))

@@ -139,14 +139,17 @@ def _examine_turn(
     by_formula = "lift" in raw
     known, owner = turn_tables()[by_formula], whole_turns()[by_formula]
     faults = list(faults_of(known, raw, home=home))
-    faults += _wrong_kind(known, raw, (TITLE,), oscillating)
-    known = known.of_lifts(oscillating=bool(oscillating))
+    other = list(_wrong_kind(known, raw, (TITLE,), oscillating))
+    found.faults += [*faults, *other]
+    if other or oscillating is None:
+        return
+    known = known.of_lifts(oscillating=oscillating)
     made, problems = made_of(known, owner, raw, faults, (TITLE,))
-    if not faults and not problems and oscillating is not None:
+    if not faults and not problems:
         told = made.turn_problems(oscillating=oscillating)
         problems = list(told_faults(told, known, raw, (TITLE,)))
         found.parts[TITLE] = made
-    found.faults += [*faults, *problems]
+    found.faults += problems
 
 
 def _phase(
