@@ -6,6 +6,8 @@ import copy
 import json
 import math
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -266,7 +268,7 @@ def test_the_error_of_a_function_that_scatters_is_that_of_its_values(name: str) 
 
 
 def test_a_motion_may_be_run_backwards() -> None:
-    given = {"x_from": 2.0, "x_to": 0.0, "driver_travel": 3.0, "driven_travel": 2.0}
+    given: dict[str, Any] = {"x_from": 2.0, "x_to": 0.0, "driver_travel": 3.0, "driven_travel": 2.0}
     one = MotionLaw(y=lambda x: x + 0.2 * np.tanh(9 * (x - 0.7)), **given)
     two = MotionLaw(y="x + 0.2*tanh(9*(x - 0.7))", **given)
     made = [
@@ -274,6 +276,23 @@ def test_a_motion_may_be_run_backwards() -> None:
     ]
     for order, (mine, known) in enumerate(zip(*made, strict=True)):
         np.testing.assert_allclose(mine, known, rtol=0.0, atol=[3e-14, 5e-12, 5e-9][order])
+
+
+def test_a_text_loads_nothing_that_functions_need() -> None:
+    code = (
+        "import sys, gearcam\n"
+        "gearcam.build(gearcam.load('profiles/formula.toml')).law\n"
+        "print('gearcam.laws.formula' in sys.modules, 'gearcam.laws.functions' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "False"]
+
+
+def test_remedies_keep_the_function() -> None:
+    design = pair(Formula(phi2=swing), teeth=(18, 18))
+    found: Any = gearcam.remedies(gc.build(design)).found
+    assert found
+    assert all(remedy.design.law.phi2 is swing for remedy in found)
 
 
 def test_a_function_that_fails_is_told_with_its_angle() -> None:
