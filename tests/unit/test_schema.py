@@ -21,7 +21,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.reader import examine
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
-from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, rows_table
+from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
@@ -82,7 +82,8 @@ def test_every_key_is_described_and_no_other_is_allowed(
         for title in (*kind.tables, "limits"):
             expected[f"{name}-{title}"] = set(kind.table(title).entries)
     expected |= {f"law-{name}": {"type", *law_table(name).entries} for name in LAWS}
-    expected["motion-table"] = set(rows_table().entries)
+    for title, known in zip(("motion-table", "motion-formula"), turn_tables(), strict=True):
+        expected[title] = set(known.entries)
     for name in PHASES:
         if name not in WITH_LAW:
             expected[name] = {"type", *phase_table(name).entries}

@@ -47,9 +47,9 @@ half the digits."""
 _ORDER: Final = 6
 """Power of the step with which the error of a smooth lift falls."""
 
-_BESIDE: Final = 1.5
-"""A miss is seen in the middle between rows; beside it, where a derivative jumps at a row, it may
-be half as large again."""
+_BESIDE: Final = 2.0
+"""A miss is seen in the middle between rows; beside it, where a derivative jumps near a row, it may
+be twice as large."""
 
 
 def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
@@ -129,7 +129,7 @@ def _error(theta: Array, lift: Array) -> float:
         max(_missed(np.roll(theta, -k), np.roll(lift, -k), step) for k in range(step))
         for step in (2, 4)
     )
-    rounding = np.finfo(float).eps * float(np.abs(lift).max())
+    rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max())
     falls = min(max(four / max(two, rounding), 1.0), 2.0**_ORDER)
     return _BESIDE * two / falls + rounding
 
@@ -169,8 +169,8 @@ def stretches_of(
     """
     runs = _runs(theta, values, level, cutoff)
     turns = [
-        _turning(lift, theta, rows, sign) if sign * before else float(theta[rows[1]])
-        for (before, _), (sign, rows) in zip([runs[-1], *runs], runs, strict=False)
+        _turning(lift, theta, (first, row), sign) if sign * before else float(theta[row])
+        for (before, first), (sign, row) in zip([runs[-1], *runs], runs, strict=False)
     ]
     kinds, first = [_KINDS[sign] for sign, _ in runs], int(np.argmin(turns))
     kinds, turns = kinds[first:] + kinds[:first], turns[first:] + turns[:first]
@@ -180,10 +180,8 @@ def stretches_of(
     )
 
 
-def _runs(
-    theta: Array, values: Array, level: float, cutoff: float
-) -> list[tuple[int, tuple[int, int]]]:
-    """Return what the lift does, 1, -1 or 0, and between which rows it begins to do so; in a ring.
+def _runs(theta: Array, values: Array, level: float, cutoff: float) -> list[tuple[int, int]]:
+    """Return what the lift does, 1, -1 or 0, and from which row on, in a ring.
 
     It stands still where it changes by less than the level in a phase of 1 of waves at the cutoff,
     over half such a wave and two steps at least, and by no more than twice the level in all.
@@ -192,8 +190,7 @@ def _runs(
     still = np.abs(steps) <= level * np.minimum(cutoff * widths, 1.0)
     signs = np.where(still & (not still.all()), 0.0, np.sign(steps)).astype(int)
     begin = int(np.flatnonzero(signs * (signs - np.roll(signs, 1)))[0])
-    runs: list[tuple[int, tuple[int, int]]] = []
-    since = begin
+    runs: list[tuple[int, int]] = []
     for sign, group in groupby(np.roll(np.arange(len(steps)), -begin), key=signs.__getitem__):
         own = np.array(list(group))
         change = np.cumsum(steps[own])
@@ -203,15 +200,14 @@ def _runs(
         if sign == 0 and np.abs(change).max() > 2.0 * level:
             sign = int(np.sign(change[-1]))
         if not runs or runs[-1][0] != sign:
-            runs.append((int(sign), (since, int(own[0]))))
-        since = int(own[-1]) + 1
+            runs.append((int(sign), int(own[0])))
     if runs[0][0] == runs[-1][0]:
         return runs[1:]
     return runs
 
 
 def _turning(lift: Piecewise, theta: Array, rows: tuple[int, int], sign: int) -> float:
-    """Return where a lift is extreme, rad, between rows, before it goes by a sign."""
+    """Return where a lift is extreme, rad, that comes from one row and goes from another."""
     first, last = rows
     row = theta[np.arange(first - 1, last + 2 + len(theta) * (last < first)) % len(theta)]
     near = np.unwrap(row, period=TURN)

@@ -137,10 +137,6 @@ def coefficients(x: Array, y: Array, slopes: Array, *, ring: bool) -> tuple[Arra
     jerk = cubic + h * (4.0 * quartic + 10.0 * h * quintic)
     slope, bend = slopes[1:].T
     right = np.array([y[1:], slope, 0.5 * bend, jerk, quartic + 5.0 * h * quintic, quintic])
-    # that of the wider side, which is rounded less
-    shared = np.where(h > np.roll(h, 1), left[3], np.roll(right[3], 1))
-    inner = slice(0 if ring else 1, None)
-    left[3, inner] = shared[inner]
     right[3] = np.append(left[3, 1:], left[3, 0] if ring else right[3, -1])
     return left.T, right.T
 

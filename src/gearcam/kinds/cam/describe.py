@@ -15,15 +15,16 @@ from gearcam.kinds.cam.motion import (
     WITH_LAW,
     phase_table,
     rise_table,
-    rows_table,
     summary,
+    turn_tables,
     twins,
 )
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.rises.base import RISES
 
 _ROWS: Final = "motion-table"
-"""Name of the definition of a motion by rows."""
+_FORMULA: Final = "motion-formula"
+"""Names of the definitions of a motion over the whole turn."""
 
 _SHOWN: Final = {"file": "motion.csv", "smoothing_tolerance_mm": 0.01}
 """Its keys with values in the template."""
@@ -40,21 +41,29 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
             made |= {f"{name}-{law}": _phase_schema(name, law) for law in RISES}
         else:
             made[name] = _phase_schema(name)
-    made[_ROWS] = _rows_schema()
+    made |= {_ROWS: _rows_schema(), _FORMULA: _formula_schema()}
     main = {
-        "description": "the lift over a turn of the cam, phase by phase or by rows of a table",
+        "description": "the lift over a turn of the cam, phase by phase, by rows or by a formula",
         "if": {"type": "array"},
         "then": {"minItems": 1, "items": {"type": "object", **phases}},
-        "else": {"$ref": f"#/$defs/{_ROWS}"},
+        "else": {
+            "if": {"required": ["lift"]},
+            "then": {"$ref": f"#/$defs/{_FORMULA}"},
+            "else": {"$ref": f"#/$defs/{_ROWS}"},
+        },
     }
     return main, made
 
 
 def _rows_schema() -> dict[str, Any]:
-    known = rows_table()
+    known, _ = turn_tables()
     made = table_schema(known, "rows of cam angle and lift over a turn")
     inline = [{"required": ["theta_deg", key]} for key in twins(known)["lift"]]
     return made | {"oneOf": [{"required": ["file"]}, *inline]}
+
+
+def _formula_schema() -> dict[str, Any]:
+    return table_schema(turn_tables()[1], "the lift over a turn as a formula")
 
 
 def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
@@ -83,10 +92,10 @@ def lines() -> Iterator[str]:
             yield "#"
             yield from _phase({"type": name}, "# ")
     yield ""
-    yield "# Instead of all phases, rows of angle and lift over the whole turn:"
+    yield "# Instead of all phases, the whole turn: by rows of angle and lift, or by a formula:"
     yield "#"
     yield "# [motion]"
-    for key, entry in rows_table().entries.items():
+    for key, entry in (item for known in turn_tables() for item in known.entries.items()):
         if key in _SHOWN:
             yield key_line(key, _SHOWN[key], description(entry), "# ")
         else:

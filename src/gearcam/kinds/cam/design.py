@@ -18,8 +18,8 @@ from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
-from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, motion_table
-from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase
+from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
+from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank
@@ -27,7 +27,7 @@ from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 from gearcam.registry import classes_in, name_of
 
 if TYPE_CHECKING:
-    from gearcam.laws.motion_table import MotionTable
+    from gearcam.kinds.cam.motion import Motion
 
 NAME: Final = "cam"
 """As in a file."""
@@ -93,7 +93,7 @@ class CamDesign(Design):
 
     Parameters
     ----------
-    motion : tuple of Phase, or MotionTable
+    motion : tuple of Phase, MotionTable or MotionFormula
         The lift over a turn of the cam.
     follower : FollowerSpec
         What touches the cam, and how it is guided.
@@ -107,7 +107,7 @@ class CamDesign(Design):
 
     kind = NAME
 
-    motion: tuple[Phase, ...] | MotionTable
+    motion: Motion
     follower: FollowerSpec
     cam: CamSpec
     blank: WheelBlank = field(default_factory=WheelBlank)
@@ -121,7 +121,7 @@ class CamDesign(Design):
 
     def _wanted(self) -> Iterator[Wanted]:
         if not isinstance(self.motion, tuple):
-            yield "motion", self.motion, (motion_table(),)
+            yield "motion", self.motion, whole_turns()
             return
         for number, phase in enumerate(self.motion):
             yield f"motion[{number}]", phase, tuple(PHASES.values())

@@ -1,7 +1,8 @@
-"""The motion of a cam: an array ``[[motion]]`` of phases, or a table ``[motion]`` of rows.
+"""The motion of a cam: an array ``[[motion]]`` of phases, or a table ``[motion]`` of the turn.
 
 Each phase has the keys of its type and of its law. A rise and a return have a ``law`` of the
-registry `gearcam.laws.rises.base.RISES`, whose parameters stand beside the keys of the phase.
+registry `gearcam.laws.rises.base.RISES`, whose parameters stand beside the keys of the phase. The
+whole turn is told by a formula, ``lift``, or by rows.
 """
 
 from __future__ import annotations
@@ -21,7 +22,10 @@ from gearcam.laws.rises.base import RISES
 from gearcam.registry import name_of
 
 if TYPE_CHECKING:
+    from gearcam.laws.motion_formula import MotionFormula
     from gearcam.laws.motion_table import MotionTable
+
+    Motion = tuple[Phase, ...] | MotionTable | MotionFormula
 
 TITLE: Final = "motion"
 
@@ -88,7 +92,8 @@ def examine_motion(
         Gives the words that say where a key of another place belongs.
     """
     raw = document.get(TITLE)
-    rule = f"[[{TITLE}]] for each phase, with type = {quoted(PHASES)}; or [{TITLE}] with rows"
+    types = quoted(PHASES)
+    rule = f"[[{TITLE}]] for each phase, with type = {types}; or [{TITLE}] with rows or a lift"
     oscillating = _oscillating(document.get("follower", {}))
     if TITLE not in document:
         found.faults.append(Fault((TITLE,), f"there is no [[{TITLE}]]", allowed=rule))
@@ -96,7 +101,7 @@ def examine_motion(
         hint = f"write [[{TITLE}]] in double brackets"
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
     elif isinstance(raw, Mapping):
-        _examine_rows(raw, oscillating, found, home)
+        _examine_turn(raw, oscillating, found, home)
     elif not isinstance(raw, list) or not raw:
         message = "the list is empty" if raw == [] else f"{show(raw)} is no list of tables"
         found.faults.append(Fault((TITLE,), message, raw, rule))
@@ -114,30 +119,34 @@ def _oscillating(follower: Any) -> bool | None:
     return motion == "oscillating" if motion in ("translating", "oscillating") else None
 
 
-def motion_table() -> type[MotionTable]:
-    """Return the class of a motion by rows, loaded only where there is one."""
+def whole_turns() -> tuple[type[MotionTable], type[MotionFormula]]:
+    """Return the classes of motions that tell the whole turn, loaded only where there is one."""
+    from gearcam.laws.motion_formula import MotionFormula
     from gearcam.laws.motion_table import MotionTable
 
-    return MotionTable
+    return MotionTable, MotionFormula
 
 
-def rows_table() -> Table:
-    """Return the table of a motion by rows."""
-    return table_of(TITLE, motion_table())
+def turn_tables() -> tuple[Table, Table]:
+    """Return their tables: by rows, and by a formula."""
+    rows, formula = (table_of(TITLE, owner) for owner in whole_turns())
+    return rows, formula
 
 
-def _examine_rows(
+def _examine_turn(
     raw: Mapping[str, Any], oscillating: bool | None, found: Examined, home: Callable[[str], str]
 ) -> None:
-    known = rows_table()
+    by_formula = "lift" in raw
+    known, owner = turn_tables()[by_formula], whole_turns()[by_formula]
     faults = list(faults_of(known, raw, home=home))
-    made, problems = made_of(known, motion_table(), raw, faults, (TITLE,))
-    if made is not None and not problems and oscillating is not None:
-        told = made.kind_problems(oscillating=oscillating)
+    faults += _wrong_kind(known, raw, (TITLE,), oscillating)
+    known = known.of_lifts(oscillating=bool(oscillating))
+    made, problems = made_of(known, owner, raw, faults, (TITLE,))
+    if not faults and not problems and oscillating is not None:
+        told = made.turn_problems(oscillating=oscillating)
         problems = list(told_faults(told, known, raw, (TITLE,)))
-    found.faults += [*faults, *problems]
-    if not faults and not problems:
         found.parts[TITLE] = made
+    found.faults += [*faults, *problems]
 
 
 def _phase(
@@ -206,14 +215,12 @@ def _examine_program(
             found.faults += told_faults([(name, None, message, rule)], known, raw[number], at)
 
 
-def motion_of(
-    motion: Sequence[Phase] | MotionTable, *, oscillating: bool
-) -> list[dict[str, Any]] | dict[str, Any]:
-    """Return what a file would hold of a motion: a table for each phase, or one of rows.
+def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | dict[str, Any]:
+    """Return what a file would hold of a motion: a table for each phase, or one for the turn.
 
     Parameters
     ----------
-    motion : sequence of Phase, or MotionTable
+    motion : tuple of Phase, MotionTable or MotionFormula
         As a design has it.
     oscillating : bool
         Whether lifts are angles.
@@ -223,7 +230,7 @@ def motion_of(
     list of dict, or dict
     """
     if not isinstance(motion, tuple):
-        return rows_table().document(motion)
+        return table_of(TITLE, type(motion)).of_lifts(oscillating=oscillating).document(motion)
     names = {owner: name for name, owner in PHASES.items()}
     tables = []
     for phase in motion:
@@ -253,4 +260,5 @@ def homes() -> dict[str, str]:
     found = {key: f"with law = {quoted(laws)}" for key, laws in by_law.items()}
     found |= {key: f"of type {quoted(names)}" for key, names in by_phase.items()}
     told = {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
-    return dict.fromkeys(rows_table().entries, f"this key belongs under [{TITLE}]") | told
+    turns = (key for known in turn_tables() for key in known.entries)
+    return dict.fromkeys(turns, f"this key belongs under [{TITLE}]") | told

@@ -2,30 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
-
-import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import Axis, Given, formula_problems, function_of
 from gearcam.laws.rises.base import RISES, Rise
+from gearcam.laws.smoothness import demand_smooth
 from gearcam.numerals import shown
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
-
-_ODD_PLACE: Final = 0.3819660112501052
-"""Where the search for corners is cut first: a corner at a round place then lies inside a part."""
-
-_OF_FUNCTION: Final = 1e-6
-"""Roughness of a derivative that does not count, in its largest value, where it is that of the
-expansion of a function: this has lost digits, and its smoothness is proven already."""
 
 _VARIABLE: Final = "x"
 _WHERE: Final = "motion.formula"
@@ -63,8 +53,7 @@ class FormulaRise:
             Where the formula is not finite or not smooth, or does not go from 0 to 1.
         """
         shape, error = function_of(self.formula, _AXIS, tolerances.expansion)
-        exact = isinstance(self.formula, str)
-        cuts = _demand_smooth(shape, tolerances.expansion if exact else _OF_FUNCTION)
+        cuts = demand_smooth(shape, self.formula, _AXIS, _NAMES, tolerances)
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
             if not abs(value - place) <= TYPED:
@@ -88,36 +77,6 @@ def _from_corner_to_corner(formula: Given, start: float, end: float) -> str:
         return f"{off}divide by {end - start:.17g}"
     top = f"({formula})" if start == 0.0 else f"(({formula}) - ({start:.17g}))"
     return f"this one does: {top}/({end - start:.17g})"
-
-
-def _demand_smooth(shape: Callable[[Jet], Jet], tolerance: float) -> Array:
-    """Refuse a formula that has no jerk, or a rough one; return the places that show its peaks."""
-    *_, cuts = [_cuts(shape, order, tolerance) for order in range(len(_NAMES))]
-    ends = np.array(shape(Jet.variable([0.0, 1.0], len(_NAMES))).derivatives())
-    for place, found in zip((0.0, 1.0), ends.T, strict=True):
-        if not np.isfinite(found).all():
-            order = int(np.argmin(np.isfinite(found)))
-            raise InfeasibleError(
-                f"{(*_NAMES, 'the derivative of its jerk')[order]} cannot be computed",
-                where=f"{_WHERE}, x = {shown(place)}",
-                nearest="roots of zero and powers of zero that are not whole have no derivatives",
-            )
-    return cuts
-
-
-def _cuts(shape: Callable[[Jet], Jet], order: int, tolerance: float) -> Array:
-    """Return the knots that an expansion of a derivative needs."""
-
-    def values(x: Array) -> Array:
-        # with 1 added, the rounding of a derivative that is zero does not count as rough
-        return 1.0 + shape(Jet.variable(x, order)).derivatives()[order]
-
-    try:
-        return expand(values, [0.0, _ODD_PLACE, 1.0], tolerance).knots
-    except NotSmoothError as error:
-        state = "smooth" if error.finite else "finite"
-        place = f"{_WHERE}, x = {shown(round(error.place, 5))}"
-        raise InfeasibleError(f"{_NAMES[order]} is not {state}", where=place) from error
 
 
 RISES.register(
