@@ -89,6 +89,11 @@ def test_lifts_are_of_the_followers_kind() -> None:
     assert "wrong kind for an oscillating follower" in found[-1].message
 
 
+def test_of_an_unknown_kind_no_lift_is_wrong() -> None:
+    for text, motion in ((ROLLER, "translating"), (SWINGING, "oscillating")):
+        assert only(changed(f'"{motion}"', '"sliding"', text)).key == "follower.motion"
+
+
 def test_a_program_that_ends_elsewhere_is_refused() -> None:
     text = changed('"cycloidal"\nangle_deg = 90\n[', '"cycloidal"\nangle_deg = 90\nlift_mm = 9\n[')
     problem = only(text)

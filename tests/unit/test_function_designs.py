@@ -6,6 +6,8 @@ import copy
 import json
 import math
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -119,6 +121,12 @@ REFUSED: dict[str, tuple[str, str, Any, Lobes]] = {
     "negative": ("ratio", "cos(phi1)", np.cos, ONE_LOBE),
     "not finite": ("r1", "1/(phi1 - pi)", lambda x: 1 / (x - np.pi), ONE_LOBE),
     "not repeated": ("ratio", "1 + 0.1*cos(phi1)", lambda x: 1 + 0.1 * np.cos(x), Lobes(2, 1)),
+    "another second lobe": (
+        "r1",
+        "3 + 0.1*cos(2*phi1) + 0.1*exp(-((phi1 - 4.5)*9)**2)",
+        lambda x: 3 + 0.1 * np.cos(2 * x) + 0.1 * np.exp(-(((x - 4.5) * 9) ** 2)),
+        Lobes(2, 1),
+    ),
 }
 
 
@@ -177,6 +185,7 @@ def test_a_document_takes_functions_and_none_gives_them() -> None:
     document = {"kind": "gear-pair", "name": "mine", "pair": {"teeth": [40, 40], "module_mm": 2.0}}
     design = gc.design({**document, "law": {"type": "formula", "phi2": (swing, Bent(0.6))}})
     assert design.law.phi2[0] is swing
+    assert isinstance(design.law.phi2, tuple)
     for made, key in ((pair(Formula(r1=swing)), "law.r1"), (cam(swing), "motion[0].formula")):
         with pytest.raises(DesignError, match=r"Python function \S+swing cannot be written to a"):
             made.to_dict()
@@ -192,7 +201,7 @@ def test_a_document_takes_functions_and_none_gives_them() -> None:
         (Formula(phi2=3.0), "law.phi2", "3.0 is not text"),  # pyright: ignore
         (Formula(phi2=(swing, 1)), "law.phi2", "is not text"),  # pyright: ignore
         (Formula(phi2=()), "law.phi2", "is not text"),
-        (Formula(phi2=swing, r1=swing), "law.r1", "a Python function: phi2 and r1 are given"),
+        (Formula(phi2=swing, r1=lambda x: x), "law.r1", "a Python function: phi2 and r1 are given"),
         (Ellipse(eccentricity=swing), "law.eccentricity", "is not a number"),  # pyright: ignore
     ],
 )
@@ -240,6 +249,50 @@ def test_the_error_of_a_function_is_told() -> None:
     told = gc.build(cam(lambda x: x * x * (3 - 2 * x))).facts["accuracy"]
     assert "the lift" in told["how"]["profile_mm"]
     assert 0.0 < told["profile_mm"] < 1e-12
+
+
+@pytest.mark.parametrize("name", ["phi2", "ratio", "r1"])
+def test_the_error_of_a_function_that_scatters_is_that_of_its_values(name: str) -> None:
+    small = 1e-12
+    line = {"phi2": 1.0, "ratio": 0.0, "r1": 0.0}[name]
+
+    def given(phi1: Any) -> Any:
+        smooth = line * phi1 + (1.0 - line) * 3.0 + 0.2 * np.sin(phi1)
+        return smooth + small * np.sin(1.7e12 * phi1)
+
+    fields: Any = {name: given}
+    law = Formula(**fields).build(ONE_LOBE, DEFAULT)
+    size = {"phi2": 1.0, "ratio": TURN / 3.0, "r1": TURN * 4.0 / 6.0}[name]
+    assert 0.5 * small * size < law.function_error < 2.0 * small * size
+    assert law.function_error < law.error
+
+
+def test_a_motion_may_be_run_backwards() -> None:
+    given: dict[str, Any] = {"x_from": 2.0, "x_to": 0.0, "driver_travel": 3.0, "driven_travel": 2.0}
+    one = MotionLaw(y=lambda x: x + 0.2 * np.tanh(9 * (x - 0.7)), **given)
+    two = MotionLaw(y="x + 0.2*tanh(9*(x - 0.7))", **given)
+    made = [
+        law.build(ONE_LOBE, DEFAULT).derivatives(np.linspace(0.0, 3.0, 91), 2) for law in (one, two)
+    ]
+    for order, (mine, known) in enumerate(zip(*made, strict=True)):
+        np.testing.assert_allclose(mine, known, rtol=0.0, atol=[3e-14, 5e-12, 5e-9][order])
+
+
+def test_a_text_loads_nothing_that_functions_need() -> None:
+    code = (
+        "import sys, gearcam\n"
+        "gearcam.build(gearcam.load('profiles/formula.toml')).law\n"
+        "print('gearcam.laws.formula' in sys.modules, 'gearcam.laws.functions' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["True", "False"]
+
+
+def test_remedies_keep_the_function() -> None:
+    design = pair(Formula(phi2=swing), teeth=(18, 18))
+    found: Any = gearcam.remedies(gc.build(design)).found
+    assert found
+    assert all(remedy.design.law.phi2 is swing for remedy in found)
 
 
 def test_a_function_that_fails_is_told_with_its_angle() -> None:

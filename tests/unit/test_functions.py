@@ -130,10 +130,12 @@ def test_a_function_is_called_with_arrays_and_never_again() -> None:
 
     def counted(x: np.ndarray) -> np.ndarray:
         calls.append(x.size)
-        x += 0.0  # its own copy
-        return x - 0.5 * np.sin(x)
+        x -= 0.5 * np.sin(x)  # its own copy
+        return x
 
     function = made(counted)
+    (found,) = function(Jet.variable(np.ones(1), 0)).derivatives()[0]
+    assert found == pytest.approx(1.0 - 0.5 * math.sin(1.0), abs=1e-14)
     assert len(calls) <= 5
     assert sum(calls) < 4000
     before = len(calls)
@@ -160,6 +162,7 @@ REFUSED: dict[str, tuple[Functions, str, float, float]] = {
     "a jump of the second derivative": (corner(2), "is not smooth", CORNER, 1e-3),
     "a jump of the third": (corner(3), "is not smooth", CORNER, 0.01),
     "a jump of the fourth": (corner(4), "is not smooth", CORNER, 0.1),
+    "a jump of the fifth": (corner(5), "is not smooth", CORNER, 0.2),
     "a corner on a joint": (lambda x: abs(x - math.pi) ** 3, "is not smooth", math.pi, 1e-9),
     "a root": (np.sqrt, "is not smooth", 0.0, 1e-4),
     "not finite": (lambda x: 1 / (x - math.pi), "is not finite", math.pi, 1e-9),
@@ -207,10 +210,17 @@ def test_what_is_no_smooth_function_is_refused_with_its_place(name: str) -> None
 
 
 def test_scatter_far_below_digits_that_count_is_taken() -> None:
-    function = made(lambda x: np.sin(x) + 3e-14 * np.sin(1e12 * x))
+    function = made(lambda x: np.sin(x) + 3e-14 * np.sin(1.7e12 * x))
     x = np.linspace(0.0, TURN, 101)
     _, _, _, third = function(Jet.variable(x, 3)).derivatives()
     np.testing.assert_allclose(third, -np.cos(x), atol=1e-10)
+
+
+def test_no_wave_hides_between_the_places() -> None:
+    for count in (256, 512, 2048):
+        function = made(lambda x, count=count: 2.0 + 0.1 * np.cos(count * x))
+        found = function(Jet.variable(np.array([0.7]), 0)).derivatives()[0][0]
+        assert found == pytest.approx(2.0 + 0.1 * math.cos(count * 0.7), abs=1e-12)
 
 
 def test_long_series_are_taken_of_harmonics_only() -> None:

@@ -27,8 +27,9 @@ from gearcam.numeric.jets import Jet, composed, harmonics
 if TYPE_CHECKING:
     from gearcam.laws.formula import Axis, Function, Functions
 
-_PLACES: Final = 2049
-"""Places, ends included, at which a function is first asked, and its expansion is compared."""
+_PLACES: Final = 2054
+"""Places, ends included, at which a function is first asked, and its expansion is compared: a prime
+number of steps, so that no wave hides from both these and the samples."""
 
 _SAMPLES: Final = 256
 _MOST_HARMONICS: Final = 96
