@@ -24,7 +24,7 @@ _AXIS: Final = Axis(
     high=1.0,
     place=lambda x: f"{_WHERE}, x = {shown(round(x, 5))}",
     variable=_VARIABLE,
-    remedy='a law of type "table" takes such values: its curve has no corners',
+    remedy='the law "table" takes such values: its curve has no corners',
 )
 _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''")
 
