@@ -167,6 +167,16 @@ def test_a_file_is_refused_with_its_line(tmp_path: Path) -> None:
     assert other is made
 
 
+def test_a_file_with_semicolons_and_decimal_commas_is_told(tmp_path: Path) -> None:
+    made = design(tmp_path)
+    text_of_rows = (tmp_path / "rows.csv").read_text()
+    (tmp_path / "rows.csv").write_text(text_of_rows.replace(",", ";").replace(".", ","))
+    other = read(text(BY_FILE), file=str(tmp_path / "turn.toml"))
+    np.testing.assert_array_equal(lift_of(other, [1.0, 2.0]), lift_of(made, [1.0, 2.0]))
+    told = [one for one in gearcam.build(other).facts.shown() if one.name.startswith("tables")]
+    assert [one.value for one in told] == ["read with semicolons and decimal commas"]
+
+
 def test_both_ways_to_give_a_motion_are_told_where_there_is_none() -> None:
     (problem,) = problems('kind = "cam"\nname = "x"\n' + ROLLER)
     assert "[[motion]] for each phase" in problem.allowed
