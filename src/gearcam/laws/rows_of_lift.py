@@ -160,7 +160,7 @@ def _error(theta: Array, lift: Array) -> float:
     )
     rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max())
     falls = min(max(four / max(two, rounding), 1.0), 2.0**_ORDER)
-    return _BESIDE * two / falls + rounding
+    return float(_BESIDE * two / falls + rounding)
 
 
 def _missed(theta: Array, lift: Array, step: int) -> float:
