@@ -216,6 +216,12 @@ LAWS = {
                 "rises.base",
             },
         ),
+        (
+            "measured_cam",
+            "gears",
+            {"columns", "displacement", "entry", "program", "phases_of_lift"}
+            | {"motion_table", "rows_of_lift", "rises.pieces", "rises.base"},
+        ),
     ],
 )
 def test_a_build_loads_its_kind_and_its_law(

@@ -14,6 +14,8 @@ import gearcam.cams.checks  # noqa: F401  (registers the checks)
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.spec import KIND
 from gearcam.findings import CHECKS, Finding, run_checks
+from gearcam.laws.motion_table import MotionTable
+from gearcam.tolerances import DEFAULT
 from helpers_cams import back, cam, dwell, mechanism, program, rise, there_and_back
 
 STEEP = (60.0, 90.0, 60.0, 150.0)
@@ -355,6 +357,24 @@ def test_a_shock_counts_from_a_billionth_of_the_peak(size: float, speaks: bool) 
     assert bool(findings(made, "hard-shock")) == speaks
 
 
+@pytest.mark.parametrize(("kind", "lever"), [("roller", 1.0), ("swinging roller", 90.0)])
+def test_coarse_rows_are_told(kind: str, lever: float) -> None:
+    """The error that the rows foresee, on the arm, against the chord tolerance."""
+    swings = lever > 1.0
+    theta = np.linspace(0.0, 2 * math.pi, 30)
+    lift = there_and_back("cycloidal", 10.0, swings=swings).lift(theta)
+    table = MotionTable(theta=tuple(theta.tolist()), lift=tuple(lift.tolist()))
+    rows = table.program(DEFAULT, oscillating=swings)
+    for share, speaks in ((1.0 + 1e-9, False), (1.0 - 1e-9, True)):
+        tolerance = share * lever * rows.error
+        made = make_cam(rows, mechanism(kind), tolerance=tolerance)
+        found = findings(made, "coarse-rows")
+        assert bool(found) is speaks
+    assert found[0].value == pytest.approx(lever * rows.error)
+    assert (found[0].limit, found[0].unit, found[0].severity) == (tolerance, "mm", "warning")
+    assert found[0].where == "motion"
+
+
 def test_a_quiet_cam_has_no_findings() -> None:
     made = make_cam(there_and_back("cycloidal", 10.0), mechanism("roller", prime_radius=60.0))
     assert run_checks(KIND, made, {}) == ()
@@ -362,7 +382,9 @@ def test_a_quiet_cam_has_no_findings() -> None:
 
 def test_every_check_of_cams_is_covered() -> None:
     codes = {code for kind, code in CHECKS if kind == KIND}
-    tried = {name.split()[0] for name in EDGES} | {"sharp-profile", "hard-shock", "soft-shock"}
+    tried = {name.split()[0] for name in EDGES} | {
+        *("sharp-profile", "hard-shock", "soft-shock", "coarse-rows")
+    }
     assert codes == tried
     limits = {check.limit[0] for (kind, _), check in CHECKS.items() if kind == KIND and check.limit}
     assert limits == {"pressure_angle", "lost_lift", "profile_radius"}

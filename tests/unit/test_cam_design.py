@@ -19,7 +19,7 @@ from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
 from gearcam.errors import DesignError
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
-from gearcam.kinds.cam.motion import phase_table, rise_table
+from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.commands import with_meshing
 from gearcam.laws.phases_of_lift import (
     PHASES,
@@ -216,6 +216,10 @@ def test_the_template_reads_and_what_it_tells_of_may_be_written(kind: str) -> No
 
 def test_the_template_shows_every_phase_and_every_law() -> None:
     text = template("cam")
+    assert re.search(r'^angle_deg = "rest" +#', text, re.MULTILINE)
+    (part,) = re.findall(r"^# \[motion\]\n(.*?)^$", text, re.MULTILINE | re.DOTALL)
+    for key in (key for known in turn_tables() for key in known.entries):
+        assert re.search(rf"^# (?:{key} = |  or {key}: )", part, re.MULTILINE), key
     for name in PHASES:
         assert re.search(rf'^(# )?type = "{name}" +#', text, re.MULTILINE)
         for key in phase_table(name).entries:

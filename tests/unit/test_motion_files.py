@@ -99,7 +99,7 @@ def test_the_same_from_python(tmp_path: Path) -> None:
     with pytest.raises(DesignError, match=r"motion\.theta_deg\[3\]: .* stands twice"):
         CamDesign(motion=MotionTable(theta=(0.0, 1, 2, 2, 3, 4, 5), lift=(0.0, 1, 2, 3, 4, 3, 1)),
                   **parts)  # fmt: skip
-    with pytest.raises(DesignError, match="motion: is a str"):
+    with pytest.raises(DesignError, match=r"motion: is a str\n.*of tuple or MotionTable or M"):
         CamDesign(motion="rows.csv", **parts)  # pyright: ignore
     function: Any = MotionFormula(lift=lambda x: 5.0 * (1.0 - np.cos(x)))
     by_function = CamDesign(motion=function, **parts)
@@ -165,6 +165,16 @@ def test_a_file_is_refused_with_its_line(tmp_path: Path) -> None:
     assert lift_of(made, 1.0) > 0.0  # read once and never again
     other = made.with_({"name": "other"}) if (tmp_path / "rows.csv").exists() else made
     assert other is made
+
+
+def test_a_file_with_semicolons_and_decimal_commas_is_told(tmp_path: Path) -> None:
+    made = design(tmp_path)
+    text_of_rows = (tmp_path / "rows.csv").read_text()
+    (tmp_path / "rows.csv").write_text(text_of_rows.replace(",", ";").replace(".", ","))
+    other = read(text(BY_FILE), file=str(tmp_path / "turn.toml"))
+    np.testing.assert_array_equal(lift_of(other, [1.0, 2.0]), lift_of(made, [1.0, 2.0]))
+    told = [one for one in gearcam.build(other).facts.shown() if one.name.startswith("tables")]
+    assert [one.value for one in told] == ["read with semicolons and decimal commas"]
 
 
 def test_both_ways_to_give_a_motion_are_told_where_there_is_none() -> None:

@@ -206,6 +206,16 @@ def test_smoothing_finds_the_motion_below_the_noise(name: str) -> None:
     assert rough.peaks[2] > 50.0 * motion.peaks[2]
 
 
+@pytest.mark.parametrize("count", [360, 3600])
+def test_a_smoothed_lift_has_as_many_knots_as_its_waves_need(count: int) -> None:
+    """However many rows there are: pieces, files and times follow the motion."""
+    theta = angles(count, 0.1)
+    found = made(theta, noisy("cycloidal", theta), smoothing_tolerance=0.01)
+    assert 50 < len(found.knots) < 140
+    assert found.error < 1e-4
+    assert found.jumps == ()
+
+
 def test_more_tolerance_gives_less_jerk() -> None:
     theta = angles(360)
     lift = noisy("harmonic", theta)
@@ -279,7 +289,7 @@ def moved(row: int, degrees: float) -> Array:
 
 BAD: dict[str, tuple[Array, Array]] = {
     "few": (THETA[:5], LIFT[:5]),
-    "many": (angles(2001), np.cos(angles(2001))),
+    "many": (angles(3601), np.cos(angles(3601))),
     "below": (moved(0, -5.0), LIFT),
     "above": (moved(11, 361.0), LIFT),
     "falls": (moved(4, 89.0), LIFT),
@@ -293,8 +303,8 @@ BAD: dict[str, tuple[Array, Array]] = {
     "jump": (np.append(THETA, TURN), np.append(LIFT, 0.2)),
 }
 REFUSED = {
-    "few": (None, "has 5 rows", "6 to 2000 rows"),
-    "many": (None, "has 2001 rows", "6 to 2000 rows"),
+    "few": (None, "has 5 rows", "6 to 3600 rows"),
+    "many": (None, "has 3601 rows", "6 to 3600 rows"),
     "below": (0, "the angle is -5 deg", "0 to 360 deg"),
     "above": (11, "the angle is 361 deg", "0 to 360 deg"),
     "falls": (4, "89 deg follows 90 deg", "at least 0.00036 deg"),

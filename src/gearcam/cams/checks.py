@@ -1,4 +1,4 @@
-"""The checks of cams: pressure angles, undercut, shocks, sharp profiles.
+"""The checks of cams: pressure angles, undercut, shocks, sharp profiles, coarse rows.
 
 Importing this room registers them. A check sees a `DiscCam` and yields findings.
 """
@@ -159,4 +159,21 @@ def sharp_profile(cam: DiscCam, limit: float) -> Iterator[Remark]:
     if not cam.corners and convex < limit:
         yield Remark(
             f"The smallest convex radius of the profile is {shown(convex, 4)} mm.", value=convex
+        )
+
+
+@check("coarse-rows", kind=KIND, unit="mm")
+def coarse_rows(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a motion that is known less well than the profile is cut.
+
+    Looks at: the estimated error of the lift between the rows of its table.
+    """
+    error = cam.program.error * cam.mechanism.lever
+    if error > cam.tolerance:
+        yield Remark(
+            f"Between the rows of its table the lift is known to {shown(error, 3)} mm, the profile "
+            f"is cut to {shown(cam.tolerance, 3)} mm: the rows are coarse, or they scatter.",
+            "motion",
+            error,
+            limit=cam.tolerance,
         )

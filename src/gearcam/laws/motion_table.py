@@ -30,9 +30,9 @@ Problem = tuple[str, int | None, str, str]
 _RULE: Final = "file, or theta_deg with lift_mm or lift_deg"
 
 _FEWEST: Final = 6
-_MOST: Final = 2000
-"""Rows: fewer make no curve of quintics, more are finer than a fifth of a degree, where rounding
-leaves smoothing no digits."""
+_MOST: Final = 3600
+"""Rows: fewer make no curve of quintics, more are finer than a tenth of a degree, where rounding
+leaves smoothing too few digits (see `gearcam.numeric.least_jerk.smoothed_ring`)."""
 
 _NARROWEST: Final = 1e-6 * TURN
 """Least step of the angle, rad: a second of arc; the place of a row in it is known to 1e-10."""

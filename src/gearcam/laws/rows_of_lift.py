@@ -35,6 +35,10 @@ from gearcam.numeric.piecewise import Piecewise, extremes, piecewise
 _NEAR: Final = 0.01
 """The search for the cutoff stops where it is known to this part."""
 
+_PER_WAVE: Final = 6
+"""Rows that are kept of a smoothed lift in a wave at its cutoff: what the curve through them misses
+is below a hundredth of the tolerance, and counted."""
+
 _KINDS: Final = {1: "rise", -1: "return", 0: "dwell"}
 
 _DWELL: Final = 2
@@ -69,23 +73,25 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
     Returns
     -------
     Program
-        With a knot at each row and at the ends of the turn.
+        With knots at the ends of the turn and at the rows; of a smoothed lift at as many of them
+        as its waves need.
     """
-    values, cutoff, deviation = lift, 0.5 * len(theta), None
+    values, cutoff, deviation, step = lift, 0.5 * len(theta), None, 1
     if tolerance:
         apart = np.append(spread, np.zeros(len(theta) - 1))
         values, cutoff = _smoothed(theta, lift, apart, tolerance)
+        step = _step(theta, cutoff)
         off = values - lift
         far = int(np.argmax(np.abs(off) + apart))
         value = math.copysign(abs(off[far]) + apart[far], off[far])
         deviation = Deviation(theta=float(theta[far]), value=value)
-    curve = _curve(theta, values)
+    curve = _curve(theta[::step], values[::step])
     level = max(tolerance, TYPED * float(np.ptp(lift)))
     return Program(
         lift=curve,
         stretches=stretches_of(curve, theta, values, level, cutoff),
         cuts=curve.knots,
-        error=_error(theta, values),
+        error=_error(theta[::step], values[::step]),
         deviation=deviation,
     )
 
@@ -96,7 +102,9 @@ def _smoothed(theta: Array, lift: Array, apart: Array, tolerance: float) -> tupl
     found, cutoff = lift, high
     while high > low * (1.0 + _NEAR):
         middle = math.sqrt(low * high)
-        values = smoothed_ring(theta, lift, TURN, middle)
+        values, step = smoothed_ring(theta, lift, TURN, middle), _step(theta, middle)
+        if step > 1:
+            values = _between(theta[::step], values[::step], theta)
         if float((np.abs(values - lift) + apart).max()) <= tolerance:
             found, cutoff, high = values, middle, middle
         else:
@@ -104,11 +112,32 @@ def _smoothed(theta: Array, lift: Array, apart: Array, tolerance: float) -> tupl
     return found, cutoff
 
 
-def _curve(theta: Array, lift: Array) -> Piecewise:
-    """Return the closed curve of quintics through rows, cut at the ends of the turn."""
+def _step(theta: Array, cutoff: float) -> int:
+    """Return of how many rows one is enough to tell waves at a cutoff."""
+    return max(1, int(len(theta) / (_PER_WAVE * cutoff)))
+
+
+def _quintics(theta: Array, lift: Array) -> tuple[Array, tuple[Array, Array]]:
+    """Return the knots of the closed curve through rows, the last a turn on, and its coefficients.
+
+    These are of the distance from the knots before, and from those behind (see `coefficients`).
+    """
     x, y = np.append(theta, theta[0] + TURN), np.append(lift, lift[0])
     slopes = ring_slopes(theta, lift, TURN)
-    both = coefficients(x, y, np.concatenate([slopes, slopes[:1]]), ring=True)
+    return x, coefficients(x, y, np.concatenate([slopes, slopes[:1]]), ring=True)
+
+
+def _between(theta: Array, lift: Array, places: Array) -> Array:
+    """Return the closed curve through rows at places, at most a turn behind the first row."""
+    x, (left, _) = _quintics(theta, lift)
+    index = np.searchsorted(theta, places, side="right") - 1
+    distance = (places - x[index])[:, None]
+    return (left[index] * distance ** np.arange(left.shape[1])).sum(axis=1)
+
+
+def _curve(theta: Array, lift: Array) -> Piecewise:
+    """Return the closed curve of quintics through rows, cut at the ends of the turn."""
+    x, both = _quintics(theta, lift)
     rows = zip(*(side.tolist() for side in both), x[:-1].tolist(), x[1:].tolist(), strict=True)
     pieces = [from_both_ends(*row) for row in rows]
     if theta[0] == 0.0:
@@ -131,20 +160,15 @@ def _error(theta: Array, lift: Array) -> float:
     )
     rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max())
     falls = min(max(four / max(two, rounding), 1.0), 2.0**_ORDER)
-    return _BESIDE * two / falls + rounding
+    return float(_BESIDE * two / falls + rounding)
 
 
 def _missed(theta: Array, lift: Array, step: int) -> float:
     """Return by how much a curve through every `step`-th row misses those in the middle between."""
     theta = theta[0] + (theta - theta[0]) % TURN
-    x, y = theta[::step], lift[::step]
-    slopes = ring_slopes(x, y, TURN)
-    ends = np.append(x, x[0] + TURN), np.append(y, y[0]), np.concatenate([slopes, slopes[:1]])
-    left, _ = coefficients(*ends, ring=True)
-    between = np.arange(step // 2, len(theta), step)
-    distance = (theta[between] - x[: len(between)])[:, None]
-    found = (left[: len(between)] * distance ** np.arange(6)).sum(axis=1)
-    return float(np.abs(found - lift[between]).max())
+    middle = slice(step // 2, None, step)
+    found = _between(theta[::step], lift[::step], theta[middle])
+    return float(np.abs(found - lift[middle]).max())
 
 
 def stretches_of(

@@ -103,6 +103,8 @@ def smoothed_ring(x: Array, y: Array, period: float, cutoff: float) -> Array:
     Returns
     -------
     (n,) array
+        Its rounding grows with the sixth power of the points in a wave at the cutoff; it is smooth,
+        a change of what smoothing would make, below 1e-17*(n/cutoff)**6 of the largest value.
     """
     left, right, beside = _forms(_widths(x, period))
     diagonal, mean = left + np.roll(right, 1, axis=0), y.mean()

@@ -121,7 +121,7 @@ class CamDesign(Design):
 
     def _wanted(self) -> Iterator[Wanted]:
         if not isinstance(self.motion, tuple):
-            yield "motion", self.motion, whole_turns()
+            yield "motion", self.motion, (tuple, *whole_turns())
             return
         for number, phase in enumerate(self.motion):
             yield f"motion[{number}]", phase, tuple(PHASES.values())

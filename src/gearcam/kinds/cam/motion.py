@@ -119,12 +119,21 @@ def _oscillating(follower: Any) -> bool | None:
     return motion == "oscillating" if motion in ("translating", "oscillating") else None
 
 
-def whole_turns() -> tuple[type[MotionTable], type[MotionFormula]]:
-    """Return the classes of motions that tell the whole turn, loaded only where there is one."""
-    from gearcam.laws.motion_formula import MotionFormula
-    from gearcam.laws.motion_table import MotionTable
+def _by_rows() -> type[MotionTable]:
+    from gearcam.laws.motion_table import MotionTable  # only where there is one
 
-    return MotionTable, MotionFormula
+    return MotionTable
+
+
+def _by_formula() -> type[MotionFormula]:
+    from gearcam.laws.motion_formula import MotionFormula  # only where there is one
+
+    return MotionFormula
+
+
+def whole_turns() -> tuple[type[MotionTable], type[MotionFormula]]:
+    """Return the classes of motions that tell the whole turn."""
+    return _by_rows(), _by_formula()
 
 
 def turn_tables() -> tuple[Table, Table]:
@@ -136,8 +145,8 @@ def turn_tables() -> tuple[Table, Table]:
 def _examine_turn(
     raw: Mapping[str, Any], oscillating: bool | None, found: Examined, home: Callable[[str], str]
 ) -> None:
-    by_formula = "lift" in raw
-    known, owner = turn_tables()[by_formula], whole_turns()[by_formula]
+    owner = _by_formula() if "lift" in raw else _by_rows()
+    known = table_of(TITLE, owner)
     faults = list(faults_of(known, raw, home=home))
     other = list(_wrong_kind(known, raw, (TITLE,), oscillating))
     found.faults += [*faults, *other]
