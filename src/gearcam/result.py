@@ -111,14 +111,57 @@ class Result(ABC):
     @cached_property
     def facts(self) -> Facts:
         """What is known of the result, under the names that docs/conventions.md explains."""
-        return self._facts({})
+        return self.facts_with({})
 
-    def _facts(self, measured: Mapping[str, Any]) -> Facts:
+    def facts_with(self, measured: Mapping[str, Any]) -> Facts:
+        """Return the facts with what was `measured` on files or by studies, by group."""
         made = KINDS[self.design.kind].room("facts").facts(self, measured)
         columns = sys.modules.get("gearcam.laws.columns")  # not loaded where no design read a file
         tables = columns.tables_in(self.design) if columns else ()
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         return made.with_group("tables", [{"note": one} for one in notes if one.value])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what ``summary.json`` holds, but for the files: facts, findings, design, versions.
+
+        Plain numbers, texts, lists and dictionaries, in the units that the names say. What cannot
+        be made raises `InfeasibleError`.
+        """
+        return self.document(self.facts, self.findings)
+
+    def document(
+        self, facts: Facts, findings: Sequence[Finding], files: Mapping[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """Return a summary.
+
+        Parameters
+        ----------
+        facts : Facts
+            What is known.
+        findings : sequence of Finding
+            What checks found.
+        files : mapping, optional
+            What it says of files.
+
+        Returns
+        -------
+        dict
+            As JSON holds it.
+        """
+        return tree(
+            {
+                "format": FORMAT,
+                "name": self.design.name,
+                "kind": self.design.kind,
+                **facts.document,
+                "hash": self.design_hash,
+                **(files or {}),
+                "findings": [finding.as_dict() for finding in findings],
+                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
+                "versions": _versions(),
+                "design": document_of(self.design),
+            }
+        )
 
     def files(self, kind: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:
         """Return the files of one kind.
@@ -262,25 +305,12 @@ class Result(ABC):
 
         from gearcam.export.write import SUMMARY, write_all
 
-        facts = self._facts(measured) if measured else self.facts
+        facts = self.facts_with(measured) if measured else self.facts
         made = self.design_hash
         hashes = {name: made if name in contents else old for name, old in there.items()}
         stale = {name: old for name, old in hashes.items() if old != made}
-        summary = tree(
-            {
-                "format": FORMAT,
-                "name": self.design.name,
-                "kind": self.design.kind,
-                **facts.document,
-                "hash": made,
-                "files": {name: made for name in hashes if name not in stale},
-                **({"stale": stale} if stale else {}),
-                "findings": [finding.as_dict() for finding in findings],
-                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
-                "versions": _versions(),
-                "design": document_of(self.design),
-            }
-        )
+        about = {"files": {name: made for name in hashes if name not in stale}}
+        summary = self.document(facts, findings, {**about, **({"stale": stale} if stale else {})})
         text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
         everything = {**contents, SUMMARY: (text + "\n").encode()}
         folder = Path(directory) / self.design.name

@@ -263,6 +263,11 @@ class Wall(PitchMotion):
             )
         return made
 
+    @property
+    def outline(self) -> Array:
+        """Vertices of the profile before clearance, (n, 2), mm, counter-clockwise."""
+        return self.contour.vertices
+
     @cached_property
     def pitch_contour(self) -> Contour:
         """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""

@@ -13,6 +13,7 @@ from gearcam.gears.bound import demand_cutters
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
+from gearcam.gears.flank_points import flank_points
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import RACK, Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
@@ -20,8 +21,10 @@ from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import Lobes
 from gearcam.numerals import shown
+from gearcam.numeric.arguments import whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.columns import Columns
 from gearcam.tolerances import Tolerances
 
 FINEST = 1e-9
@@ -32,6 +35,9 @@ _USUAL = 1e-3
 
 _PARTS = 1000.0
 """Parts of a module of which one is the default where that is finer."""
+
+FLANK_POINTS = 17
+"""Points on each flank where nobody says how many."""
 
 COARSEST = 1.0 / 50.0
 """Coarsest tolerance of an outline, in modules: beyond it teeth are no longer teeth."""
@@ -144,6 +150,37 @@ class Gear:
     def outline(self) -> Array:
         """Vertices of the outline, (n, 2), mm, counter-clockwise, in the wheel's frame."""
         return self.profile.points
+
+    @cached_property
+    def flanks(self) -> Columns:
+        """Points on the flanks as made, `FLANK_POINTS` on each (see `flank_points`)."""
+        return self.flank_points(FLANK_POINTS)
+
+    def flank_points(self, count: int) -> Columns:
+        """Return points on the exact flanks of all whole teeth as made.
+
+        Parameters
+        ----------
+        count : int
+            Points on each flank, from root to tip, both ends included: 2 or more.
+
+        Returns
+        -------
+        Columns
+            ``tooth`` from 1; ``side``, +1 where s is larger, else -1; ``point`` from 1 at the root;
+            ``x_mm``, ``y_mm`` in the wheel's frame; ``nx``, ``ny``, the outward unit normal of the
+            metal; ``curvature_per_mm``, positive where the flank is convex, infinite at a cusp;
+            ``reach_mm``, the rack's roll from the pitch curve, positive towards the tip;
+            ``phi1_deg``, the driver angle at which the point touches as designed. By tooth, then
+            side (+1 first), then from root to tip. What clearance, rounding or undercut takes
+            away has no points.
+
+        Raises
+        ------
+        DesignError
+            If `count` is no whole number, or less than 2.
+        """
+        return flank_points(self.profile, whole("count", count, 2))
 
     @cached_property
     def least_radius(self) -> float:

@@ -48,6 +48,11 @@ class Body(Protocol):
         ...
 
     @property
+    def outline(self) -> Array:
+        """Vertices of that outline as made, (n, 2), mm, counter-clockwise, in the part's frame."""
+        return self.contour.vertices
+
+    @property
     def tolerance(self) -> float:
         """Chord tolerance of everything on it, mm."""
         ...
@@ -182,6 +187,11 @@ class Part:
     def contour(self) -> Contour:
         """The outline, of a stepped part the lowest."""
         return self.contours[0]
+
+    @property
+    def outline(self) -> Array:
+        """Vertices of that outline as made, (n, 2), mm, counter-clockwise, in the part's frame."""
+        return self.contour.vertices
 
     @property
     def tolerance(self) -> float:

@@ -74,7 +74,7 @@ def _run(
     result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
 ) -> Written:
     _ = options  # they are in the design
-    return result.mesh(output, progress=progress)
+    return result.mesh(progress).write(output)
 
 
 COMMANDS: Final = (
