@@ -37,7 +37,7 @@ _UNEVEN = 0.05
 _MARGIN = 0.97
 """Share of the tolerance that a measured error may take: between its places it may be larger."""
 
-_FEW = 0.08
+_FEW = 0.12
 """Share of chords that may be halved; with more of them the vertices are spread anew."""
 
 _GRAIN = 1e-3
