@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.designs.design import Design, document_of, hash_of
 from gearcam.designs.kind import KINDS
@@ -24,8 +24,14 @@ from gearcam.errors import DesignError, Problem
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.numerals import tree
+from gearcam.numeric.arguments import one_of
 from gearcam.tolerances import DEFAULT, Tolerances
 from gearcam.version import __version__
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from gearcam.charts import Chart
 
 FORMAT: Final = 3
 """Version of the summary's layout."""
@@ -188,6 +194,61 @@ class Result(ABC):
         _demand_formats(self.design, (kind,))
         makers = KINDS[self.design.kind].room("files").FILES
         return makers[kind](self, {} if measured is None else measured)
+
+    @property
+    def charts(self) -> tuple[str, ...]:
+        """The names of the charts of designs of this kind."""
+        return tuple(KINDS[self.design.kind].room("charts").CHARTS)
+
+    def chart(self, name: str) -> Chart:
+        """Return a chart as data.
+
+        Parameters
+        ----------
+        name : str
+            One of `charts`.
+
+        Returns
+        -------
+        Chart
+            Lines and limits with the labels of its axes.
+
+        Raises
+        ------
+        DesignError
+            If there is no such chart.
+        InfeasibleError
+            If what it tells of cannot be made.
+        """
+        return (
+            KINDS[self.design.kind].room("charts").CHARTS[one_of("name", name, self.charts)](self)
+        )
+
+    def plot(self, name: str, ax: Axes | None = None) -> Axes:
+        """Draw a chart with matplotlib.
+
+        Parameters
+        ----------
+        name : str
+            One of `charts`.
+        ax : Axes, optional
+            Where; a new figure where left out.
+
+        Returns
+        -------
+        Axes
+            With labels, units, limits and legend.
+
+        Raises
+        ------
+        DesignError
+            If there is no such chart.
+        InfeasibleError
+            If what it tells of cannot be made.
+        MissingExtraError
+            If matplotlib is not installed.
+        """
+        return self.chart(name).draw(ax)
 
     def check(self, directory: str | Path = "output") -> Written:
         """Run the checks and write the summary only; files of an earlier build stay.
