@@ -201,17 +201,7 @@ class Result(ABC):
         return tuple(KINDS[self.design.kind].room("charts").CHARTS)
 
     def chart(self, name: str) -> Chart:
-        """Return a chart as data.
-
-        Parameters
-        ----------
-        name : str
-            One of `charts`.
-
-        Returns
-        -------
-        Chart
-            Lines and limits with the labels of its axes.
+        """Return the chart `name`, one of `charts`, as data: lines and limits, labels of the axes.
 
         Raises
         ------
@@ -220,33 +210,13 @@ class Result(ABC):
         InfeasibleError
             If what it tells of cannot be made.
         """
-        return (
-            KINDS[self.design.kind].room("charts").CHARTS[one_of("name", name, self.charts)](self)
-        )
+        make = KINDS[self.design.kind].room("charts").CHARTS[one_of("name", name, self.charts)]
+        return make(self)
 
     def plot(self, name: str, ax: Axes | None = None) -> Axes:
-        """Draw a chart with matplotlib.
+        """Draw the chart `name` with matplotlib on `ax`, or on a new figure, and return its axes.
 
-        Parameters
-        ----------
-        name : str
-            One of `charts`.
-        ax : Axes, optional
-            Where; a new figure where left out.
-
-        Returns
-        -------
-        Axes
-            With labels, units, limits and legend.
-
-        Raises
-        ------
-        DesignError
-            If there is no such chart.
-        InfeasibleError
-            If what it tells of cannot be made.
-        MissingExtraError
-            If matplotlib is not installed.
+        Raises what `chart` raises, and `MissingExtraError` where matplotlib is not installed.
         """
         return self.chart(name).draw(ax)
 
