@@ -7,7 +7,6 @@ readers nor files: what facts and files are made from it the folder of its kind 
 
 from __future__ import annotations
 
-import platform
 import sys
 import time
 from abc import ABC, abstractmethod
@@ -26,7 +25,7 @@ from gearcam.findings import Finding
 from gearcam.numerals import tree
 from gearcam.numeric.arguments import one_of
 from gearcam.tolerances import DEFAULT, Tolerances
-from gearcam.version import __version__
+from gearcam.version import versions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -164,7 +163,7 @@ class Result(ABC):
                 **(files or {}),
                 "findings": [finding.as_dict() for finding in findings],
                 "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
-                "versions": _versions(),
+                "versions": versions(),
                 "design": document_of(self.design),
             }
         )
@@ -201,7 +200,16 @@ class Result(ABC):
         return tuple(KINDS[self.design.kind].room("charts").CHARTS)
 
     def chart(self, name: str) -> Chart:
-        """Return the chart `name`, one of `charts`, as data: lines and limits, labels of the axes.
+        """Return a chart as data: lines and limits, with the labels of the axes.
+
+        Parameters
+        ----------
+        name : str
+            One of `charts`.
+
+        Returns
+        -------
+        Chart
 
         Raises
         ------
@@ -214,9 +222,25 @@ class Result(ABC):
         return make(self)
 
     def plot(self, name: str, ax: Axes | None = None) -> Axes:
-        """Draw the chart `name` with matplotlib on `ax`, or on a new figure, and return its axes.
+        """Draw a chart with matplotlib and return its axes.
 
-        Raises what `chart` raises, and `MissingExtraError` where matplotlib is not installed.
+        Parameters
+        ----------
+        name : str
+            One of `charts`.
+        ax : Axes, optional
+            Where; a new figure where left out.
+
+        Returns
+        -------
+        Axes
+
+        Raises
+        ------
+        DesignError, InfeasibleError
+            As `chart` does.
+        MissingExtraError
+            If matplotlib is not installed.
         """
         return self.chart(name).draw(ax)
 
@@ -371,13 +395,3 @@ def _demand_formats(design: Design, kinds: Sequence[str]) -> None:
     ]
     if problems:
         raise DesignError(problems)
-
-
-def _versions() -> dict[str, str]:
-    """Return versions of what made the numbers: the program, Python, libraries loaded so far."""
-    found = {"gearcam": __version__, "python": platform.python_version()}
-    for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
-        module = sys.modules.get(name)
-        if module is not None and hasattr(module, "__version__"):
-            found[name] = str(module.__version__)
-    return found

@@ -100,6 +100,32 @@ def test_the_roller_limits_the_pitch_curve():
     assert limits["roller, convex pitch curve"] == pytest.approx(
         1.0 / design.follower.roller_radius
     )
+    # a wire of 0.3 mm does not get into a concave place that bends more
+    assert limits["tool at hand, concave profile"] == pytest.approx(-1.0 / 0.15)
+
+
+def test_pressure_angles_are_held_against_the_limit_on_both_sides():
+    assert [one.value for one in chart(CAM, "pressure_angle").limits] == pytest.approx([30, -30])
+
+
+def test_an_undercut_profile_is_drawn_as_far_as_the_chart_goes():
+    pitch, profile = chart(PAIR.with_name("undercut_cam.toml"), "curvature").lines
+    # it bends without limit where it turns back: nothing is drawn there, and no bridge
+    assert np.isnan(profile.y).any()
+    assert not np.isnan(pitch.y).any()
+    assert profile.y[np.isfinite(profile.y)].min() < -0.2 < 0.3 < np.nanmax(profile.y)
+    assert not (profile.y == 0.0).any()
+
+
+def test_charts_of_several_lobes_repeat():
+    law = {"type": "phases", "knots_deg": [0, 70, 180], "ratios": [2.4, "solve", 2.4]}
+    pair = {"module_mm": 2, "teeth": [72, 36]}
+    made = gearcam.design({"kind": "gear-pair", "name": "twice", "law": law, "pair": pair})
+    line = gearcam.build(made).chart("pressure_angle").lines[0]
+    first = line.x <= 180.0
+    later = np.interp(line.x[first] + 180.0, line.x, line.y)
+    assert later == pytest.approx(line.y[first], abs=1e-3)
+    assert np.ptp(line.y) > 10.0
 
 
 def test_a_pair_of_teeth_is_one_line_of_sliding_without_bridges():
@@ -116,7 +142,7 @@ def test_far_limits_are_told_not_drawn():
     line = Line(label="values", x=np.arange(3.0), y=np.array([0.0, 1.0, 2.0]))
     limits = (Limit(label="near", value=3.0), Limit(label="far", value=100.0))
     ax = Chart(title="t", x="x", y="y", lines=(line,), limits=limits).draw()
-    assert ax.get_ylim()[1] < 4.0
+    assert 3.0 < ax.get_ylim()[1] < 4.0
     legend = ax.get_legend()
     assert legend is not None
     told = [text.get_text() for text in legend.get_texts()]
