@@ -10,32 +10,41 @@ from __future__ import annotations
 import platform
 import sys
 import time
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.designs.design import Design, document_of, hash_of
 from gearcam.designs.kind import KINDS
-from gearcam.errors import DesignError, Problem
+from gearcam.display import Brief, Displayed
+from gearcam.errors import DesignError, GearcamError, Problem
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.numerals import tree
 from gearcam.tolerances import DEFAULT, Tolerances
 from gearcam.version import __version__
 
+if TYPE_CHECKING:
+    from trimesh import Trimesh
+
+    from gearcam.parts.body import Part
+
 FORMAT: Final = 3
 """Version of the summary's layout."""
+
+PICTURE: Final = "svg"
+"""The kind of file that is a picture."""
 
 Progress = Callable[[str, int, int], None]
 """Called with a stage's name, the stages done and their number."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Written:
+class Written(Brief):
     """What a command has written.
 
     Parameters
@@ -65,7 +74,7 @@ class Written:
     complete: bool = True
 
 
-class Result(ABC):
+class Result(Displayed):
     """What comes of a design, computed on demand.
 
     Parameters
@@ -102,6 +111,43 @@ class Result(ABC):
     @abstractmethod
     def findings(self) -> tuple[Finding, ...]:
         """What the checks found: errors first."""
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """What is made, as parts with all that is ordered; none where a kind has none."""
+        return ()
+
+    @cached_property
+    def solids(self) -> dict[str, Trimesh]:
+        """The parts as closed meshes of trimesh by name, mm, each in its own frame.
+
+        From z = 0 to the width, hubs beyond; what cannot be made raises `InfeasibleError`.
+        """
+        from gearcam.export.mesh import trimeshes
+        from gearcam.export.shared import meshes
+
+        return trimeshes(meshes(self.parts, {}))
+
+    def picture(self) -> str:
+        """Return the picture of the file kind ``svg``, or a refusal in words; none without it."""
+        if PICTURE not in KINDS[self.design.kind].formats:
+            return ""
+        try:
+            (data,) = self.files(PICTURE).values()
+        except GearcamError as error:
+            from gearcam.markup import refusal_picture
+
+            return refusal_picture(self.design.name, error)
+        return data.decode()
+
+    def _repr_html_(self) -> str:
+        try:
+            _ = self.facts, self.findings
+        except GearcamError as error:
+            from gearcam.markup import refusal
+
+            return refusal(self.design.name, error)
+        return super()._repr_html_()
 
     @cached_property
     def design_hash(self) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from gearcam.display import Displayed
 from gearcam.facts import Facts
 from gearcam.findings import Finding
 from gearcam.numeric.columns import Columns
@@ -17,7 +18,7 @@ from gearcam.result import Result, Written
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Study:
+class Study(Displayed):
     """What a study of a result has found.
 
     Parameters
@@ -57,6 +58,10 @@ class Study:
     def facts(self) -> Facts:
         """What is known of the result with what was found (see docs/conventions.md)."""
         return self.result.facts_with(self.measured)
+
+    def picture(self) -> str:
+        """Return nothing: a study is told in numbers."""
+        return ""
 
     def to_dict(self) -> dict[str, Any]:
         """Return what `summary.json` tells of it, but for files (see `Result.to_dict`)."""

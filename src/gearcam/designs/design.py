@@ -76,6 +76,17 @@ class Design:
     def __repr__(self) -> str:
         return f'<{type(self).__name__} "{self.name}">'
 
+    def _repr_svg_(self) -> str | None:
+        return self._built._repr_svg_()
+
+    def _repr_html_(self) -> str:
+        return self._built._repr_html_()
+
+    @property
+    def _built(self) -> Any:
+        """Its result: a picture of a design is one of what comes of it."""
+        return KINDS[self.kind].room("build").build(self)
+
     @cached_property
     def _value(self) -> str:
         """Everything that it asks for, with the rows of CSV files instead of their names."""
