@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from gearcam.designs.listing import Listed
     from gearcam.errors import InfeasibleError
     from gearcam.findings import Finding
-    from gearcam.result import Written
+    from gearcam.written import Written
 
 DEBUG: Final = "GEARCAM_DEBUG"
 """The variable that asks for tracebacks."""

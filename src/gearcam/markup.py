@@ -161,7 +161,7 @@ def _steps(chain: Any) -> str:
     return " ".join(f"{_number(x)} {_number(-y)}" for x, y in chain.tolist())
 
 
-def page(drawn: str, facts: Facts) -> str:
+def page(drawn: str, facts: Facts, remarks: Sequence[str] = ()) -> str:
     """Return a picture, SVG, and facts as HTML: those that are always shown, or all of few.
 
     Parameters
@@ -170,6 +170,8 @@ def page(drawn: str, facts: Facts) -> str:
         May be empty.
     facts : Facts
         What is known.
+    remarks : sequence of str
+        What stands below as a list.
 
     Returns
     -------
@@ -181,6 +183,8 @@ def page(drawn: str, facts: Facts) -> str:
     if facts.headline:
         parts.append(f"<p><b>{escape(', '.join(facts.headline))}</b></p>")
     parts.append(_table(first or every))
+    if remarks:
+        parts.append(f"<ul>{''.join(f'<li>{escape(one)}</li>' for one in remarks)}</ul>")
     if first and len(every) > len(first):
         more = f"<summary>all {len(every)} facts, by name</summary>{_table(every, named=True)}"
         parts.append(f"<details>{more}</details>")
@@ -207,7 +211,11 @@ def _image(drawn: str) -> str:
 
 
 def _table(rows: Sequence[NamedFact], *, named: bool = False) -> str:
-    cells = [(one.name if named else one.meaning, one.text, one.limit, one.place) for one in rows]
+    cells = [
+        (one.name if named else one.meaning, one.text, one.limit, one.place)
+        for one in rows
+        if one.text
+    ]
     used = [any(column) for column in zip(*cells, strict=True)]
     lines = (
         "".join(

@@ -7,26 +7,24 @@ readers nor files: what facts and files are made from it the folder of its kind 
 
 from __future__ import annotations
 
-import platform
 import sys
 import time
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from gearcam.designs.design import Design, document_of, hash_of
+from gearcam.designs.design import document_of, hash_of
 from gearcam.designs.kind import KINDS
-from gearcam.display import Brief, Displayed
-from gearcam.errors import DesignError, GearcamError, Problem
+from gearcam.display import Displayed
+from gearcam.errors import GearcamError
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.numerals import tree
 from gearcam.tolerances import DEFAULT, Tolerances
-from gearcam.version import __version__
+from gearcam.written import Written, demand_formats, versions
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -41,37 +39,6 @@ PICTURE: Final = "svg"
 
 Progress = Callable[[str, int, int], None]
 """Called with a stage's name, the stages done and their number."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Written(Brief):
-    """What a command has written.
-
-    Parameters
-    ----------
-    directory : Path
-        The folder.
-    files : tuple of str
-        The files written, in order.
-    removed : tuple of str
-        Files of the previous build that this one does not write.
-    summary : dict
-        The content of ``summary.json``.
-    facts : Facts
-        What the summary is told from.
-    findings : tuple of Finding
-        What the checks found.
-    complete : bool
-        Whether nothing was interrupted.
-    """
-
-    directory: Path
-    files: tuple[str, ...]
-    removed: tuple[str, ...]
-    summary: dict[str, Any]
-    facts: Facts
-    findings: tuple[Finding, ...]
-    complete: bool = True
 
 
 class Result(Displayed):
@@ -142,12 +109,15 @@ class Result(Displayed):
 
     def _repr_html_(self) -> str:
         try:
-            _ = self.facts, self.findings
+            facts, findings = self.facts, self.findings
         except GearcamError as error:
             from gearcam.markup import refusal
 
             return refusal(self.design.name, error)
-        return super()._repr_html_()
+        from gearcam.markup import page
+
+        told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
+        return page(self.picture(), facts, told)
 
     @cached_property
     def design_hash(self) -> str:
@@ -204,7 +174,7 @@ class Result(Displayed):
                 **(files or {}),
                 "findings": [finding.as_dict() for finding in findings],
                 "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
-                "versions": _versions(),
+                "versions": versions(),
                 "design": document_of(self.design),
             }
         )
@@ -231,7 +201,7 @@ class Result(Displayed):
         InfeasibleError
             If they cannot be made.
         """
-        _demand_formats(self.design, (kind,))
+        demand_formats(self.design, (kind,))
         makers = KINDS[self.design.kind].room("files").FILES
         return makers[kind](self, {} if measured is None else measured)
 
@@ -284,7 +254,7 @@ class Result(Displayed):
             If the disk refuses.
         """
         kinds = tuple(self.design.output.files if files is None else files)
-        _demand_formats(self.design, kinds)
+        demand_formats(self.design, kinds)
         steps = [*self.stages, *kinds, "writing"]
 
         def tell(step: str) -> None:
@@ -369,30 +339,3 @@ class Result(Displayed):
             facts=facts,
             findings=tuple(findings),
         )
-
-
-def _demand_formats(design: Design, kinds: Sequence[str]) -> None:
-    known = KINDS[design.kind].formats
-    problems = [
-        Problem(
-            f"{kind} is no file of designs of kind {design.kind}",
-            file=design.source,
-            key="output.files",
-            value=kind,
-            allowed=", ".join(known),
-        )
-        for kind in kinds
-        if kind not in known
-    ]
-    if problems:
-        raise DesignError(problems)
-
-
-def _versions() -> dict[str, str]:
-    """Return versions of what made the numbers: the program, Python, libraries loaded so far."""
-    found = {"gearcam": __version__, "python": platform.python_version()}
-    for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
-        module = sys.modules.get(name)
-        if module is not None and hasattr(module, "__version__"):
-            found[name] = str(module.__version__)
-    return found

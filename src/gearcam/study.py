@@ -14,7 +14,8 @@ from gearcam.display import Displayed
 from gearcam.facts import Facts
 from gearcam.findings import Finding
 from gearcam.numeric.columns import Columns
-from gearcam.result import Result, Written
+from gearcam.result import Result
+from gearcam.written import Written
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
