@@ -52,6 +52,11 @@ def line(name: str, words: Sequence[str]) -> str:
     return text
 
 
+def cut(text: str) -> str:
+    """Return a `text` in angle brackets, cut to one line."""
+    return text if len(text) <= WIDTH else f"{text[: WIDTH - 4]}...>"
+
+
 def word(value: Any) -> str:
     """Return a `value` in a word, or nothing of what has none: functions and what is missing."""
     if isinstance(value, str):

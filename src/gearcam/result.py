@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.designs.design import document_of, hash_of
 from gearcam.designs.kind import KINDS
-from gearcam.display import Displayed
+from gearcam.display import Displayed, cut
 from gearcam.errors import GearcamError
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
@@ -65,7 +65,7 @@ class Result(Displayed):
 
     def __repr__(self) -> str:
         done = ", ".join(self.timings) or "nothing"
-        return f'<{type(self).__name__} of "{self.design.name}", computed: {done}>'
+        return cut(f'<{type(self).__name__} of "{self.design.name}", computed: {done}>')
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:

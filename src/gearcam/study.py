@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from gearcam.display import Displayed
+from gearcam.display import Displayed, cut
 from gearcam.facts import Facts
 from gearcam.findings import Finding
 from gearcam.numeric.columns import Columns
@@ -47,8 +47,10 @@ class Study(Displayed):
 
     def __repr__(self) -> str:
         rows = len(next(iter(self.columns.values()), ()))
-        state = "" if self.complete else ", interrupted"
-        return f'<Study of "{self.result.design.name}": {rows} rows, as in {self.file}{state}>'
+        state = "" if self.complete else " (interrupted)"
+        return cut(
+            f'<Study{state}: {rows} rows, as in {self.file}, of "{self.result.design.name}">'
+        )
 
     @cached_property
     def columns(self) -> Columns:

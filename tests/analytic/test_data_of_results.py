@@ -10,7 +10,7 @@ import pytest
 
 import gearcam
 from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.build import GearPairResult, Side
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns
@@ -80,7 +80,8 @@ def test_circular_wheels_touch_on_the_line_of_action(circles: GearPairResult) ->
     arcs = np.radians(ratios["to_deg"] - ratios["from_deg"]) * r1 / (math.pi * MODULE)
     np.testing.assert_allclose(arcs, ratio, rtol=1e-9)
     assert list(ratios["side"]) == [-1] * 20 + [1] * 20
-    for side, sigma in (("drive", -1), ("coast", 1)):
+    sides: tuple[tuple[Side, int], ...] = (("drive", -1), ("coast", 1))
+    for side, sigma in sides:
         found = circles.contact(np.linspace(0.0, 1.0, 40), side)
         assert set(found["side"]) == {sigma}
         force = found["force_x"] + 1j * found["force_y"]

@@ -83,7 +83,7 @@ def _rate(quantity: Quantity, word: str, sign: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SegmentPhase:
+class SegmentPhase(Brief):
     """The follower goes to a lift and has a velocity and an acceleration there.
 
     These are `velocity_length` and `acceleration_length` of a translating follower,

@@ -265,7 +265,7 @@ def make_program(
 
 
 @dataclass(frozen=True)
-class _Placed:
+class _Placed(Brief):
     """A law's function in a place, ``base + scale*S((theta - origin)/width)``; phases share it."""
 
     law: Callable[..., Jet]
