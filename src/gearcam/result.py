@@ -9,68 +9,42 @@ from __future__ import annotations
 
 import sys
 import time
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from gearcam.designs.design import Design, document_of, hash_of
+from gearcam.designs.design import document_of, hash_of
 from gearcam.designs.kind import KINDS
-from gearcam.errors import DesignError, Problem
+from gearcam.display import Displayed, cut
+from gearcam.errors import GearcamError
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.numerals import tree
 from gearcam.numeric.arguments import one_of
 from gearcam.tolerances import DEFAULT, Tolerances
-from gearcam.version import versions
+from gearcam.written import Written, demand_formats, versions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from trimesh import Trimesh
 
     from gearcam.charts import Chart
+    from gearcam.parts.body import Part
 
 FORMAT: Final = 3
 """Version of the summary's layout."""
+
+PICTURE: Final = "svg"
+"""The kind of file that is a picture."""
 
 Progress = Callable[[str, int, int], None]
 """Called with a stage's name, the stages done and their number."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Written:
-    """What a command has written.
-
-    Parameters
-    ----------
-    directory : Path
-        The folder.
-    files : tuple of str
-        The files written, in order.
-    removed : tuple of str
-        Files of the previous build that this one does not write.
-    summary : dict
-        The content of ``summary.json``.
-    facts : Facts
-        What the summary is told from.
-    findings : tuple of Finding
-        What the checks found.
-    complete : bool
-        Whether nothing was interrupted.
-    """
-
-    directory: Path
-    files: tuple[str, ...]
-    removed: tuple[str, ...]
-    summary: dict[str, Any]
-    facts: Facts
-    findings: tuple[Finding, ...]
-    complete: bool = True
-
-
-class Result(ABC):
+class Result(Displayed):
     """What comes of a design, computed on demand.
 
     Parameters
@@ -94,7 +68,7 @@ class Result(ABC):
 
     def __repr__(self) -> str:
         done = ", ".join(self.timings) or "nothing"
-        return f'<{type(self).__name__} of "{self.design.name}", computed: {done}>'
+        return cut(f'<{type(self).__name__} of "{self.design.name}", computed: {done}>')
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -107,6 +81,46 @@ class Result(ABC):
     @abstractmethod
     def findings(self) -> tuple[Finding, ...]:
         """What the checks found: errors first."""
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """What is made, as parts with all that is ordered; none where a kind has none."""
+        return ()
+
+    @cached_property
+    def solids(self) -> dict[str, Trimesh]:
+        """The parts as closed meshes of trimesh by name, mm, each in its own frame.
+
+        From z = 0 to the width, hubs beyond; what cannot be made raises `InfeasibleError`.
+        """
+        from gearcam.export.mesh import trimeshes
+        from gearcam.export.shared import meshes
+
+        return trimeshes(meshes(self.parts, {}))
+
+    def picture(self) -> str:
+        """Return the picture of the file kind ``svg``, or a refusal in words; none without it."""
+        if PICTURE not in KINDS[self.design.kind].formats:
+            return ""
+        try:
+            (data,) = self.files(PICTURE).values()
+        except GearcamError as error:
+            from gearcam.markup import refusal_picture
+
+            return refusal_picture(self.design.name, error)
+        return data.decode()
+
+    def _repr_html_(self) -> str:
+        try:
+            facts, findings = self.facts, self.findings
+        except GearcamError as error:
+            from gearcam.markup import refusal
+
+            return refusal(self.design.name, error)
+        from gearcam.markup import page
+
+        told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
+        return page(self.picture(), facts, told)
 
     @cached_property
     def design_hash(self) -> str:
@@ -190,7 +204,7 @@ class Result(ABC):
         InfeasibleError
             If they cannot be made.
         """
-        _demand_formats(self.design, (kind,))
+        demand_formats(self.design, (kind,))
         makers = KINDS[self.design.kind].room("files").FILES
         return makers[kind](self, {} if measured is None else measured)
 
@@ -293,7 +307,7 @@ class Result(ABC):
             If the disk refuses.
         """
         kinds = tuple(self.design.output.files if files is None else files)
-        _demand_formats(self.design, kinds)
+        demand_formats(self.design, kinds)
         steps = [*self.stages, *kinds, "writing"]
 
         def tell(step: str) -> None:
@@ -378,20 +392,3 @@ class Result(ABC):
             facts=facts,
             findings=tuple(findings),
         )
-
-
-def _demand_formats(design: Design, kinds: Sequence[str]) -> None:
-    known = KINDS[design.kind].formats
-    problems = [
-        Problem(
-            f"{kind} is no file of designs of kind {design.kind}",
-            file=design.source,
-            key="output.files",
-            value=kind,
-            allowed=", ".join(known),
-        )
-        for kind in kinds
-        if kind not in known
-    ]
-    if problems:
-        raise DesignError(problems)

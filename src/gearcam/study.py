@@ -10,14 +10,16 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from gearcam.display import Displayed, cut
 from gearcam.facts import Facts
 from gearcam.findings import Finding
 from gearcam.numeric.columns import Columns
-from gearcam.result import Result, Written
+from gearcam.result import Result
+from gearcam.written import Written
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Study:
+class Study(Displayed):
     """What a study of a result has found.
 
     Parameters
@@ -45,8 +47,10 @@ class Study:
 
     def __repr__(self) -> str:
         rows = len(next(iter(self.columns.values()), ()))
-        state = "" if self.complete else ", interrupted"
-        return f'<Study of "{self.result.design.name}": {rows} rows, as in {self.file}{state}>'
+        state = "" if self.complete else " (interrupted)"
+        return cut(
+            f'<Study{state}: {rows} rows, as in {self.file}, of "{self.result.design.name}">'
+        )
 
     @cached_property
     def columns(self) -> Columns:
@@ -57,6 +61,10 @@ class Study:
     def facts(self) -> Facts:
         """What is known of the result with what was found (see docs/conventions.md)."""
         return self.result.facts_with(self.measured)
+
+    def picture(self) -> str:
+        """Return nothing: a study is told in numbers."""
+        return ""
 
     def to_dict(self) -> dict[str, Any]:
         """Return what `summary.json` tells of it, but for files (see `Result.to_dict`)."""

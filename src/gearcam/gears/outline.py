@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
@@ -31,7 +32,7 @@ _AT_TIP = 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Flanks:
+class Flanks(Brief):
     """Every flank of a wheel and where it ends: sigma = +1 of all teeth formed, then sigma = -1.
 
     Parameters
@@ -60,7 +61,7 @@ class Flanks:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Outline:
+class Outline(Brief):
     """A wheel's outline.
 
     Parameters

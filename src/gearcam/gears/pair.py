@@ -8,12 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.display import Brief, Displayed
 from gearcam.errors import InfeasibleError, Way
+from gearcam.facts import Facts
 from gearcam.gears.bound import demand_cutters
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
 from gearcam.gears.flank_points import flank_points
+from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import RACK, Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
@@ -36,6 +39,9 @@ _USUAL = 1e-3
 _PARTS = 1000.0
 """Parts of a module of which one is the default where that is finer."""
 
+PICTURED = 721
+"""Points of a centrode in a picture."""
+
 FLANK_POINTS = 17
 """Points on each flank where nobody says how many."""
 
@@ -44,7 +50,7 @@ COARSEST = 1.0 / 50.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class GearPair:
+class GearPair(Brief):
     """Two centrodes with their cutters and tooth places.
 
     Parameters
@@ -119,7 +125,7 @@ class GearPair:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Gear:
+class Gear(Brief, Displayed):
     """One wheel.
 
     Parameters
@@ -181,6 +187,27 @@ class Gear:
             If `count` is no whole number, or less than 2.
         """
         return flank_points(self.profile, whole("count", count, 2))
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What the wheel knows of itself, by the names that docs/conventions.md explains."""
+        return Facts(gear_tree(self), ("teeth",), self.name)
+
+    def picture(self) -> str:
+        """Return a picture of the outline and the centrode, SVG, in the wheel's frame."""
+        from gearcam.markup import outlines
+
+        track = self.toothing.track
+        centrode = self.centrode(
+            np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
+        )
+        return outlines(
+            self.facts.headline,
+            [self.outline],
+            [centrode],
+            wheel=self.wheel,
+            axis=not track.slides,
+        )
 
     @cached_property
     def least_radius(self) -> float:

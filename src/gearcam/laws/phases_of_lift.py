@@ -19,6 +19,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.display import Brief
 from gearcam.numerals import shown
 from gearcam.quantities import (
     ANGLE,
@@ -49,7 +50,7 @@ class DwellPhase:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RisePhase:
+class RisePhase(Brief):
     """The follower rises by a law.
 
     The law's parameters stand in `shape`, made by its entry in `gearcam.laws.rises.base.RISES`.
@@ -82,7 +83,7 @@ def _rate(quantity: Quantity, word: str, sign: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SegmentPhase:
+class SegmentPhase(Brief):
     """The follower goes to a lift and has a velocity and an acceleration there.
 
     These are `velocity_length` and `acceleration_length` of a translating follower,

@@ -17,6 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import JUMP, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
@@ -54,7 +55,7 @@ class PlacedPhase:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Survey:
+class Survey(Brief):
     """A lift and its derivatives to the fourth, all at once: most questions need no more.
 
     Parameters
@@ -74,7 +75,7 @@ class Survey:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Program(Displacement):
+class Program(Brief, Displacement):
     """The lift over a turn, repeated.
 
     Parameters
@@ -264,7 +265,7 @@ def make_program(
 
 
 @dataclass(frozen=True)
-class _Placed:
+class _Placed(Brief):
     """A law's function in a place, ``base + scale*S((theta - origin)/width)``; phases share it."""
 
     law: Callable[..., Jet]

@@ -7,15 +7,13 @@ table that a CSV file of it holds, as whole columns of numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gearcam.display import line
 from gearcam.numeric.arrays import Array
-
-_WIDTH: Final = 96
-"""Letters of the one line that stands for a table."""
 
 
 class Columns(dict[str, NDArray[Any]]):
@@ -37,13 +35,8 @@ class Columns(dict[str, NDArray[Any]]):
         return type(self), (dict(self),)
 
     def __repr__(self) -> str:
-        names, rows = list(self), len(next(iter(self.values()), ()))
-        text = f"<Columns of {rows} rows: {', '.join(names)}>"
-        while len(text) > _WIDTH and names:
-            names.pop()
-            more = len(self) - len(names)
-            text = f"<Columns of {rows} rows: {', '.join(names)} and {more} more>"
-        return text
+        rows = len(next(iter(self.values()), ()))
+        return line(type(self).__name__, [f"{rows} rows", *self])
 
     @property
     def points(self) -> Array:

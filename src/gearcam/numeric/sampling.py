@@ -15,6 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
@@ -82,7 +83,7 @@ class Curves(Protocol):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sampler:
+class Sampler(Brief):
     """Curves with the density of points that a tolerance asks for.
 
     Parameters

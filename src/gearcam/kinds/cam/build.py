@@ -159,6 +159,11 @@ class CamResult(Result):
             blank = self.design.blank
             return make_part(STEM, [finished(profile, blank, place)], thickness, blank, place)
 
+    @cached_property
+    def parts(self) -> tuple[Part]:
+        """The cam as the only part."""
+        return (self.part,)
+
     @property
     def contour(self) -> Contour:
         """The profile as made: with its clearance."""

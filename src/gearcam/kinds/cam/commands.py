@@ -9,7 +9,8 @@ from typing import Any, Final
 from gearcam.commands import Command
 from gearcam.designs.design import Design, demand_kind
 from gearcam.kinds.cam.design import NAME
-from gearcam.result import Progress, Written
+from gearcam.result import Progress
+from gearcam.written import Written
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import compiled, derivative, formula_problems, values_of
@@ -38,7 +39,7 @@ _PLACES_OF_LOBE = 257
 
 
 @dataclass(frozen=True, kw_only=True)
-class Formula:
+class Formula(Brief):
     """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
 
     With `driver_travel` and `driven_travel` the pair is open.
@@ -153,7 +154,7 @@ def from_phi2(
 
 
 @dataclass(frozen=True, kw_only=True)
-class RackLaw:
+class RackLaw(Brief):
     """The driver's centrode, or the rack's travel over a turn; either at any scale.
 
     The rack moves by ``dy = r1*dphi1``, so that ``r1 = y'``; its own centrode is the curve ``(r1,

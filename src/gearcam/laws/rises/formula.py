@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import compiled, formula_problems
@@ -29,7 +30,7 @@ _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''"
 
 
 @dataclass(frozen=True, kw_only=True)
-class FormulaRise:
+class FormulaRise(Brief):
     """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic."""
 
     formula: str = param(TEXT, doc="S over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)")
