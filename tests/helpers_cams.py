@@ -71,9 +71,7 @@ def law(name: str, **parameters: Any) -> Any:
 
 def rise(name: str, degrees: float, lift: float, *, swings: bool = False, **more: Any) -> RisePhase:
     """Return a rise of a lift in mm, or in degrees where it `swings`."""
-    return RisePhase(
-        angle=math.radians(degrees), law=name, shape=law(name, **more), **_lift(lift, swings)
-    )
+    return RisePhase(angle=math.radians(degrees), law=law(name, **more), **_lift(lift, swings))
 
 
 def back(
@@ -81,11 +79,11 @@ def back(
 ) -> ReturnPhase:
     """Return a return, by all that was risen where no lift is given."""
     given = {} if lift is None else _lift(lift, swings)
-    return ReturnPhase(angle=math.radians(degrees), law=name, shape=law(name, **more), **given)
+    return ReturnPhase(angle=math.radians(degrees), law=law(name, **more), **given)
 
 
 def _lift(lift: float, swings: bool) -> dict[str, Any]:
-    return {"swing": math.radians(lift)} if swings else {"length": lift}
+    return {"lift": math.radians(lift) if swings else lift}
 
 
 def dwell(degrees: float) -> DwellPhase:

@@ -73,7 +73,7 @@ def __dir__() -> list[str]:
 def _of_kinds() -> dict[str, type]:
     from gearcam.designs.kind import KINDS
 
-    return {one.__name__: one for kind in KINDS.values() for one in kind.room("design").PUBLIC}
+    return {one.__name__: one for kind in KINDS.values() for one in kind.room("public").PUBLIC}
 
 
 def load(path: str | os.PathLike[str]) -> Design:

@@ -61,6 +61,10 @@ class Param:
         The key's word where the field cannot bear it, such as ``from``.
     both : bool
         Whether a single value may stand for both wheels.
+    function : bool
+        Whether Python functions may stand for a text.
+    angular : Param or None
+        The same where lifts are angles: a file then has another key for it.
     """
 
     quantity: Quantity = NUMBER
@@ -73,6 +77,8 @@ class Param:
     doc: str = ""
     word: str = ""
     both: bool = False
+    function: bool = False
+    angular: Param | None = None
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""

@@ -16,7 +16,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from gearcam.designs.design import document_of, hash_of
+from gearcam.designs.design import hash_of, summary_of
 from gearcam.designs.kind import KINDS
 from gearcam.display import Displayed, cut
 from gearcam.errors import GearcamError
@@ -178,7 +178,7 @@ class Result(Displayed):
                 "findings": [finding.as_dict() for finding in findings],
                 "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
                 "versions": versions(),
-                "design": document_of(self.design),
+                "design": summary_of(self.design),
             }
         )
 

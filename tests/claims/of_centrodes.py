@@ -172,6 +172,12 @@ def rack() -> tuple[LawClaim, ...]:
             driven={math.pi / 2: 1.5 * math.pi, 2 * math.pi: 6 * math.pi},
             continuity=3,
         ),
+        LawClaim(
+            parameters=RackLaw(travel=lambda phi1: 3 * phi1 - 0.5 * math.sin(2 * phi1)),
+            ratio={0.0: 2.0, math.pi / 2: 4.0},
+            driven={math.pi / 2: 1.5 * math.pi, 2 * math.pi: 6 * math.pi},
+            continuity=3,
+        ),
     )
 
 

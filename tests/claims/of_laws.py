@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from claims.claim import LawClaim
 from claims.of_centrodes import CENTRODES
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
@@ -49,6 +51,43 @@ def formula() -> tuple[LawClaim, ...]:
             driven={math.pi: math.pi, math.pi / 2: 2 * math.atan(1 / 3), turn: turn},
             continuity=3,
         ),
+        *of_functions(),
+    )
+
+
+def of_functions() -> tuple[LawClaim, ...]:
+    """Python functions, which give no derivatives: of arrays, of floats, with a derivative."""
+    turn = 2 * math.pi
+    root = math.sqrt(1 - 0.3**2)
+    return (
+        LawClaim(
+            parameters=Formula(phi2=lambda phi1: phi1 - 0.08 * np.sin(2 * phi1)),
+            ratio={0.0: 0.84, math.pi / 2: 1.16, math.pi / 4: 1.0},
+            driven={math.pi / 4: math.pi / 4 - 0.08, math.pi: math.pi, turn: turn},
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=Formula(
+                phi2=(lambda phi1: phi1 + 0.1 * phi1**2, lambda phi1: 1 + 0.2 * phi1),
+                driver_travel=2.0,
+                driven_travel=2.4,
+            ),
+            ratio={0.0: 1.0, 1.0: 1.2, 2.0: 1.4},
+            driven={1.0: 1.1, 2.0: 2.4},
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=Formula(ratio=lambda phi1: 1 / (1 + 0.3 * math.cos(phi1))),
+            ratio={0.0: root / 1.3, math.pi: root / 0.7, math.pi / 2: root},
+            driven={math.pi: math.pi, turn: turn, math.pi / 2: 2 * math.atan(math.sqrt(7 / 13))},
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=Formula(r1=lambda phi1: 7 / (1 + 0.3 * np.cos(phi1))),
+            ratio={0.0: 0.7 / 1.3, math.pi: 1.3 / 0.7, math.pi / 2: 0.91 / 1.09},
+            driven={math.pi: math.pi, math.pi / 2: 2 * math.atan(0.7 / 1.3), turn: turn},
+            continuity=3,
+        ),
     )
 
 
@@ -78,6 +117,18 @@ def motion() -> tuple[LawClaim, ...]:
             parameters=MotionLaw(slide=led, rod=3.0),
             ratio={0.0: 0.8, math.pi: 1.2, math.pi / 2: 1.0},
             driven={math.pi: math.pi, 1.0: 1 - 0.2 * math.sin(1.0), turn: turn},
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=MotionLaw(
+                y=lambda x: x + x**2 / 10,
+                x_from=2.0,
+                x_to=0.0,
+                driver_travel=math.pi,
+                driven_travel=math.pi,
+            ),
+            ratio={0.0: 1.4 / 1.2, math.pi / 2: 1.0, math.pi: 1 / 1.2},
+            driven={math.pi: math.pi, math.pi / 2: math.pi * 1.3 / 2.4},
             continuity=3,
         ),
     )

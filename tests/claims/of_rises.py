@@ -51,6 +51,24 @@ def formula() -> tuple[RiseClaim, ...]:
             peak_jerk=math.inf,
             continuity=0,
         ),
+        RiseClaim(
+            parameters=FormulaRise(formula=lambda x: x - math.sin(2 * math.pi * x) / (2 * math.pi)),
+            values={0.25: quarter, 0.5: 0.5, 0.75: 1.0 - quarter},
+            velocities={0.25: 1.0, 0.5: 2.0},
+            peak_velocity=2.0,
+            peak_acceleration=2 * math.pi,
+            peak_jerk=4 * math.pi**2,
+            continuity=2,
+        ),
+        RiseClaim(
+            parameters=FormulaRise(formula=lambda x: x**3 * (10 - 15 * x + 6 * x**2)),
+            values={0.25: 53 / 512, 0.75: 459 / 512},
+            velocities={0.25: 270 / 256, 0.5: 1.875},
+            peak_velocity=1.875,
+            peak_acceleration=10 / math.sqrt(3),
+            peak_jerk=60.0,
+            continuity=2,
+        ),
     )
 
 

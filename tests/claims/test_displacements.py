@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from claims.of_laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
 from gearcam.laws.displacement import Displacement
+from gearcam.laws.motion_formula import MotionFormula
+from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase, SegmentPhase
 from gearcam.laws.program import make_program
 from gearcam.laws.rises.base import RiseParameters
@@ -22,25 +24,39 @@ Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 
-def program(law: str, shape: RiseParameters) -> Displacement:
+def program(law: RiseParameters) -> Displacement:
     """A rise, a return by a segment to half way and by the law, and a dwell."""
     phases: list[Phase] = [
-        RisePhase(angle=1.5, law=law, shape=shape, length=8.0),
-        SegmentPhase(angle=1.0, to_length=4.0),
-        ReturnPhase(angle=1.2, law=law, shape=shape, length=4.0),
+        RisePhase(angle=1.5, law=law, lift=8.0),
+        SegmentPhase(angle=1.0, to=4.0),
+        ReturnPhase(angle=1.2, law=law, lift=4.0),
         DwellPhase(angle=TURN - 3.7),
     ]
     return make_program(phases, DEFAULT)
 
 
+def rows(tolerance: float | None = None) -> Displacement:
+    """A motion by rows that begin beside the turn's end, uneven and noisy, as measured."""
+    theta = TURN * (np.arange(90) + 0.3 + 0.2 * np.sin(np.arange(90))) / 90
+    lift = 4.0 * (1.0 - np.cos(theta)) ** 2 + 0.002 * np.sin(1e3 * np.arange(90))
+    given = {"theta": tuple(theta.tolist()), "lift": tuple(lift.tolist())}
+    return MotionTable(**given, smoothing_tolerance=tolerance).program(DEFAULT)
+
+
 MOVING = [
-    pytest.param(claim.parameters.build(claim.lobes, DEFAULT), id=f"law {name}-{number}")
-    for name, claims in LAW_CLAIMS.items()
-    for number, claim in enumerate(claims)
-] + [
-    pytest.param(program(name, claim.parameters), id=f"program {name}-{number}")
-    for name, claims in RISE_CLAIMS.items()
-    for number, claim in enumerate(claims)
+    pytest.param(rows(), id="rows"),
+    pytest.param(rows(0.01), id="rows, smoothed"),
+    pytest.param(MotionFormula(lift="4*(1 - cos(theta))**2").program(DEFAULT), id="formula"),
+    *(
+        pytest.param(claim.parameters.build(claim.lobes, DEFAULT), id=f"law {name}-{number}")
+        for name, claims in LAW_CLAIMS.items()
+        for number, claim in enumerate(claims)
+    ),
+    *(
+        pytest.param(program(claim.parameters), id=f"program {name}-{number}")
+        for name, claims in RISE_CLAIMS.items()
+        for number, claim in enumerate(claims)
+    ),
 ]
 
 
@@ -117,4 +133,5 @@ def test_there_are_both_kinds_open_and_closed_with_and_without_jumps() -> None:
         ("RatioLaw", False, True),
         ("RatioLaw", False, False),
         ("Program", True, True),
+        ("Program", True, False),
     }

@@ -100,10 +100,8 @@ def programs(draw: st.DrawFn, swings: bool) -> list[Phase]:
 def segment(degrees: float, to: float, velocity: float, swings: bool) -> SegmentPhase:
     angle = math.radians(degrees)
     if not swings:
-        return SegmentPhase(angle=angle, to_length=to, velocity_length=velocity)
-    return SegmentPhase(
-        angle=angle, to_swing=math.radians(to), velocity_swing=math.radians(velocity)
-    )
+        return SegmentPhase(angle=angle, to=to, velocity=velocity)
+    return SegmentPhase(angle=angle, to=math.radians(to), velocity=math.radians(velocity))
 
 
 @st.composite

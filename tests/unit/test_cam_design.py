@@ -34,6 +34,11 @@ from gearcam.parts.blank import WheelBlank
 from helpers_cam_files import FLAT, ROLLER, SWINGING, changed, read
 
 
+def phases_of(design: CamDesign) -> tuple[Phase, ...]:
+    assert isinstance(design.motion, tuple)
+    return design.motion
+
+
 def shape(law: str) -> Any:
     return RISES[law].parameters()
 
@@ -42,13 +47,13 @@ def test_the_plate_cam_with_a_roller_is_read() -> None:
     design = read(ROLLER)
     assert (design.kind, design.name, design.source) == ("cam", "plate_cam_offset_roller", "")
     quarter = math.pi / 2
-    assert design.phases == (
-        RisePhase(angle=quarter, law="cycloidal", shape=shape("cycloidal"), length=10.0),
+    assert design.motion == (
+        RisePhase(angle=quarter, law=shape("cycloidal"), lift=10.0),
         DwellPhase(angle=quarter),
-        ReturnPhase(angle=quarter, law="cycloidal", shape=shape("cycloidal")),
+        ReturnPhase(angle=quarter, law=shape("cycloidal")),
         DwellPhase(angle=quarter),
     )
-    assert type(design.phases[2]) is ReturnPhase
+    assert type(phases_of(design)[2]) is ReturnPhase
     assert design.follower == FollowerSpec(type="roller", roller_radius=6.0, offset=8.0)
     assert design.cam == CamSpec(prime_radius=30.0, thickness=12.0)
     assert not design.cam.clockwise
@@ -61,14 +66,13 @@ def test_the_plate_cam_with_a_roller_is_read() -> None:
 
 def test_the_cam_with_a_swinging_roller_is_read() -> None:
     design = read(SWINGING)
-    first, _, third, _ = design.phases
+    first, _, third, _ = phases_of(design)
     assert isinstance(first, RisePhase)
     assert isinstance(third, ReturnPhase)
-    assert (first.law, third.law) == ("modified-sine", "3-4-5")
-    assert type(third.shape) is RISES["3-4-5"].parameters
-    assert first.swing == pytest.approx(math.pi / 9, rel=1e-15)
-    assert first.length is third.length is third.swing is None
-    assert [phase.angle for phase in design.phases] == pytest.approx(
+    assert (first.law, third.law) == (shape("modified-sine"), shape("3-4-5"))
+    assert first.lift == pytest.approx(math.pi / 9, rel=1e-15)
+    assert third.lift is None
+    assert [phase.angle for phase in phases_of(design)] == pytest.approx(
         [2 * math.pi / 3, math.pi / 3, 2 * math.pi / 3, math.pi / 3], rel=1e-15
     )
     assert design.follower == FollowerSpec(
@@ -81,12 +85,12 @@ def test_a_segment_carries_its_end_in_the_units_of_the_lift() -> None:
     end = 'type = "segment"\nangle_deg = 90\nto_mm = 0\n'
     text = changed('type = "dwell"\nangle_deg = 90\n', segment)
     text = changed('type = "return"\nlaw = "cycloidal"\nangle_deg = 90\n', end, text)
-    _, second, third, _ = read(text).phases
-    assert second == SegmentPhase(angle=math.pi / 2, to_length=4.0, velocity_length=2.0)
-    assert third == SegmentPhase(angle=math.pi / 2, to_length=0.0)
+    _, second, third, _ = phases_of(read(text))
+    assert second == SegmentPhase(angle=math.pi / 2, to=4.0, velocity=2.0)
+    assert third == SegmentPhase(angle=math.pi / 2, to=0.0)
     segment = segment.replace("_mm", "_deg") + "end_acceleration_deg_per_rad2 = 9\n"
     text = changed('type = "dwell"\nangle_deg = 60\n', segment.replace("90", "60"), SWINGING)
-    _, second, _, _ = read(text).phases
+    _, second, _, _ = phases_of(read(text))
     assert isinstance(second, SegmentPhase)
     assert second.end == pytest.approx((math.radians(4), math.radians(2), math.pi / 20), rel=1e-15)
 
@@ -102,7 +106,7 @@ def test_every_law_is_read_with_its_parameters(name: str) -> None:
             own = rise_table(law).document(claim.parameters)
             document["motion"][number] |= {"law": law, **own}
             phases = [_made(raw) for raw in document["motion"]]
-            made = replace(read(ROLLER), phases=tuple(phases))
+            made = replace(read(ROLLER), motion=tuple(phases))
             assert document_of(made)["motion"][number].items() >= own.items()
 
 
@@ -112,7 +116,7 @@ def _made(raw: dict[str, Any]) -> Phase:
     values = phase_table(raw["type"]).inward(rest)
     if "law" in raw:
         own = rise_table(raw["law"]).inward(rest)
-        values |= {"law": raw["law"], "shape": RISES[raw["law"]].parameters(**own)}
+        values["law"] = RISES[raw["law"]].parameters(**own)
     return PHASES[raw["type"]](**values)
 
 
@@ -140,9 +144,9 @@ def test_the_table_of_a_law_lies_beside_the_design_file(tmp_path: Path) -> None:
     with pytest.raises(DesignError, match=re.escape("motion[0].file")):
         load(tmp_path / "cam.toml")
     (tmp_path / "points.csv").write_text("x,y\n0,0\n0.4,0.3\n0.7,0.8\n1,1\n")
-    (rise, *_) = read(text, file=str(tmp_path / "cam.toml")).phases
+    (rise, *_) = phases_of(read(text, file=str(tmp_path / "cam.toml")))
     assert isinstance(rise, RisePhase)
-    assert rise.shape.file == str(tmp_path / "points.csv")
+    assert rise.law.file == str(tmp_path / "points.csv")
 
 
 @pytest.mark.parametrize("text", [ROLLER, SWINGING, FLAT], ids=["roller", "swinging", "flat"])
@@ -150,12 +154,12 @@ def test_a_design_made_in_python_equals_the_one_read(text: str) -> None:
     one = read(text)
     made = CamDesign(
         name=one.name,
-        phases=tuple(_made(raw) for raw in tomllib.loads(text)["motion"]),
+        motion=tuple(_made(raw) for raw in tomllib.loads(text)["motion"]),
         follower=replace(one.follower),
         cam=replace(one.cam),
         output=CamOutputSpec(files=one.output.files),
     )
-    assert made.phases == one.phases
+    assert made.motion == one.motion
     assert document_of(made) == document_of(one)
     (again,) = [CamDesign(**vars(one))]
     assert document_of(again) == document_of(one)
@@ -172,12 +176,11 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
         with pytest.raises(DesignError, match=words):
             CamDesign(**{**good, **changes})
 
-    rise, dwell, *rest = good["phases"]
-    refused("take 270 deg", phases=(rise, dwell, rest[0]))
-    refused(r"motion\[1\]: is a int", phases=(rise, 3))
-    refused("phases: is a int", phases=3)
-    refused("not a law", phases=(replace(rise, law="cycloid"), dwell, *rest))
-    refused(r"motion\[0\].shape: is a NoneType", phases=(replace(rise, shape=None), dwell, *rest))
+    rise, dwell, *rest = good["motion"]
+    refused("take 270 deg", motion=(rise, dwell, rest[0]))
+    refused(r"motion\[1\]: is a int", motion=(rise, 3))
+    refused("motion: is a int", motion=3)
+    refused(r"motion\[0\].law: is a str", motion=(replace(rise, law="cycloidal"), dwell, *rest))
     refused("instance of FollowerSpec", follower=3)
     refused("instance of WheelBlank", blank=None)
     refused("instance of CamOutputSpec", output=None)
@@ -185,8 +188,8 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     refused("missing beside bolts", blank=WheelBlank(bolts=2))
     refused(r"limits\.no_such", limits={"no_such": 1.0})
     refused("out of range", cam=CamSpec(prime_radius=-1.0))
-    design = CamDesign(**{**good, "phases": list(good["phases"]), "blank": WheelBlank(bolts=0)})
-    assert design.phases == good["phases"]
+    design = CamDesign(**{**good, "motion": list(good["motion"]), "blank": WheelBlank(bolts=0)})
+    assert design.motion == good["motion"]
     assert not design.blank.timing_marks
     with pytest.raises(DesignError, match="for designs of kind gear-pair"):
         with_meshing(design, {"steps": 3})

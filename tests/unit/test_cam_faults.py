@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from gearcam.designs import document_of
 from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems, read
 
 
@@ -29,6 +30,8 @@ from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, probl
         ("angle_deg = 90\n", "", 4, "motion[0].angle_deg", "is missing"),
         ("angle_deg = 90", "angle_deg = 0", 7, "motion[0].angle_deg", "out of range"),
         ("angle_deg = 90", 'angle_deg = "90"', 7, "motion[0].angle_deg", "without quotes"),
+        ("angle_deg = 90", 'angle_deg = "rset"', 7, "motion[0].angle_deg", "mean rest"),
+        ("angle_deg = 90", 'angle_deg = "all"', 7, "motion[0].angle_deg", '360 deg, or "rest"'),
         ("lift_mm = 10\n", "", 4, "motion[0].lift_mm", "is missing"),
         ("angle_deg = 90", "angle_deg = 80", 4, "motion", "take 350 deg.*\n.*would take 100 deg"),
         (RISE, 'type = "dwell"\nangle_deg = 90\n', 10, "motion[2].lift_mm", "no lift to return"),
@@ -64,16 +67,31 @@ def test_what_is_wrong_is_told_where_it_stands(
     assert re.search(words, str(found[key])), str(found[key])
 
 
+def test_the_rest_of_the_turn_in_a_file() -> None:
+    rest = changed("angle_deg = 90", 'angle_deg = "rest"')
+    assert document_of(read(rest))["motion"][0]["angle_deg"] == "rest"
+    twice = only(changed("angle_deg = 90", 'angle_deg = "rest"', rest))
+    assert (twice.key, twice.line, twice.value) == ("motion[1].angle_deg", 11, "rest")
+    assert twice.allowed == "an angle: motion[0] takes the rest"
+    full = only(rest.replace("angle_deg = 90", "angle_deg = 120"))
+    assert (full.key, full.line) == ("motion[0].angle_deg", 7)
+    assert "take 360 deg, which leaves nothing" in full.message
+    short = only(changed("angle_deg = 90", "angle_deg = 80"))
+    assert 'or "rest" for one of them' in short.allowed
+
+
 def test_lifts_are_of_the_followers_kind() -> None:
     found = problems(changed("lift_mm = 10", "lift_deg = 10"))
-    assert [(one.line, one.key) for one in found] == [
-        (4, "motion[0].lift_mm"),
-        (8, "motion[0].lift_deg"),
-    ]
-    assert "10: is of the wrong kind for a translating follower" in found[1].message
-    assert found[1].value == 10
+    assert [(one.line, one.key) for one in found] == [(8, "motion[0].lift_deg")]
+    assert "10: is of the wrong kind for a translating follower" in found[0].message
+    assert (found[0].value, found[0].allowed) == (10, "the key in _mm")
     found = problems(changed("lift_deg", "lift_mm", SWINGING))
     assert "wrong kind for an oscillating follower" in found[-1].message
+
+
+def test_of_an_unknown_kind_no_lift_is_wrong() -> None:
+    for text, motion in ((ROLLER, "translating"), (SWINGING, "oscillating")):
+        assert only(changed(f'"{motion}"', '"sliding"', text)).key == "follower.motion"
 
 
 def test_a_program_that_ends_elsewhere_is_refused() -> None:
@@ -169,6 +187,7 @@ pressure_angle_deg = "x"
         (2, "name"),
         (5, "motion[0].law"),
         (6, "motion[0].angle_deg"),
+        (7, "motion[0].lift_deg"),
         (9, "motion[1].type"),
         (10, "motion[2].angle_deg"),
         (13, "motion[2].angel_deg"),
@@ -191,7 +210,6 @@ def test_phases_that_can_be_read_are_judged_beside_those_that_cannot() -> None:
     assert found == {"motion[0].angle_deg"}
     mixed = changed('"dwell"', '"dwel"').replace("lift_mm", "lift_deg")
     assert {problem.key for problem in problems(mixed)} == {
-        "motion[0].lift_mm",
         "motion[0].lift_deg",
         "motion[1].type",
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from gearcam.laws.phases_of_lift import (
     Phase,
     RisePhase,
     SegmentPhase,
+    angles_of,
     levels,
     program_problems,
 )
@@ -38,11 +40,49 @@ def test_angles_that_miss_a_turn_by_more_are_refused(miss: float) -> None:
     program([*phases[:2], DwellPhase(angle=math.pi + math.copysign(0.9e-6, miss))])
 
 
+def test_one_phase_takes_the_rest_of_the_turn() -> None:
+    """The same program, to the last bit where the numbers leave no rounding."""
+    given = [rise("cycloidal", 90.0, 12.0), dwell(45.0), back("3-4-5", 135.0), dwell(90.0)]
+    theta = np.linspace(0.0, 2 * math.pi, 97)
+    for number, phase in enumerate(given):
+        phases = [*given[:number], replace(phase, angle="rest"), *given[number + 1 :]]
+        made = program(phases)
+        assert [s.end for s in made.stretches] == pytest.approx(
+            np.radians([90.0, 135.0, 270.0, 360.0]), rel=1e-15
+        )
+        assert angles_of(phases)[number] == pytest.approx(phase.angle, rel=1e-15)
+        np.testing.assert_allclose(made.lift(theta), program(given).lift(theta), atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("angles", "wrong", "message"),
+    [
+        (("rest", 90.0, "rest", 90.0), 2, "only one phase can take the rest"),
+        ((180.0, "rest", 90.0, 90.0), 1, "take 360 deg, which leaves nothing"),
+        ((180.0, 90.0, 120.0, "rest"), 3, "take 390 deg, which leaves nothing"),
+        (("rest", 90.0, 90.0, 180.0 - 5e-5), 0, "leaves nothing"),
+    ],
+)
+def test_a_rest_that_is_none_is_refused(
+    angles: tuple[float | str, ...], wrong: int, message: str
+) -> None:
+    kinds = [rise("2-3", 1.0, 5.0), dwell(1.0), back("2-3", 1.0), dwell(1.0)]
+    phases = [
+        replace(phase, angle=angle if isinstance(angle, str) else math.radians(angle))
+        for phase, angle in zip(kinds, angles, strict=True)
+    ]
+    (found,) = program_problems(phases, oscillating=False)
+    assert found[:2] == (wrong, "angle")
+    assert message in found[2]
+    with pytest.raises(InfeasibleError, match=message):
+        program(phases)
+
+
 def test_levels_of_phases() -> None:
     phases = [
         rise("2-3", 60.0, 5.0),
         dwell(60.0),
-        SegmentPhase(angle=1.0, to_length=2.0),
+        SegmentPhase(angle=1.0, to=2.0),
         back("2-3", 60.0),
     ]
     assert levels([*phases, rise("2-3", 60.0, 4.0), back("2-3", 60.0, 3.0)]) == [
@@ -55,13 +95,9 @@ REFUSED: dict[str, tuple[list[Phase], str]] = {
     "half back": ([rise("2-3", 180.0, 5.0), back("2-3", 180.0, 4.0)], r"ends at a lift of 1 mm"),
     "nothing to return": ([back("2-3", 180.0), dwell(180.0)], "no lift to return from"),
     "only dwells": ([dwell(180.0), dwell(180.0)], "never moves"),
-    "degrees": (
-        [rise("2-3", 180.0, 5.0, swings=True), back("2-3", 180.0)],
-        "of the wrong kind for a translating follower",
-    ),
     "no lift": (
         [
-            RisePhase(angle=math.pi, law="2-3", shape=law("2-3")),
+            RisePhase(angle=math.pi, law=law("2-3")),
             back("2-3", 180.0),
         ],
         "is missing",
@@ -78,13 +114,16 @@ def test_programs_that_cannot_be_are_refused(name: str) -> None:
 
 
 def test_the_wrong_phase_is_named() -> None:
-    phases = [dwell(90.0), rise("2-3", 90.0, 5.0, swings=True), back("2-3", 180.0)]
+    phases = [dwell(90.0), replace(rise("2-3", 90.0, 5.0), lift=None), back("2-3", 180.0)]
     problems = list(program_problems(phases, oscillating=False))
-    assert [(number, field) for number, field, *_ in problems] == [(1, "swing"), (1, "length")]
-    assert list(program_problems(phases, oscillating=True)) == []
-    swing = SegmentPhase(angle=1.0, to_swing=0.1, velocity_length=3.0)
-    named = [(n, field) for n, field, *_ in program_problems([swing], oscillating=True)]
-    assert named == [(0, "velocity_length")]
+    assert [problem[:2] for problem in problems] == [(1, "lift")]
+    assert (
+        list(program_problems([phases[0], rise("2-3", 90.0, 5.0), phases[2]], oscillating=True))
+        == []
+    )
+    segment = SegmentPhase(angle=1.0, velocity=3.0)
+    named = [problem[:2] for problem in program_problems([segment], oscillating=True)]
+    assert named == [(0, "to")]
     with pytest.raises(InfeasibleError, match=r"ends at a lift of 5 deg"):
         program([rise("2-3", 180.0, 5.0, swings=True), dwell(180.0)], swings=True)
 

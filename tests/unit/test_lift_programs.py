@@ -28,9 +28,9 @@ def segment(
 ) -> SegmentPhase:
     return SegmentPhase(
         angle=math.radians(degrees),
-        to_length=to,
-        velocity_length=velocity,
-        acceleration_length=acceleration,
+        to=to,
+        velocity=velocity,
+        acceleration=acceleration,
     )
 
 
@@ -202,7 +202,7 @@ def test_segments_join_without_jumps() -> None:
     made = program(JOINED)
     steady = (4.0, 4.0 / math.radians(60.0), 0.0)
     falling = (4.0, -1.0 / math.radians(30.0), 0.0)
-    ends = np.cumsum([math.degrees(phase.angle) for phase in JOINED])
+    ends = np.cumsum([math.degrees(float(phase.angle)) for phase in JOINED])
     states = [steady, (9.0, 2.0, -3.0), (5.0, -6.0, 1.5), falling, (-1.0, 0.5, 0.25)]
     states.append((0.0, 4.0 / math.radians(60.0), 0.0))
     for degrees, exact in zip(ends, states, strict=True):
@@ -296,8 +296,8 @@ class Lopsided(ClosedForm):
 def test_a_segment_goes_on_from_a_return_that_runs_backwards() -> None:
     """``S(1 - phi)`` ends with minus the starting speed and the starting acceleration."""
     b, law_given = math.radians(60.0), Lopsided()
-    up = RisePhase(angle=b, law="lopsided", shape=law_given, length=3.0)
-    down = ReturnPhase(angle=b, law="lopsided", shape=law_given, length=2.0)
+    up = RisePhase(angle=b, law=law_given, lift=3.0)
+    down = ReturnPhase(angle=b, law=law_given, lift=2.0)
     made = program([up, down, segment(240.0, 0.0)])
     assert state(made, b, -1)[:3] == pytest.approx([3.0, 4.5 / b, 3.0 / b**2], rel=1e-12)
     assert state(made, b, 1)[:3] == pytest.approx([3.0, -3.0 / b, 2.0 / b**2], rel=1e-12)

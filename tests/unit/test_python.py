@@ -6,6 +6,7 @@ import copy
 import json
 import pickle
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import fields, replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -183,3 +184,86 @@ def test_a_design_is_made_of_what_the_top_gives() -> None:
     )
     assert design == gc.design(PAIR)
     assert design.law_type == "ellipse"
+
+
+ANY: Any = gc
+UP = ANY.RisePhase(angle=2.0, law=ANY.rises.Cycloidal(), lift=0.2)
+PHASES = [UP, ANY.SegmentPhase(angle=1.0, to=0.1, velocity=-0.05), ANY.ReturnPhase(
+    angle="rest", law=ANY.rises.Polynomial345()
+)]  # fmt: skip
+SLIDING = ANY.FollowerSpec(type="roller", roller_radius=6.0)
+SWINGING = ANY.FollowerSpec(
+    type="roller", motion="oscillating", roller_radius=6.0, arm=90.0, pivot_distance=100.0
+)
+
+
+def cam(motion: Any, follower: Any = SLIDING, **more: Any) -> Any:
+    size = ANY.CamSpec(prime_radius=40.0, thickness=8.0)
+    return ANY.CamDesign(name="mine", motion=motion, follower=follower, cam=size, **more)
+
+
+def test_a_phase_says_each_thing_once_in_the_unit_of_its_follower() -> None:
+    names = [[item.name for item in fields(phase)] for phase in PHASES]
+    assert names == [
+        ["angle", "law", "lift"],
+        ["angle", "to", "velocity", "acceleration"],
+        ["angle", "law", "lift"],
+    ]
+    for follower, unit, scale in ((SLIDING, "mm", 1.0), (SWINGING, "deg", 180.0 / np.pi)):
+        design = cam(PHASES, follower)
+        up, segment, _ = design.to_dict()["motion"]
+        assert up == {
+            "type": "rise",
+            "law": "cycloidal",
+            "angle_deg": pytest.approx(360.0 / np.pi),
+            f"lift_{unit}": pytest.approx(0.2 * scale),
+        }
+        assert segment[f"to_{unit}"] == pytest.approx(0.1 * scale)
+        assert segment[f"end_velocity_{unit}_per_rad"] == pytest.approx(-0.05 * scale)
+        assert gc.design(design.to_dict()) == design
+        assert gc.build(design).program.range == pytest.approx((0.0, 0.2))
+
+
+def test_lists_and_arrays_become_tuples_of_plain_numbers() -> None:
+    x = np.linspace(0.0, 1.0, 5)
+    law = ANY.rises.TableRise(x=x, y=[0.0, 0.1, 0.5, 0.9, np.float64(1.0)])
+    design = cam([replace(UP, law=law), ANY.ReturnPhase(angle="rest", law=ANY.rises.Cycloidal())])
+    assert design.motion[0].law.x == (0.0, 0.25, 0.5, 0.75, 1.0)
+    assert type(design.motion[0].law.y[4]) is float
+    assert gc.build(design).program.range == pytest.approx((0.0, 0.2))
+    angles = np.radians(np.arange(0.0, 361.0, 10.0))
+    table = ANY.laws.TableLaw(phi1=angles, ratio=1.0 + 0.1 * np.cos(angles))
+    pair = ANY.PairSpec(teeth=np.array([20, 20]), module=2.0)
+    made = ANY.GearPairDesign(name="mine", law=table, pair=pair)
+    assert made.law.phi1 == tuple(angles)
+    assert made.pair.teeth == (20, 20)
+    assert hash(made.law) == hash(replace(made.law))
+    kept = ANY.laws.Ellipse(eccentricity=0.3)
+    assert ANY.GearPairDesign(name="mine", law=kept, pair=pair).law is kept
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "words"),
+    [
+        ({"motion": [replace(UP, lift=None)]}, "motion[0].lift_mm", "is missing"),
+        ({"motion": [replace(UP, angle="rest", lift=-1.0)]}, "motion[0].lift_mm", "out of range"),
+        ({"motion": [replace(UP, angle="all")]}, "motion[0].angle_deg", "is not known here"),
+        ({"motion": [replace(UP, law="cycloidal")]}, "motion[0].law", "is a str"),
+        ({"motion": [replace(UP, law=ANY.laws.Constant())]}, "motion[0].law", "is a Constant"),
+        ({"motion": [PHASES[1], 3]}, "motion[1]", "is a int"),
+        ({"motion": 3}, "motion", "is a int"),
+        ({"motion": PHASES, "limits": 3}, "limits", "is a int"),
+        ({"motion": PHASES, "limits": {"wall": "thin"}}, "limits.wall_mm", "is not a number"),
+        ({"motion": PHASES, "name": 3}, "name", "is not text"),
+        ({"motion": PHASES, "follower": "roller"}, "follower", "is a str"),
+    ],
+)
+def test_bad_arguments_are_refused_with_their_names(
+    changes: dict[str, Any], key: str, words: str
+) -> None:
+    size = ANY.CamSpec(prime_radius=40.0, thickness=8.0)
+    given = {"name": "mine", "follower": SLIDING, "cam": size, **changes}
+    with pytest.raises(DesignError, match=words) as caught:
+        ANY.CamDesign(**given)
+    assert key in [problem.key for problem in caught.value.problems]
+    pickle.loads(pickle.dumps(caught.value))

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
 
 import gearcam
@@ -107,6 +108,20 @@ def test_the_accuracy_is_as_told(example: Run) -> None:
 
 def test_the_example_is_about_ten_lines() -> None:
     assert 8 <= len(block("python").strip().splitlines()) <= 14
+
+
+def test_the_law_by_a_function_prints_what_is_shown() -> None:
+    """The centre distance is ``module*pi*z`` over the length of the centrode for distance 1."""
+    stream = io.StringIO()
+    with contextlib.redirect_stdout(stream):
+        exec(compile(block("python", 1), "README.md", "exec"), {})
+    assert stream.getvalue() == block("text", 1)
+    phi, weights = np.polynomial.legendre.leggauss(200)
+    phi = math.pi * (1.0 + phi)
+    ratio, slope = 1.0 - 0.3 * np.cos(phi), 0.3 * np.sin(phi)
+    length = math.pi * weights @ (np.hypot(ratio, slope / (1.0 + ratio)) / (1.0 + ratio))
+    shown = float(block("text", 1).split()[2])
+    assert shown == pytest.approx(2.0 * math.pi * 40 / length, abs=5e-7)
 
 
 def test_the_design_file_shown_is_the_profile() -> None:

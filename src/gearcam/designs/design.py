@@ -1,19 +1,27 @@
-"""What all designs have in common: a design made in Python meets the rules of a file."""
+"""What all designs have in common: a design made in Python meets the rules of a file.
+
+What no file can hold is a Python function: designs with one compare it by identity and have a hash
+of their own; written out, it is named where it is told of, and refused where it would be lost.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
 import json
+import os
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import InitVar, dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import InitVar, dataclass, field, fields
 from functools import cached_property
 from typing import Any, ClassVar, Final
 
 from gearcam.designs.examine import examine
+from gearcam.designs.faults import dotted
+from gearcam.designs.functions import Function, function_name, functions_in, never, pickles
 from gearcam.designs.kind import KINDS
 from gearcam.designs.outputs import OutputSpec
+from gearcam.designs.table import settled
 from gearcam.display import cut
 from gearcam.errors import DesignError, InfeasibleError, Problem
 
@@ -57,7 +65,11 @@ class Design:
     examined: InitVar[bool] = False
 
     def __post_init__(self, examined: bool) -> None:
-        object.__setattr__(self, "limits", dict(self.limits))
+        if isinstance(self.limits, Mapping):
+            object.__setattr__(self, "limits", dict(self.limits))
+        if not examined:
+            for item in fields(self):
+                object.__setattr__(self, item.name, settled(getattr(self, item.name)))
         self._settle()
         if not examined:
             _demand_types(self)
@@ -72,7 +84,7 @@ class Design:
         return self._value == other._value
 
     def __hash__(self) -> int:
-        return hash(self._value)
+        return hash(self._value[0])
 
     def __repr__(self) -> str:
         return cut(f'<{type(self).__name__} "{self.name}">')
@@ -88,13 +100,52 @@ class Design:
         """Its result: a picture of a design is one of what comes of it."""
         return KINDS[self.kind].room("build").build(self)
 
+    def __copy__(self) -> Design:
+        return self
+
+    def __deepcopy__(self, _: object) -> Design:
+        return self
+
+    def __getstate__(self) -> dict[str, Any]:
+        document, rule = document_of(self), "a function that is defined with def in a module"
+        _demand(pickles, document, self.source, "cannot be pickled", rule)
+        if any(functions_in(document)):
+            _ = self._token  # which the copy keeps
+        return vars(self)
+
     @cached_property
-    def _value(self) -> str:
-        """Everything that it asks for, with the rows of CSV files instead of their names."""
+    def _value(self) -> tuple[str, list[Callable[..., Any]]]:
+        """Everything that it asks for, with the rows of CSV files instead of their names.
+
+        Functions stand beside it.
+        """
         document = document_of(self)
+        functions = [one for _, many in functions_in(document) for one in many]
         with contextlib.suppress(InfeasibleError):  # of a file that cannot be read the name counts
             document = _with_rows(document, self)
-        return json.dumps(document, sort_keys=True)
+        return json.dumps(document, sort_keys=True, default=lambda _: ""), functions
+
+    @cached_property
+    def _token(self) -> str:
+        """What stands for functions in its hash: as they cannot be compared, no other has it."""
+        return os.urandom(16).hex()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what a design file with this design would hold.
+
+        Returns
+        -------
+        dict
+            Nested dictionaries with the keys and units of a file; `gearcam.design` takes them.
+
+        Raises
+        ------
+        DesignError
+            Where the design holds a Python function, which no file can.
+        """
+        document = document_of(self)
+        _demand(never, document, self.source, "cannot be written to a file", "a formula as text")
+        return document
 
     def with_(self, changes: Mapping[str, object]) -> Any:
         """Return the design with other values of some keys.
@@ -165,6 +216,7 @@ def _demand_types(design: Design) -> None:
     kind = KINDS[design.kind]
     owners = ((title, kind.table(title).owner) for title in kind.tables)
     tables = [(title, getattr(design, title), (owner,)) for title, owner in owners if owner]
+    wanted = (("limits", design.limits, (Mapping,)), *tables, *design._wanted())
     problems = [
         Problem(
             f"is a {type(part).__name__}",
@@ -172,7 +224,7 @@ def _demand_types(design: Design) -> None:
             key=key,
             allowed=f"an instance of {' or '.join(owner.__name__ for owner in types)}",
         )
-        for key, part, types in (*tables, *design._wanted())
+        for key, part, types in wanted
         if not isinstance(part, types)
     ]
     if problems:
@@ -207,6 +259,25 @@ def document_of(design: Design) -> dict[str, Any]:
             for name, value in design.limits.items()
         }
     return document
+
+
+def summary_of(design: Design) -> dict[str, Any]:
+    """Return the document of a `design` with the names of Python functions in their places."""
+    return json.loads(json.dumps(document_of(design), default=function_name))
+
+
+def _demand(
+    can: Callable[[Function], bool], document: Mapping[str, Any], file: str, what: str, allowed: str
+) -> None:
+    """Refuse a document with functions that cannot do what is wanted."""
+    problems = [
+        Problem(f"the {function_name(one)} {what}", file=file, key=dotted(path), allowed=allowed)
+        for path, functions in functions_in(document)
+        for one in functions
+        if not can(one)
+    ]
+    if problems:
+        raise DesignError(problems)
 
 
 def design(document: Mapping[str, Any], source: str = "") -> Any:
@@ -251,7 +322,8 @@ def hash_of(design: Design) -> str:
     It is taken from the values of all keys, defaults included, and from the rows of the CSV files
     that the design names; not from comments, spaces, the order of keys, or where these files
     lie; degrees count with 13 digits. What changes the content of no file of a build is left out:
-    ``[limits]``, ``[meshing]`` and which files are wanted.
+    ``[limits]``, ``[meshing]`` and which files are wanted. Nobody knows whether Python functions
+    are the same: a design with one has a hash that only itself and its copies have.
 
     Parameters
     ----------
@@ -272,7 +344,8 @@ def hash_of(design: Design) -> str:
     for title in ("limits", "meshing"):
         document.pop(title, None)
     del document["output"]["files"]
-    text = json.dumps(_with_rows(document, design), sort_keys=True)
+    made = _with_rows(document, design)
+    text = json.dumps(made, sort_keys=True, default=lambda _: design._token)
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
 
 

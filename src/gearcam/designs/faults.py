@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Key
 from gearcam.errors import Problem
@@ -50,6 +51,7 @@ class Fault:
     def problem(self, file: str, line: int | None = None) -> Problem:
         """Return it as it is told of a `file`, at a `line` of it where that is known."""
         value = None if self.value is MISSING else self.value
+        value = show(value) if functions_of(value) else value  # a problem must pickle
         return Problem(self.message, file, line, dotted(self.path), value, self.allowed, self.hint)
 
 
@@ -75,6 +77,8 @@ def show(value: Any) -> str:
         text = "[" + ", ".join(show(item) for item in value[:12]) + "]"
     elif isinstance(value, Mapping):
         text = "a table"
+    elif callable(value):
+        text = "a Python function"
     elif isinstance(value, int) and abs(value) > 10**15:
         text = f"{value // 10**15}..." if value < 10**40 else "a very large number"
     else:
@@ -160,14 +164,14 @@ def _single(entry: Key) -> str:
         return _KINDS[entry.base]
     words = [f"a {_KINDS[entry.base]}", bounds(entry)]
     text = " ".join(word for word in words if word)
-    return f'{text}, or "solve"' if entry.solve else text
+    return f'{text}, or "{entry.literal}"' if entry.literal else text
 
 
 def _plural(entry: Key) -> str:
     if entry.param.choices:
         return "words out of " + ", ".join(f'"{word}"' for word in entry.param.choices)
     text = " ".join(word for word in (f"{_KINDS[entry.base]}s", bounds(entry)) if word)
-    return f'{text}, or "solve"' if entry.solve else text
+    return f'{text}, or "{entry.literal}"' if entry.literal else text
 
 
 def quoted(words: Iterable[str]) -> str:
@@ -223,9 +227,9 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
         if isinstance(value, list):
             return Fault(path, _count(value), value, rule)
         return Fault(path, f"{show(value)} is not a list", value, rule)
-    choices = entry.param.choices or (("solve",) if entry.solve else ())
+    choices = entry.param.choices or ((entry.literal,) if entry.literal else ())
     if isinstance(value, str) and choices:
-        hint = did_you_mean(value, choices)
+        hint = did_you_mean(value, choices) or _type_hint(value, entry)
         return Fault(path, f"{show(value)} is not known here", value, rule, hint)
     if not is_of(value, entry.base):
         hint = _type_hint(value, entry)

@@ -8,6 +8,7 @@ names it, and only that of a file is loaded. Its modules:
 - `facts`: ``facts(result, measured)`` returns what is known of it;
 - `files`: ``FILES``, what makes each kind of file;
 - `advice`: ``ways(...)`` yields changes that may help where it is refused or has errors;
+- `public`: ``PUBLIC``, the classes that people who write Python make designs of;
 - `describe`: what schema, template and list of laws say of its main part;
 - `commands`, where it has any: ``COMMANDS`` of the command line.
 """
@@ -142,7 +143,7 @@ class DesignKind:
                     key = made_of.key(name)
                     # nan: the design decides
                     known = None if math.isnan(default) else default
-                    entries[key] = Key(name, key, made_of, float, None, False, known)
+                    entries[key] = Key(name, key, made_of, float, None, "", known)
         return Table("limits", None, entries)
 
 

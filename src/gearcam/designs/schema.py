@@ -165,4 +165,4 @@ def _single(key: Key) -> Schema:
         bounds = {word: getattr(made, name) for name, word in _BOUNDS.items()}
         single = {"type": _TYPES[key.base]}
         single |= {word: bound for word, bound in bounds.items() if bound is not None}
-    return {"anyOf": [single, {"const": "solve"}]} if key.solve else single
+    return {"anyOf": [single, {"const": key.literal}]} if key.literal else single

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import operator
 import types
 import typing
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -34,11 +35,13 @@ class Key:
         Type of a single value: float, int, str or bool.
     length : int or None
         Entries of a list: a number, 0 for any number of them, None where the value is no list.
-    solve : bool
-        Whether the word ``"solve"`` may stand for a value.
+    literal : str
+        The word that may stand for a value, such as ``solve``; empty where none may.
     default : object
         In inner units; `REQUIRED` where the file must give the key, None where the program finds a
         value by itself.
+    swings : bool or None
+        Of a lift: whether it is given so where lifts are angles; None of everything else.
     """
 
     name: str
@@ -46,8 +49,9 @@ class Key:
     param: Param
     base: type
     length: int | None
-    solve: bool
+    literal: str
     default: Any
+    swings: bool | None = None
 
     @property
     def required(self) -> bool:
@@ -62,7 +66,7 @@ class Key:
         """Turn a value that has been checked from the file's unit into mm, rad and tuples."""
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
-        if self.length is not None:
+        if isinstance(value, list | tuple):
             return tuple(self._inward(item) for item in value)
         return self._inward(value)
 
@@ -106,6 +110,13 @@ class Table:
     owner: type | None
     entries: Mapping[str, Key]
 
+    def of_lifts(self, *, oscillating: bool) -> Table:
+        """Return the table with the keys of lifts that are angles, `oscillating`, or lengths."""
+        kept = {
+            k: entry for k, entry in self.entries.items() if entry.swings in (None, oscillating)
+        }
+        return Table(self.title, self.owner, kept)
+
     def inward(self, raw: Mapping[str, Any]) -> dict[str, Any]:
         """Return inner values by parameter name, for the keys given."""
         return {
@@ -141,32 +152,70 @@ def table_of(title: str, owner: type) -> Table:
     Returns
     -------
     Table
-        With an entry for each field, in order.
+        With an entry for each field, in order; with two for a lift.
     """
     hints = typing.get_type_hints(owner)
     defaults = {field.name: field.default for field in dataclasses.fields(owner)}
     made = (
-        _entry(name, made_of, hints[name], defaults[name])
+        entry
         for name, made_of in params_of(owner).items()
+        for entry in _entries(name, made_of, hints[name], defaults[name])
     )
     return Table(title, owner, {entry.key: entry for entry in made})
 
 
+def _entries(name: str, made_of: Param, hint: Any, default: Any) -> Iterator[Key]:
+    entry = _entry(name, made_of, hint, default)
+    if made_of.angular is None:
+        yield entry
+    else:
+        angular = made_of.angular
+        yield replace(entry, swings=False)
+        yield replace(entry, swings=True, key=angular.key(name), param=angular)
+
+
 def _entry(name: str, made_of: Param, hint: Any, default: Any) -> Key:
-    hint, _ = _split(hint)
+    hint, literal = _split(hint)
     length: int | None = None
     if typing.get_origin(hint) is tuple:
         items = typing.get_args(hint)
         length = 0 if items[-1] is Ellipsis else len(items)
-        hint = items[0]
-    hint, solve = _split(hint)
-    return Key(name, made_of.key(name), made_of, hint, length, solve, default)
+        hint, literal = _split(items[0])
+    return Key(name, made_of.key(name), made_of, hint, length, literal, default)
 
 
-def _split(hint: Any) -> tuple[Any, bool]:
-    """Take None and the word "solve" out of a union; say whether the word was there."""
+def _split(hint: Any) -> tuple[Any, str]:
+    """Take None and a word such as "solve" out of a union; return the word, if it was there."""
     if typing.get_origin(hint) not in (typing.Union, types.UnionType):
-        return hint, False
+        return hint, ""
     rest = [part for part in typing.get_args(hint) if part is not types.NoneType]
     plain = [part for part in rest if typing.get_origin(part) is not typing.Literal]
-    return plain[0], len(plain) < len(rest)
+    words = [typing.get_args(part)[0] for part in rest if part not in plain]
+    return plain[0], "".join(words)
+
+
+def settled(part: Any) -> Any:
+    """Return what people gave with tuples for lists and arrays, and plain numbers for numpy's.
+
+    Parameters
+    ----------
+    part : object
+        A value, or a dataclass with values at any depth.
+
+    Returns
+    -------
+    object
+        The same one where nothing changes.
+    """
+    if hasattr(part, "tolist"):
+        part = part.tolist()
+    if isinstance(part, list | tuple):
+        items = tuple(map(settled, part))
+        same = isinstance(part, tuple) and all(map(operator.is_, items, part))
+        return part if same else items
+    if not dataclasses.is_dataclass(part) or isinstance(part, type):
+        return part
+    given = {item.name: getattr(part, item.name) for item in dataclasses.fields(part)}
+    made = {name: settled(value) for name, value in given.items()}
+    changed = {name: value for name, value in made.items() if value is not given[name]}
+    return replace(part, **changed) if changed else part

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from gearcam.designs.faults import Fault, allowed, is_of, key_hint, show, value_fault
+from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Key, Table
 
@@ -65,7 +66,7 @@ def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
 
 def _fits(key: Key, value: Any) -> bool:
     """Whether a single value is what its key allows."""
-    if key.solve and value == "solve":
+    if (key.literal and value == key.literal) or (key.param.function and functions_of(value)):
         return True
     if not is_of(value, key.base) or (key.param.choices and value not in key.param.choices):
         return False

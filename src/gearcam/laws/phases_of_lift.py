@@ -1,13 +1,14 @@
 """Phases of a lift program: what a design says of each stretch of a cam's turn.
 
-The *lift* is a length for translating followers and an angle for oscillating ones; a file gives the
-one or the other (``lift_mm``, ``lift_deg``). A *rise* goes up by its lift after a law on the unit
-square, a *return* comes down after one (by all that was risen, if it gives no lift), a *dwell*
-stands still, and a *segment* goes from the state in which the phase before it ends to a lift with
-a velocity and an acceleration, so that phases join without a dwell.
+The *lift* is a length for translating followers and an angle for oscillating ones; a file says
+which (``lift_mm``, ``lift_deg``). A *rise* goes up by its lift after a law on the unit square, a
+*return* comes down after one (by all that was risen, if it gives no lift), a *dwell* stands still,
+and a *segment* goes from the state in which the phase before it ends to a lift with a velocity and
+an acceleration, so that phases join without a dwell. The angle of one phase may be
+``"rest"``: what the others leave of the turn.
 
-Refused by reading: phases that do not fill a turn, programs that end at another lift than they
-begin with, lifts of the wrong kind.
+Refused by reading: phases that do not fill a turn, a rest that is none, programs that end at
+another lift than they begin with.
 
 Depends on quantities only.
 """
@@ -17,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from gearcam.display import Brief
 from gearcam.numerals import shown
@@ -28,6 +29,7 @@ from gearcam.quantities import (
     LENGTH,
     LENGTH_PER_RAD,
     LENGTH_PER_RAD2,
+    Param,
     Quantity,
     param,
 )
@@ -41,35 +43,41 @@ _LIFT_MISS: Final = 1e-9
 Problem = tuple[int | None, str, str, str]
 """Number of the phase, field, what is wrong, what is allowed."""
 
+TURN: Final = 2.0 * math.pi
+"""A turn of the cam, rad."""
+
+_ANGLE: Final = "cam angle that it takes, or what the others leave"
+
 
 @dataclass(frozen=True, kw_only=True)
 class DwellPhase:
     """The follower stands still."""
 
-    angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")
+    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
 
 
 @dataclass(frozen=True, kw_only=True)
 class RisePhase(Brief):
     """The follower rises by a law.
 
-    The law's parameters stand in `shape`, made by its entry in `gearcam.laws.rises.base.RISES`.
+    Parameters
+    ----------
+    law : object
+        Parameters of a law, such as `gearcam.rises.Cycloidal`.
+    lift : float or None
+        In mm, or in rad where the follower oscillates.
     """
 
-    angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")
-    law: str
-    shape: Any
-    length: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, word="lift", doc="how far (translating follower)"
+    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    law: Any
+    lift: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e6,
+        doc="how far (translating follower)",
+        angular=Param(ANGLE, gt=0, lt=180, doc="how far (oscillating follower)"),
     )
-    swing: float | None = param(
-        ANGLE, default=None, gt=0, lt=180, word="lift", doc="how far (oscillating follower)"
-    )
-
-    @property
-    def lift(self) -> float | None:
-        """How far, mm or rad; None where the file does not say."""
-        return self.length if self.length is not None else self.swing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,39 +85,37 @@ class ReturnPhase(RisePhase):
     """The follower comes down by a law, to lift zero where no lift is given."""
 
 
-def _rate(quantity: Quantity, word: str, sign: str) -> Any:
-    doc = f"{sign} at its end; 0 if left out"
-    return param(quantity, default=None, word=f"end_{word}", doc=doc)
+def _rate(length: Quantity, angle: Quantity, word: str, sign: str) -> Any:
+    said: Any = {"word": f"end_{word}", "doc": f"{sign} at its end; 0 if left out"}
+    return param(length, default=None, angular=Param(angle, **said), **said)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SegmentPhase(Brief):
     """The follower goes to a lift and has a velocity and an acceleration there.
 
-    These are `velocity_length` and `acceleration_length` of a translating follower,
-    `velocity_swing` and `acceleration_swing` of an oscillating one.
+    They are in mm, mm/rad and mm/rad^2, or, where the follower oscillates, in rad, rad/rad and
+    rad/rad^2.
     """
 
-    angle: float = param(ANGLE, gt=0, le=360, doc="cam angle that it takes")
-    to_length: float | None = param(
-        LENGTH, default=None, ge=-1e6, le=1e6, word="to", doc="lift at its end (translating)"
+    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    to: float | None = param(
+        LENGTH,
+        default=None,
+        ge=-1e6,
+        le=1e6,
+        doc="lift at its end (translating)",
+        angular=Param(ANGLE, gt=-180, lt=180, doc="lift at its end (oscillating)"),
     )
-    to_swing: float | None = param(
-        ANGLE, default=None, gt=-180, lt=180, word="to", doc="lift at its end (oscillating)"
+    velocity: float | None = _rate(LENGTH_PER_RAD, ANGLE_PER_RAD, "velocity", "ds/dtheta")
+    acceleration: float | None = _rate(
+        LENGTH_PER_RAD2, ANGLE_PER_RAD2, "acceleration", "d2s/dtheta2"
     )
-    velocity_length: float | None = _rate(LENGTH_PER_RAD, "velocity", "ds/dtheta")
-    velocity_swing: float | None = _rate(ANGLE_PER_RAD, "velocity", "ds/dtheta")
-    acceleration_length: float | None = _rate(LENGTH_PER_RAD2, "acceleration", "d2s/dtheta2")
-    acceleration_swing: float | None = _rate(ANGLE_PER_RAD2, "acceleration", "d2s/dtheta2")
 
     @property
     def end(self) -> tuple[float, float, float]:
         """Lift, velocity and acceleration at its end, mm or rad, per rad and per rad^2."""
-        return (
-            (self.to_length or 0.0) + (self.to_swing or 0.0),
-            (self.velocity_length or 0.0) + (self.velocity_swing or 0.0),
-            (self.acceleration_length or 0.0) + (self.acceleration_swing or 0.0),
-        )
+        return self.to or 0.0, self.velocity or 0.0, self.acceleration or 0.0
 
 
 Phase = DwellPhase | RisePhase | ReturnPhase | SegmentPhase
@@ -122,8 +128,25 @@ PHASES: Final[dict[str, type]] = {
 }
 """The phases, by their names in files."""
 
-_OF_LENGTH: Final = ("length", "to_length", "velocity_length", "acceleration_length")
-_OF_SWING: Final = ("swing", "to_swing", "velocity_swing", "acceleration_swing")
+_ASKED: Final[dict[type, str]] = {RisePhase: "lift", SegmentPhase: "to"}
+"""What a phase must say."""
+
+
+def angles_of(phases: Sequence[Phase]) -> list[float]:
+    """Return the cam angle of each phase, rad; ``"rest"`` becomes what the others leave.
+
+    Parameters
+    ----------
+    phases : sequence of Phase
+        Of a turn; at most one takes the rest.
+
+    Returns
+    -------
+    list of float
+        The rest is 0 or less where they leave nothing.
+    """
+    rest = TURN - math.fsum(phase.angle for phase in phases if phase.angle != "rest")
+    return [rest if phase.angle == "rest" else phase.angle for phase in phases]
 
 
 def levels(phases: Sequence[Phase]) -> list[float]:
@@ -168,39 +191,47 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
     tuple
         Number of the phase (None for the program), field, message, allowed.
     """
-    wrong = _OF_LENGTH if oscillating else _OF_SWING
-    right = _OF_SWING if oscillating else _OF_LENGTH
-    kind, unit = ("an oscillating", "_deg") if oscillating else ("a translating", "_mm")
+    unit = "deg" if oscillating else "mm"
     clean = True
     for number, phase in enumerate(phases):
-        for name in wrong:
-            if getattr(phase, name, None) is not None:
-                clean = False
-                message = f"is of the wrong kind for {kind} follower"
-                yield number, name, message, f"the key in {unit}"
-        asked = {SegmentPhase: right[1], RisePhase: right[0]}.get(type(phase))
+        asked = _ASKED.get(type(phase))
         if asked and getattr(phase, asked) is None:
             clean = False
-            yield number, asked, "is missing", f"a lift in {unit.lstrip('_')}"
+            yield number, asked, "is missing", f"a lift in {unit}"
     if clean:
-        yield from _closure_problems(phases, right[0])
+        yield from _closure_problems(phases, unit)
 
 
-def _closure_problems(phases: Sequence[Phase], lift: str) -> Iterator[Problem]:
-    total = sum(phase.angle for phase in phases)
-    if abs(total - 2.0 * math.pi) > TURN_MISS:
-        last = math.degrees(2.0 * math.pi - total + phases[-1].angle)
+def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
+    angles = angles_of(phases)
+    miss = TURN - sum(angles)
+    rests = [number for number, phase in enumerate(phases) if phase.angle == "rest"]
+    for number in rests[1:]:
+        rule = f"an angle: motion[{rests[0]}] takes the rest"
+        yield number, "angle", "only one phase can take the rest", rule
+    if rests:
+        left = angles[rests[0]]
+        if left <= TURN_MISS:
+            others = shown(math.degrees(TURN - left), 10)
+            message = f"the other phases take {others} deg, which leaves nothing"
+            yield rests[0], "angle", message, "less than 360 deg in the others"
+    elif abs(miss) > TURN_MISS:
+        last = math.degrees(miss + angles[-1])
         hint = f"; the last phase would take {shown(last, 10)} deg" if last > 0 else ""
-        message = f"the phases take {shown(math.degrees(total), 10)} deg"
-        yield None, "", message, f"360 deg in all{hint}"
+        message = f"the phases take {shown(math.degrees(TURN - miss), 10)} deg"
+        yield None, "", message, f'360 deg in all, or "rest" for one of them{hint}'
+
+
+def _closure_problems(phases: Sequence[Phase], unit: str) -> Iterator[Problem]:
+    yield from _turn_problems(phases)
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
-            yield number, lift, "there is no lift to return from", "a rise before it, or a lift"
+            yield number, "lift", "there is no lift to return from", "a rise before it, or a lift"
     largest = max(map(abs, found))
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"
     elif abs(found[-1]) > _LIFT_MISS * largest:
-        end, unit = (found[-1], "mm") if lift == "length" else (math.degrees(found[-1]), "deg")
+        end = math.degrees(found[-1]) if unit == "deg" else found[-1]
         rule = "the lift at the end of the turn is that at its beginning, 0"
         yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule

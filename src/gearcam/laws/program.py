@@ -9,7 +9,6 @@ Source: 000 section 3.3, eqs. (3.3)-(3.5).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,11 +20,13 @@ from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import JUMP, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
+    TURN,
     DwellPhase,
     Phase,
     ReturnPhase,
     RisePhase,
     SegmentPhase,
+    angles_of,
     levels,
     program_problems,
 )
@@ -39,9 +40,7 @@ from gearcam.tolerances import Tolerances
 _INNER = slice(5, -5, 6)
 """Surveyed places at which the size of derivatives is known well enough to judge jumps."""
 
-_TURN = 2.0 * math.pi
-
-_KNOT = 4.0 * np.finfo(float).eps * _TURN
+_KNOT = 4.0 * np.finfo(float).eps * TURN
 """Rounding of a knot, rad."""
 
 
@@ -52,6 +51,22 @@ class PlacedPhase:
     kind: str
     start: float
     end: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deviation:
+    """The largest distance of a lift from the rows that it was made from.
+
+    Parameters
+    ----------
+    theta : float, rad
+        Where.
+    value : float, mm or rad
+        How far, positive where the lift is above the row.
+    """
+
+    theta: float
+    value: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -86,11 +101,17 @@ class Program(Brief, Displacement):
         Its phases; a segment counts as a rise or return by its direction.
     cuts : (m,) array, rad
         The knots, and more places where a law bends sharply: between them extremes are sought.
+    error : float, mm or rad
+        Estimated error of the lift beyond rounding.
+    deviation : Deviation, optional
+        What smoothing took off rows.
     """
 
     lift: Piecewise
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
+    error: float = 0.0
+    deviation: Deviation | None = None
 
     @property
     def knots(self) -> Array:
@@ -100,7 +121,7 @@ class Program(Brief, Displacement):
     @property
     def period(self) -> float:
         """A turn of the cam, rad."""
-        return _TURN
+        return TURN
 
     def cuts_between(self, low: float, high: float) -> Array:
         """Return the cuts between two cam angles, with both of these.
@@ -114,7 +135,7 @@ class Program(Brief, Displacement):
         -------
         (n,) array, rad
         """
-        cuts = np.append(self.cuts, self.cuts + _TURN)
+        cuts = np.append(self.cuts, self.cuts + TURN)
         return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
 
     def phases(self, kind: str) -> list[tuple[float, float]]:
@@ -221,12 +242,13 @@ def make_program(
     for number, _, message, rule in program_problems(phases, oscillating=oscillating):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    share = _TURN / sum(phase.angle for phase in phases)
-    angles = np.cumsum([0.0, *(phase.angle * share for phase in phases)])
-    angles[-1] = _TURN
+    widths = angles_of(phases)
+    share = TURN / sum(widths)
+    angles = np.cumsum([0.0, *(width * share for width in widths)])
+    angles[-1] = TURN
     heights = levels(phases)
     heights[-1] = 0.0
-    shapes = [phase.shape for phase in phases if isinstance(phase, RisePhase)]
+    shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
         _Place(*ends, *lifts)
@@ -239,7 +261,7 @@ def make_program(
             case SegmentPhase() as phase:
                 return phase.end[1:]
             case RisePhase() as phase:
-                return places[number].end_state(rises[phase.shape])
+                return places[number].end_state(rises[phase.law])
             case DwellPhase():
                 return 0.0, 0.0
 
@@ -256,12 +278,18 @@ def make_program(
                 pieces.append((place.end, place.quintic(end_state(number - 1), phase.end[1:])))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
-                pieces += place.pieces(rises[phase.shape])
-                cuts = np.append(cuts, place.cuts(rises[phase.shape]))
+                pieces += place.pieces(rises[phase.law])
+                cuts = np.append(cuts, place.cuts(rises[phase.law]))
         stretches.append(PlacedPhase(kind=kind, start=place.start, end=place.end))
     knots, parts = zip(*pieces, strict=True)
     lift = piecewise([0.0, *knots], list(parts))
-    return Program(lift=lift, stretches=tuple(stretches), cuts=np.union1d(lift.knots, cuts))
+    swing = max(heights) - min(heights)
+    return Program(
+        lift=lift,
+        stretches=tuple(stretches),
+        cuts=np.union1d(lift.knots, cuts),
+        error=swing * max((rise.error for rise in rises.values()), default=0.0),
+    )
 
 
 @dataclass(frozen=True)

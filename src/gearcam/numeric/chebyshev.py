@@ -24,14 +24,11 @@ _DEGREE = 8
 _FIRST_CUTS = 128
 """Intervals to begin with, so that a bump of a degree cannot slip between the samples."""
 
-_NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
-_TO_COEFFICIENTS = np.cos(np.outer(np.arange(_DEGREE + 1), np.arccos(_NODES))) * 2.0 / (_DEGREE + 1)
-_TO_COEFFICIENTS[0] *= 0.5
 _NOISE = 1e-11
 """Rounding that a function may have, relative to its largest value; the error estimate tells it."""
 
-_HALVINGS = 11
-"""A turn in 128 intervals, halved 11 times: 5 arc seconds, enough to call it not smooth."""
+_FINEST = 2**18
+"""Most intervals: 5 arc seconds of a turn are enough to call a function not smooth."""
 
 
 class NotSmoothError(GearcamError, ValueError):
@@ -110,6 +107,11 @@ class Expansion(Brief):
         integral[0] = starts[:-1] - signs @ integral
         return Expansion(knots=self.knots, coefficients=integral, error=self.error)
 
+    def derivative(self) -> Expansion:
+        """Return the derivative; at the ends of an interval it loses most digits."""
+        slopes = np.polynomial.chebyshev.chebder(self.coefficients) * (2.0 / np.diff(self.knots))
+        return replace(self, coefficients=slopes)
+
     @property
     def last(self) -> float:
         """Value at the last knot."""
@@ -125,7 +127,23 @@ def _powers_of_chebyshev(count: int) -> Array:
     return rows
 
 
-def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: float) -> Expansion:
+@lru_cache
+def _basis(degree: int) -> tuple[Array, Array]:
+    """Nodes on [-1, 1], and the matrix that makes coefficients of values there."""
+    angles = np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)
+    to_coefficients = np.cos(np.outer(np.arange(degree + 1), angles)) * 2.0 / (degree + 1)
+    to_coefficients[0] *= 0.5
+    return np.cos(angles), to_coefficients
+
+
+def expand(
+    function: Callable[[Array], Array],
+    breaks: ArrayLike,
+    tolerance: float,
+    *,
+    degree: int = _DEGREE,
+    cuts: int = _FIRST_CUTS,
+) -> Expansion:
     """Expand a piecewise smooth function to a tolerance.
 
     Parameters
@@ -137,11 +155,15 @@ def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: flo
     tolerance : float
         Truncation error allowed, relative to the largest value, on an interval as wide as the
         whole; narrower ones may have more, since they count for less in the integral.
+    degree : int
+        Of the expansion on each interval.
+    cuts : int
+        Intervals to begin with, a power of 2.
 
     Returns
     -------
     Expansion
-        Of a fixed degree on as many intervals as it takes.
+        Of one degree on as many intervals as it takes.
 
     Raises
     ------
@@ -150,21 +172,23 @@ def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: flo
     """
     grid = np.asarray(breaks, dtype=float)
     span = grid[-1] - grid[0]
-    parts = np.ceil(_FIRST_CUTS * np.diff(grid) / span).astype(int)
-    cuts = [np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(grid), parts, strict=True)]
-    knots = np.concatenate([grid[:1], *cuts])
+    nodes, to_coefficients = _basis(degree)
+    halvings = (_FINEST // cuts).bit_length() - 1
+    parts = np.ceil(cuts * np.diff(grid) / span).astype(int)
+    inner = [np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(grid), parts, strict=True)]
+    knots = np.concatenate([grid[:1], *inner])
     low, high = knots[:-1], knots[1:]
     done: list[tuple[Array, Array, Array]] = []
     scale = error = 0.0
     before = np.full(low.shape, np.inf)
-    for halving in range(_HALVINGS + 1):
-        x = 0.5 * (low + high) + 0.5 * (high - low) * _NODES[:, None]
+    for halving in range(halvings + 1):
+        x = 0.5 * (low + high) + 0.5 * (high - low) * nodes[:, None]
         values = np.broadcast_to(function(x.ravel()), x.size).reshape(x.shape)
         bad = ~np.isfinite(values)
         if bad.any():
             raise NotSmoothError(float(x[bad][0]), finite=False)
         scale = max(scale, float(np.abs(values).max()))
-        coefficients = _TO_COEFFICIENTS @ values
+        coefficients = to_coefficients @ values
         last = np.abs(coefficients[-2:]).max(axis=0)
         allowed = max(tolerance, 4.0 * np.finfo(float).eps) * scale * np.sqrt(span / (high - low))
         # Halving does not help against rounding in the function; against a corner it does.
@@ -175,7 +199,7 @@ def expand(function: Callable[[Array], Array], breaks: ArrayLike, tolerance: flo
             done.append((low[good], high[good], coefficients[:, good]))
         if good.all():
             break
-        if halving == _HALVINGS:
+        if halving == halvings:
             worst = int(np.argmax(np.where(good, 0.0, last)))
             raise NotSmoothError(float(0.5 * (low + high)[worst]), finite=True)
         low, high, before = low[~good], high[~good], np.tile(last[~good], 2)

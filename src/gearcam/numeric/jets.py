@@ -281,7 +281,7 @@ def polynomial(x: Jet, place: Value, *coefficients: Value) -> Jet:
     for row in rows[-2::-1]:
         about *= t
         about += row
-    return _composed(x, about)
+    return composed(x, about)
 
 
 def harmonics(x: Jet, cosines: Sequence[float] | Array, sines: Sequence[float] | Array) -> Jet:
@@ -304,7 +304,7 @@ def harmonics(x: Jet, cosines: Sequence[float] | Array, sines: Sequence[float] |
     that stay in the processor's cache.
     """
     orders, turns = np.arange(x.order + 1), 1j * np.arange(1, len(cosines) + 1)[:, None]
-    factorials = np.array([math.factorial(k) for k in orders])
+    factorials = np.array([float(math.factorial(k)) for k in orders])
     rows = (np.array(cosines) - 1j * np.array(sines))[:, None] * turns**orders / factorials
     waves = np.exp(1j * np.ravel(x.c[0]))
     about = np.empty((len(orders), waves.size))
@@ -315,11 +315,23 @@ def harmonics(x: Jet, cosines: Sequence[float] | Array, sines: Sequence[float] |
             total += row[:, None]
             total *= wave
         about[:, start : start + _BLOCK] = total.real
-    return _composed(x, about.reshape(len(orders), *np.shape(x.c[0])))
+    return composed(x, about.reshape(len(orders), *np.shape(x.c[0])))
 
 
-def _composed(x: Jet, about: Array) -> Jet:
-    """Return f(x) of a jet from the derivatives of f over their factorials at its points."""
+def composed(x: Jet, about: Array | Sequence[Array]) -> Jet:
+    """Return f(x) of a jet from f and its derivatives over their factorials at its points.
+
+    Parameters
+    ----------
+    x : Jet
+        Of arrays.
+    about : sequence of arrays
+        Row k is the k-th derivative over k!, up to the order of `x`.
+
+    Returns
+    -------
+    Jet
+    """
     if all(_is_zero(value) for value in x.c[2:]):
         return Jet([about[0], *(value * x.c[1] ** k for k, value in enumerate(about[1:], 1))])
     step, result = Jet([0.0, *x.c[1:]]), Jet([about[-1], *[0.0] * x.order])

@@ -34,9 +34,10 @@ def _sizes(document: Mapping[str, Any]) -> Iterator[Way]:
         given = value_at(document, key)
         if given:
             yield Way(far={key: factor * given})
+    motion = document["motion"]
     lifts = {
         f"motion[{number}].{key}": _SMALLER * value
-        for number, phase in enumerate(document["motion"])
+        for number, phase in enumerate([] if isinstance(motion, dict) else motion)
         for key, value in phase.items()
         if key.startswith(("lift_", "to_", "velocity_", "acceleration_")) and value
     }

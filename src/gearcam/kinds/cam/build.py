@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
@@ -61,9 +61,9 @@ class CamResult(Result):
     def program(self) -> Program:
         """The lift over a turn."""
         with self.stage("program"):
-            return make_program(
-                self.design.phases, self.tolerances, oscillating=self.design.follower.oscillating
-            )
+            motion, swings = self.design.motion, self.design.follower.oscillating
+            make = partial(make_program, motion) if isinstance(motion, tuple) else motion.program
+            return make(self.tolerances, oscillating=swings)
 
     @cached_property
     def mechanism(self) -> Mechanism:

@@ -1,21 +1,37 @@
-"""The tables ``[[motion]]`` in words: for the schema, the template and the list of laws."""
+"""The motion of a cam in words: for the schema, the template and the list of laws."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Final
 
+from gearcam.designs.faults import description
 from gearcam.designs.listing import Listed, listed
 from gearcam.designs.schema import chosen, table_schema, told
 from gearcam.designs.template import entry_lines, key_line, law_comment
 from gearcam.kinds.cam.design import KIND
-from gearcam.kinds.cam.motion import LIFT, WITH_LAW, phase_table, rise_table, summary, twins
+from gearcam.kinds.cam.motion import (
+    LIFT,
+    WITH_LAW,
+    phase_table,
+    rise_table,
+    summary,
+    turn_tables,
+    twins,
+)
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.rises.base import RISES
 
+_ROWS: Final = "motion-table"
+_FORMULA: Final = "motion-formula"
+"""Names of the definitions of a motion over the whole turn."""
+
+_SHOWN: Final = {"file": "motion.csv", "smoothing_tolerance_mm": 0.01}
+"""Its keys with values in the template."""
+
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the schema of the array of tables, and the definitions that it needs."""
+    """Return the schema of the motion, and the definitions that it needs."""
     words = told((name, entry.doc) for name, entry in RISES.items())
     phases = chosen("type", PHASES, "the phase", lambda name: name)
     made: dict[str, Any] = {}
@@ -25,13 +41,29 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
             made |= {f"{name}-{law}": _phase_schema(name, law) for law in RISES}
         else:
             made[name] = _phase_schema(name)
+    made |= {_ROWS: _rows_schema(), _FORMULA: _formula_schema()}
     main = {
-        "type": "array",
-        "minItems": 1,
-        "description": "the lift over a turn of the cam, phase by phase",
-        "items": {"type": "object", **phases},
+        "description": "the lift over a turn of the cam, phase by phase, by rows or by a formula",
+        "if": {"type": "array"},
+        "then": {"minItems": 1, "items": {"type": "object", **phases}},
+        "else": {
+            "if": {"required": ["lift"]},
+            "then": {"$ref": f"#/$defs/{_FORMULA}"},
+            "else": {"$ref": f"#/$defs/{_ROWS}"},
+        },
     }
     return main, made
+
+
+def _rows_schema() -> dict[str, Any]:
+    known, _ = turn_tables()
+    made = table_schema(known, "rows of cam angle and lift over a turn")
+    inline = [{"required": ["theta_deg", key]} for key in twins(known)["lift"]]
+    return made | {"oneOf": [{"required": ["file"]}, *inline]}
+
+
+def _formula_schema() -> dict[str, Any]:
+    return table_schema(turn_tables()[1], "the lift over a turn as a formula")
 
 
 def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
@@ -59,6 +91,15 @@ def lines() -> Iterator[str]:
         if name not in (phase["type"] for phase in example):
             yield "#"
             yield from _phase({"type": name}, "# ")
+    yield ""
+    yield "# Instead of all phases, the whole turn: by rows of angle and lift, or by a formula:"
+    yield "#"
+    yield "# [motion]"
+    for key, entry in (item for known in turn_tables() for item in known.entries.items()):
+        if key in _SHOWN:
+            yield key_line(key, _SHOWN[key], description(entry), "# ")
+        else:
+            yield f"#   or {key}: {entry.param.doc}"
     yield ""
     yield "# Other laws of rises and returns:"
     used = {phase["law"] for phase in example if "law" in phase}

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.cams.spec import KIND as CAM_KIND
 from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec, size_problems
@@ -18,12 +18,16 @@ from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
-from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of
-from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase
+from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
+from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param
+from gearcam.registry import classes_in, name_of
+
+if TYPE_CHECKING:
+    from gearcam.kinds.cam.motion import Motion
 
 NAME: Final = "cam"
 """As in a file."""
@@ -89,7 +93,7 @@ class CamDesign(Design):
 
     Parameters
     ----------
-    phases : tuple of Phase
+    motion : tuple of Phase, MotionTable or MotionFormula
         The lift over a turn of the cam.
     follower : FollowerSpec
         What touches the cam, and how it is guided.
@@ -103,26 +107,26 @@ class CamDesign(Design):
 
     kind = NAME
 
-    phases: tuple[Phase, ...]
+    motion: Motion
     follower: FollowerSpec
     cam: CamSpec
     blank: WheelBlank = field(default_factory=WheelBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
 
     def _settle(self) -> None:
-        if isinstance(self.phases, Sequence):
-            object.__setattr__(self, "phases", tuple(self.phases))
+        if isinstance(self.motion, Sequence):
+            object.__setattr__(self, "motion", tuple(self.motion))
         if isinstance(self.blank, WheelBlank):
             object.__setattr__(self, "blank", _unmarked(self.blank, self.source))
 
     def _wanted(self) -> Iterator[Wanted]:
-        if not isinstance(self.phases, tuple):
-            yield "phases", self.phases, (tuple,)
+        if not isinstance(self.motion, tuple):
+            yield "motion", self.motion, whole_turns()
             return
-        for number, phase in enumerate(self.phases):
+        for number, phase in enumerate(self.motion):
             yield f"motion[{number}]", phase, tuple(PHASES.values())
-            if isinstance(phase, RisePhase) and phase.law in RISES:
-                yield f"motion[{number}].shape", phase.shape, (RISES[phase.law].parameters,)
+            if isinstance(phase, RisePhase) and not name_of(RISES, phase.law):
+                yield f"motion[{number}].law", phase.law, tuple(classes_in(RISES).values())
 
 
 def _unmarked(blank: WheelBlank, source: str) -> WheelBlank:
@@ -189,7 +193,7 @@ KIND: Final = DesignKind(
     design=CamDesign,
     main=TITLE,
     examine_main=_examine_motion,
-    main_of=lambda design: motion_of(design.phases),
+    main_of=lambda design: motion_of(design.motion, oscillating=design.follower.oscillating),
     homes=homes,
     tables={
         "follower": partial(table_of, "follower", FollowerSpec),
@@ -209,7 +213,7 @@ KIND: Final = DesignKind(
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
             {"type": "dwell", "angle_deg": 60},
             {"type": "return", "angle_deg": 120, "law": "cycloidal"},
-            {"type": "dwell", "angle_deg": 60},
+            {"type": "dwell", "angle_deg": "rest"},
         ],
         "follower": {"type": "roller", "motion": "translating", "roller_radius_mm": 8},
         "cam": {"prime_radius_mm": 40, "thickness_mm": 12},
@@ -222,12 +226,7 @@ KIND: Final = DesignKind(
         "wire": {"output": {"files": ["dxf"], "kerf_mm": 0.3}},
     },
     notes={
-        "motion": "The lift over a turn of the cam: 360 deg in all, from 0 back to 0.",
+        "motion": "The lift over a turn of the cam, 360 deg in all; one phase may take the rest.",
         "cam": "prime_radius_mm or base_radius_mm; a flat follower has base_radius_mm",
     },
 )
-
-PUBLIC: Final = (
-    CamDesign, FollowerSpec, CamSpec, WheelBlank, CamOutputSpec, *PHASES.values()
-)  # fmt: skip
-"""What people who write Python make designs of."""

@@ -17,6 +17,7 @@ from gearcam.numerals import shown
 if TYPE_CHECKING:
     from gearcam.cams.measures import Range
     from gearcam.kinds.cam.build import CamResult
+    from gearcam.laws.program import Program
 
 Tree = dict[str, Any]
 
@@ -68,6 +69,7 @@ def _motion(result: CamResult) -> Tree:
         "lift": Fact(extent(low, high, scale), "lift", unit=unit, shown=True),
         "total_lift": Fact(scale * (high - low), "lift", unit=unit),
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
+        "deviation": _deviation(program, scale, unit),
         **{
             name: Fact(scale * peak, meaning, unit=unit + per, shown=True)
             for (name, meaning, per), peak in zip(
@@ -75,6 +77,15 @@ def _motion(result: CamResult) -> Tree:
             )
         },
     }
+
+
+def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
+    """Return what smoothing took off the rows of a table."""
+    if program.deviation is None:
+        return None
+    place = f"at {shown(math.degrees(program.deviation.theta), scale=360.0)} deg"
+    value, meaning = scale * program.deviation.value, "largest distance from the rows"
+    return Fact(value, meaning, place=place, unit=unit, shown=True)
 
 
 def _cam(result: CamResult) -> Tree:
@@ -186,6 +197,11 @@ def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
     reach = float(np.abs(result.profile.vertices).max())
     rounding = 16.0 * np.finfo(float).eps * reach
     rows = {"profile_mm": (rounding, "rounding of closed forms at the largest radius")}
+    if result.program.error:
+        given = result.design.follower
+        lever = (given.arm or given.pivot_distance or 0.0) if given.oscillating else 1.0
+        how = "the lift, between the places that it was computed from, and rounding"
+        rows = {"profile_mm": (lever * result.program.error + rounding, how)}
     if not result.design.blank.clearance:
         size = result.cam.size
         how = "Gauss-Legendre quadrature with half the cells, and rounding"

@@ -1,14 +1,15 @@
-"""The array ``[[motion]]`` of a cam: its phases, each with the keys of its type and of its law.
+"""The motion of a cam: an array ``[[motion]]`` of phases, or a table ``[motion]`` of the turn.
 
-A rise and a return have a ``law`` of the registry `gearcam.laws.rises.base.RISES`, whose parameters
-stand beside the keys of the phase.
+Each phase has the keys of its type and of its law. A rise and a return have a ``law`` of the
+registry `gearcam.laws.rises.base.RISES`, whose parameters stand beside the keys of the phase. The
+whole turn is told by a formula, ``lift``, or by rows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.examine import chosen
 from gearcam.designs.faults import Fault, quoted, show
@@ -18,6 +19,13 @@ from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
 from gearcam.laws.rises.base import RISES
+from gearcam.registry import name_of
+
+if TYPE_CHECKING:
+    from gearcam.laws.motion_formula import MotionFormula
+    from gearcam.laws.motion_table import MotionTable
+
+    Motion = tuple[Phase, ...] | MotionTable | MotionFormula
 
 TITLE: Final = "motion"
 
@@ -27,7 +35,7 @@ WITH_LAW: Final = tuple(name for name, owner in PHASES.items() if issubclass(own
 LIFT: Final = {"rise": "lift", "segment": "to"}
 """What a phase must give, as a length or as an angle, without the suffix of its unit."""
 
-_UNREADABLE: Final = RisePhase(angle=1.0, law="", shape=None)
+_UNREADABLE: Final = RisePhase(angle=1.0, law=None)
 """Stands for a phase that cannot be read: without a lift, so that nothing is said of the sum."""
 
 
@@ -59,8 +67,7 @@ def twins(known: Table) -> dict[str, tuple[str, ...]]:
     """Return the keys that say the same as a length and as an angle, by their common word."""
     words: dict[str, list[str]] = {}
     for key, entry in known.entries.items():
-        if entry.param.word:
-            words.setdefault(entry.param.word, []).append(key)
+        words.setdefault(entry.param.word or entry.name, []).append(key)
     return {word: tuple(keys) for word, keys in words.items() if len(keys) > 1}
 
 
@@ -73,36 +80,78 @@ def summary(phase: type) -> str:
 def examine_motion(
     document: Mapping[str, Any], found: Examined, home: Callable[[str], str]
 ) -> None:
-    """Examine the phases of a document, and the program that they make.
+    """Examine the motion of a document, and the program that its phases or rows make.
 
     Parameters
     ----------
     document : mapping
         As read from TOML.
     found : Examined
-        Gets the faults, or ``phases``.
+        Gets the faults, or ``motion``.
     home : callable
         Gives the words that say where a key of another place belongs.
     """
     raw = document.get(TITLE)
-    rule = f"[[{TITLE}]] for each phase, with type = {quoted(PHASES)}"
+    types = quoted(PHASES)
+    rule = f"[[{TITLE}]] for each phase, with type = {types}; or [{TITLE}] with rows or a lift"
+    oscillating = _oscillating(document.get("follower", {}))
     if TITLE not in document:
         found.faults.append(Fault((TITLE,), f"there is no [[{TITLE}]]", allowed=rule))
-    elif isinstance(raw, Mapping):
+    elif isinstance(raw, Mapping) and "type" in raw:
         hint = f"write [[{TITLE}]] in double brackets"
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
+    elif isinstance(raw, Mapping):
+        _examine_turn(raw, oscillating, found, home)
     elif not isinstance(raw, list) or not raw:
         message = "the list is empty" if raw == [] else f"{show(raw)} is no list of tables"
         found.faults.append(Fault((TITLE,), message, raw, rule))
     else:
         before = len(found.faults)
-        phases = [_phase((TITLE, k), item, found, home) for k, item in enumerate(raw)]
-        _examine_program(phases, raw, document.get("follower", {}), found)
+        phases = [_phase((TITLE, k), item, oscillating, found, home) for k, item in enumerate(raw)]
+        _examine_program(phases, raw, oscillating, found)
         if len(found.faults) == before:
-            found.parts["phases"] = tuple(phases)
+            found.parts[TITLE] = tuple(phases)
 
 
-def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> Phase | None:
+def _oscillating(follower: Any) -> bool | None:
+    """Return whether a follower oscillates; None where its table does not say."""
+    motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
+    return motion == "oscillating" if motion in ("translating", "oscillating") else None
+
+
+def whole_turns() -> tuple[type[MotionTable], type[MotionFormula]]:
+    """Return the classes of motions that tell the whole turn, loaded only where there is one."""
+    from gearcam.laws.motion_formula import MotionFormula
+    from gearcam.laws.motion_table import MotionTable
+
+    return MotionTable, MotionFormula
+
+
+def turn_tables() -> tuple[Table, Table]:
+    """Return their tables: by rows, and by a formula."""
+    rows, formula = (table_of(TITLE, owner) for owner in whole_turns())
+    return rows, formula
+
+
+def _examine_turn(
+    raw: Mapping[str, Any], oscillating: bool | None, found: Examined, home: Callable[[str], str]
+) -> None:
+    by_formula = "lift" in raw
+    known, owner = turn_tables()[by_formula], whole_turns()[by_formula]
+    faults = list(faults_of(known, raw, home=home))
+    faults += _wrong_kind(known, raw, (TITLE,), oscillating)
+    known = known.of_lifts(oscillating=bool(oscillating))
+    made, problems = made_of(known, owner, raw, faults, (TITLE,))
+    if not faults and not problems and oscillating is not None:
+        told = made.turn_problems(oscillating=oscillating)
+        problems = list(told_faults(told, known, raw, (TITLE,)))
+        found.parts[TITLE] = made
+    found.faults += [*faults, *problems]
+
+
+def _phase(
+    at: Path, raw: Any, oscillating: bool | None, found: Examined, home: Callable[[str], str]
+) -> Phase | None:
     """Examine one phase; what can be read of it serves to judge the program."""
     if not isinstance(raw, Mapping):
         rule = f"a table with type = {quoted(PHASES)}"
@@ -112,24 +161,35 @@ def _phase(at: Path, raw: Any, found: Examined, home: Callable[[str], str]) -> P
     if not name:
         return None
     rest = {key: value for key, value in raw.items() if key != "type"}
-    own = phase_table(name)
+    own, make, problems = phase_table(name), PHASES[name], []
     if name not in WITH_LAW:
         faults = list(faults_of(own, rest, home=home, at=at))
-        phase, problems = made_of(own, PHASES[name], rest, faults, at)
-        found.faults += [*faults, *problems]
-        return phase
-    law = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
-    rest.pop("law", None)
-    if not law:  # whatever any law asks for may be meant
-        rest = {key: value for key, value in rest.items() if key in own.entries or not _asked(key)}
-    faults = list(faults_of(phase_table(name, law), rest, home=home, at=at))
-    shape, problems = None, []
-    if law:
-        shape, problems = made_of(rise_table(law), RISES[law].parameters, rest, faults, at)
-    make = partial(PHASES[name], law=law, shape=shape)
+    else:
+        chose = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
+        rest.pop("law", None)
+        if not chose:  # whatever any law asks for may be meant
+            rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
+        faults = list(faults_of(phase_table(name, chose), rest, home=home, at=at))
+        law = None
+        if chose:
+            law, problems = made_of(rise_table(chose), RISES[chose].parameters, rest, faults, at)
+        make = partial(make, law=law)
+    other = list(_wrong_kind(own, rest, at, oscillating))
+    own = own.of_lifts(oscillating=bool(oscillating))
     phase, own_problems = made_of(own, make, rest, faults, at)
-    found.faults += [*faults, *problems, *own_problems]
-    return phase
+    found.faults += [*faults, *problems, *own_problems, *other]
+    return None if other else phase
+
+
+def _wrong_kind(
+    known: Table, raw: Mapping[str, Any], at: Path, oscillating: bool | None
+) -> Iterator[Fault]:
+    """Yield the faults of lifts that are lengths for a follower that oscillates, or angles."""
+    kind, unit = ("an oscillating", "_deg") if oscillating else ("a translating", "_mm")
+    for key, entry in known.entries.items():
+        if key in raw and oscillating is not None and entry.swings is (not oscillating):
+            message = f"{show(raw[key])}: is of the wrong kind for {kind} follower"
+            yield Fault((*at, key), message, raw[key], f"the key in {unit}")
 
 
 def _asked(key: str) -> bool:
@@ -137,39 +197,58 @@ def _asked(key: str) -> bool:
 
 
 def _examine_program(
-    phases: Sequence[Phase | None], raw: Sequence[Any], follower: Any, found: Examined
+    phases: Sequence[Phase | None],
+    raw: Sequence[Any],
+    oscillating: bool | None,
+    found: Examined,
 ) -> None:
-    motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
-    if motion not in ("translating", "oscillating"):
+    if oscillating is None:
         return
     readable = [_UNREADABLE if phase is None else phase for phase in phases]
-    told = program_problems(readable, oscillating=motion == "oscillating")
+    told = program_problems(readable, oscillating=oscillating)
     for number, name, message, rule in told:
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))
         elif phases[number] is not None:
-            known, at = phase_table(raw[number]["type"]), (TITLE, number)
+            known = phase_table(raw[number]["type"]).of_lifts(oscillating=oscillating)
+            at = (TITLE, number)
             found.faults += told_faults([(name, None, message, rule)], known, raw[number], at)
 
 
-def motion_of(phases: Sequence[Phase]) -> list[dict[str, Any]]:
-    """Return what a file would hold of phases: a table for each."""
+def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | dict[str, Any]:
+    """Return what a file would hold of a motion: a table for each phase, or one for the turn.
+
+    Parameters
+    ----------
+    motion : tuple of Phase, MotionTable or MotionFormula
+        As a design has it.
+    oscillating : bool
+        Whether lifts are angles.
+
+    Returns
+    -------
+    list of dict, or dict
+    """
+    if not isinstance(motion, tuple):
+        return table_of(TITLE, type(motion)).of_lifts(oscillating=oscillating).document(motion)
     names = {owner: name for name, owner in PHASES.items()}
     tables = []
-    for phase in phases:
+    for phase in motion:
         name = names[type(phase)]
         table: dict[str, Any] = {"type": name}
-        if isinstance(phase, RisePhase):
-            table |= {"law": phase.law}
-        table |= phase_table(name).document(phase)
-        if isinstance(phase, RisePhase) and phase.law in RISES:
-            table |= rise_table(phase.law).document(phase.shape)
+        law = name_of(RISES, phase.law) if isinstance(phase, RisePhase) else ""
+        if law:
+            table |= {"law": law}
+        known = phase_table(name).of_lifts(oscillating=oscillating)
+        table |= known.document(phase)
+        if law:
+            table |= rise_table(law).document(phase.law)
         tables.append(table)
     return tables
 
 
 def homes() -> dict[str, str]:
-    """Return where the keys of phases belong, in words."""
+    """Return where the keys of a motion belong, in words."""
     by_phase: dict[str, list[str]] = {"law": list(WITH_LAW)}
     for name in PHASES:
         for key in phase_table(name).entries:
@@ -180,4 +259,6 @@ def homes() -> dict[str, str]:
             by_law.setdefault(key, []).append(law)
     found = {key: f"with law = {quoted(laws)}" for key, laws in by_law.items()}
     found |= {key: f"of type {quoted(names)}" for key, names in by_phase.items()}
-    return {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
+    told = {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
+    turns = (key for known in turn_tables() for key in known.entries)
+    return dict.fromkeys(turns, f"this key belongs under [{TITLE}]") | told

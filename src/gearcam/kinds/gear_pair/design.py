@@ -255,8 +255,3 @@ KIND: Final = DesignKind(
         "pair": "exactly one of center_distance_mm and module_mm; the other is solved",
     },
 )
-
-PUBLIC: Final = (
-    GearPairDesign, PairSpec, Rack, Blank, StepsSpec, PairOutputSpec, MeshingSpec
-)  # fmt: skip
-"""What people who write Python make designs of."""

@@ -254,8 +254,11 @@ def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
     rolling, law = result.pair.rolling, result.law
     reach = max(float(np.hypot(*gear.outline.T).max()) for gear in result.gears)
     rounding = 8.0 * np.finfo(float).eps * reach
+    how = "rad of the driven angle: against Gauss-Legendre quadrature"
+    if law.function_error:
+        how += ", and the Python function against its expansion"
     rows = {
-        "law": (law.error, "rad of the driven angle: against Gauss-Legendre quadrature"),
+        "law": (law.error, how),
         "closure_rad": (abs(law.closure_error), "miss of the driven angle over a lobe"),
         "arc_length_mm": (
             rolling.arc_error,

@@ -44,12 +44,15 @@ class RatioLaw(Brief, Displacement):
         phi2 over the same interval, rad, zero at zero; of a rack its travel.
     solved : mapping of str to float
         What was left to the program, by name.
+    function_error : float, rad
+        Error of phi2 that comes from the expansion of a Python function.
     """
 
     lobes: Span
     ratio: Piecewise
     driven: Piecewise | Expansion
     solved: Mapping[str, float] = field(default_factory=dict)
+    function_error: float = 0.0
 
     @property
     def of_rack(self) -> bool:
@@ -149,7 +152,10 @@ class RatioLaw(Brief, Displacement):
 
     @cached_property
     def error(self) -> float:
-        """Estimated error of phi2, rad: against Gauss-Legendre quadrature of the ratio."""
+        """Estimated error of phi2, rad: against Gauss-Legendre quadrature of the ratio.
+
+        What the expansion of a Python function misses is added.
+        """
         nodes, weights = np.polynomial.legendre.leggauss(20)
         parts = np.linspace(self.knots[:-1], self.knots[1:], 17)[:-1]
         grid = np.append(parts.T, self.knots[-1])
@@ -157,7 +163,8 @@ class RatioLaw(Brief, Displacement):
         x = 0.5 * (grid[:-1] + grid[1:]) + half * nodes[:, None]
         second = np.concatenate([[0.0], np.cumsum(half * (weights @ self.ratio(x)))])
         first = np.append(self.driven(grid[:-1]), self.travelled)
-        return float(np.abs(first - second).max()) + np.finfo(float).eps * self.lobes.advance
+        rounding = np.finfo(float).eps * self.lobes.advance
+        return float(np.abs(first - second).max()) + rounding + self.function_error
 
 
 _HOMES: Final = {

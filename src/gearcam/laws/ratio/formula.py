@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.formula import compiled, derivative, formula_problems, values_of
+from gearcam.laws.formula import (
+    Axis,
+    Given,
+    derivative,
+    formula_problems,
+    function_of,
+    values_of,
+)
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
@@ -42,12 +49,19 @@ _PLACES_OF_LOBE = 257
 class Formula(Brief):
     """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
 
-    With `driver_travel` and `driven_travel` the pair is open.
+    From Python each may be a function of phi1, rad, or a tuple of a function and its first
+    derivatives. With `driver_travel` and `driven_travel` the pair is open.
     """
 
-    phi2: str | None = param(TEXT, default=None, doc="driven angle in rad; must close")
-    ratio: str | None = param(TEXT, default=None, doc="ratio i21, scaled so that it closes")
-    r1: str | None = param(TEXT, default=None, doc="driver centrode's radius at any scale")
+    phi2: Given | None = param(
+        TEXT, default=None, function=True, doc="driven angle in rad; must close"
+    )
+    ratio: Given | None = param(
+        TEXT, default=None, function=True, doc="ratio i21, scaled so that it closes"
+    )
+    r1: Given | None = param(
+        TEXT, default=None, function=True, doc="driver centrode's radius at any scale"
+    )
     driver_travel: float | None = open_travel("driver")
     driven_travel: float | None = open_travel("driven wheel")
 
@@ -71,19 +85,33 @@ class Formula(Brief):
         """
         span = span_of(lobes, self.driver_travel, self.driven_travel)
         if self.phi2 is not None:
-            return from_phi2(compiled(self.phi2), span, tolerances)
+            axis = axis_of("phi2", span.period)
+            phi2, error = function_of(self.phi2, axis, tolerances.expansion)
+            return replace(from_phi2(phi2, span, tolerances), function_error=error)
         name = "ratio" if self.ratio is not None else "r1"
-        function = compiled(getattr(self, name) or "1")
+        axis = axis_of(name, span.n1 * span.period)
+        function, error = function_of(getattr(self, name), axis, tolerances.expansion)
         demand_positive(values_of(function), name, span)
         _demand_repeats(function, name, span)
         if self.ratio is None:
-            return law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
+            law = law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
+            # di = (1 + i)^2/c*dr, from i = r/(c - r)
+            ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
+            rate = float(((1.0 + ratio) ** 2).mean()) / law.solved["center_distance_over_scale"]
+            return replace(law, function_error=rate * error * span.period)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
         factor = span.advance / total.antiderivative().last
         piece = Piece(lambda x: factor * function(x))
         solved = {"ratio_factor": factor}
-        return make_law(span, [0.0, span.period], [piece], tolerances, solved)
+        law = make_law(span, [0.0, span.period], [piece], tolerances, solved)
+        return replace(law, function_error=factor * error * span.period)
+
+
+def axis_of(name: str, high: float) -> Axis:
+    """Return the axis of a formula in phi1 that is called `name` and needed from 0 to `high`."""
+    remedy = 'a law of type "table" takes such values: its curve has no corners'
+    return Axis(name=name, high=high, place=angle_text, remedy=remedy)
 
 
 def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
@@ -157,12 +185,17 @@ def from_phi2(
 class RackLaw(Brief):
     """The driver's centrode, or the rack's travel over a turn; either at any scale.
 
+    From Python either may be a function of phi1, rad, or a tuple with its first derivatives.
     The rack moves by ``dy = r1*dphi1``, so that ``r1 = y'``; its own centrode is the curve ``(r1,
     y)``, which is straight for a circular wheel only. The law's ratio is r1, its phi2 is y.
     """
 
-    r1: str | None = param(TEXT, default=None, doc="driver centrode's radius over phi1")
-    travel: str | None = param(TEXT, default=None, doc="travel of the rack over phi1")
+    r1: Given | None = param(
+        TEXT, default=None, function=True, doc="driver centrode's radius over phi1"
+    )
+    travel: Given | None = param(
+        TEXT, default=None, function=True, doc="travel of the rack over phi1"
+    )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -182,18 +215,21 @@ class RackLaw(Brief):
             Where the radius is not finite, smooth, positive or periodic.
         """
         turn = 2.0 * math.pi
-        if self.travel is not None:
-            travel = compiled(self.travel)
-            piece = Piece(derivative(travel), travel)
+        name = "r1" if self.travel is None else "travel"
+        axis = Axis(name=name, high=turn, place=angle_text)
+        function, error = function_of(getattr(self, name), axis, tolerances.expansion)
+        if self.travel is None:
+            piece, error = Piece(function), turn * error
         else:
-            piece = Piece(compiled(self.r1 or "1"))
+            piece = Piece(derivative(function), function)
         places = np.linspace(0.0, turn, PLACES)
         values = values_of(piece.function)(places)
         for bad in np.flatnonzero(~np.isfinite(values))[:1]:
             raise InfeasibleError("r1 is not finite", where=angle_text(float(places[bad])))
         with demand_smooth("r1"):
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
-        return make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
+        law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
+        return replace(law, function_error=error)
 
 
 LAWS.register(

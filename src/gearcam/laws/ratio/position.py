@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import compiled, formula_problems, values_of
+from gearcam.laws.formula import Axis, Given, formula_problems, function_of, values_of
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.formula import from_phi2
-from gearcam.laws.ratio.slider import crank_angle, make_slide
+from gearcam.laws.ratio.formula import axis_of, from_phi2
+from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
 from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of, travel_problems
+from gearcam.numerals import shown
 from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
 
@@ -28,14 +29,20 @@ class MotionLaw(Brief):
     With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =
     k1*(x - x_from)``, ``phi2 = k2*(y - y(x_from))``, so that ``i21 = k2*y'/k1``. Both scales follow
     from `driver_travel` and `driven_travel`, or from closure. With slide(phi1) the driven wheel's
-    angle is the crank's.
+    angle is the crank's. From Python y and slide may be functions, or tuples of a function and its
+    first derivatives.
     """
 
-    y: str | None = param(TEXT, default=None, doc="y of the driven element over x, at any scale")
+    y: Given | None = param(
+        TEXT, default=None, function=True, doc="y of the driven element over x, at any scale"
+    )
     x_from: float | None = param(NUMBER, default=None, doc="x at the start")
     x_to: float | None = param(NUMBER, default=None, doc="x at the end")
-    slide: str | None = param(
-        TEXT, default=None, doc="position of a slide over phi1, towards the crank, at any scale"
+    slide: Given | None = param(
+        TEXT,
+        default=None,
+        function=True,
+        doc="position of a slide over phi1, towards the crank, at any scale",
     )
     rod: float | None = param(
         NUMBER, default=None, gt=1, le=1e6, doc="length of the slide's rod, in crank radii"
@@ -76,7 +83,15 @@ class MotionLaw(Brief):
 
     def _from_y(self, span: Span, tolerances: Tolerances) -> RatioLaw:
         start, end = float(self.x_from or 0.0), float(self.x_to or 0.0)
-        shape, per_angle = compiled(self.y or "", "x"), (end - start) / span.period
+        per_angle = (end - start) / span.period
+        axis = Axis(
+            name="y",
+            low=min(start, end),
+            high=max(start, end),
+            place=lambda x: f"x = {shown(x, 10)}",
+            variable="x",
+        )
+        shape, error = function_of(self.y or "", axis, tolerances.expansion)
         ends = values_of(shape)(np.array([start, end]))
         rise = float(ends[1] - ends[0])
         if not math.isfinite(rise) or rise == 0.0:
@@ -90,7 +105,8 @@ class MotionLaw(Brief):
             "k1_deg_per_x": math.degrees(1.0 / per_angle),
             "k2_deg_per_y": math.degrees(scale),
         }
-        return from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
+        law = from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
+        return replace(law, function_error=abs(scale) * error)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         if lobes.n2 != 1:
@@ -101,13 +117,16 @@ class MotionLaw(Brief):
                 limit=1.0,
                 nearest="the driver's teeth are the driven wheel's or a multiple of them then",
             )
-        slide, radius = make_slide(compiled(self.slide or ""), float(self.rod or 0.0), lobes.period)
+        axis = replace(axis_of("slide", lobes.period), series=True)
+        shape, error = function_of(self.slide or "", axis, tolerances.expansion)
+        slide, radius = make_slide(shape, float(self.rod or 0.0), lobes.period)
         knots, pieces, start = crank_angle(slide)
         solved = {
             "crank_radius_over_slide_unit": radius,
             "crank_angle_at_start_deg": math.degrees(start),
         }
-        return make_law(lobes, knots, pieces, tolerances, solved)
+        law = make_law(lobes, knots, pieces, tolerances, solved)
+        return replace(law, function_error=error / (radius * NARROWEST))
 
 
 LAWS.register(

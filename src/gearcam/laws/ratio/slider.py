@@ -45,7 +45,7 @@ _STILL = 1e-6
 on the crank does not stand still."""
 
 _WIDEST = 0.3
-_NARROWEST = 0.02
+NARROWEST = 0.02
 """Angles about a dead centre, rad, over which its series is used: as far as it holds to rounding,
 and no less than where the closed form beside it loses digits."""
 
@@ -222,12 +222,12 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
     with np.errstate(divide="ignore"):
         reach = float(min(_WIDEST, ((_BELOW * rates[0] / sizes) ** (1.0 / k)).min()))
     reach = min(reach, 0.2 * abs(((slide.inner - slide.outer) % slide.period) or math.inf))
-    if reach < _NARROWEST:
+    if reach < NARROWEST:
         raise InfeasibleError(
             "the slide's motion bends too sharply at its dead centre",
             where=f"law.slide, {angle_text(place)}",
             value=math.degrees(reach),
-            limit=math.degrees(_NARROWEST),
+            limit=math.degrees(NARROWEST),
             unit="deg",
         )
     return reach, powers.tolist()

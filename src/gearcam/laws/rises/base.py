@@ -41,11 +41,14 @@ class Rise:
         Whether the return is the rise run backwards, ``S(1 - phi)``, instead of ``1 - S(phi)``.
     cuts : sequence of float
         Where else than at the knots the search for peaks cuts the angle: it bends sharply there.
+    error : float
+        Estimated error of S beyond rounding.
     """
 
     function: Piecewise
     mirrored: bool = False
     cuts: Sequence[float] = ()
+    error: float = 0.0
 
 
 class RiseParameters(Protocol):

@@ -2,38 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
-
-import numpy as np
 
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.formula import compiled, formula_problems
+from gearcam.laws.formula import Axis, Given, formula_problems, function_of
 from gearcam.laws.rises.base import RISES, Rise
+from gearcam.laws.smoothness import demand_smooth
 from gearcam.numerals import shown
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
 
-_ODD_PLACE: Final = 0.3819660112501052
-"""Where the search for corners is cut first: a corner at a round place then lies inside a part."""
-
 _VARIABLE: Final = "x"
 _WHERE: Final = "motion.formula"
+_AXIS: Final = Axis(
+    name="S",
+    high=1.0,
+    place=lambda x: f"{_WHERE}, x = {shown(round(x, 5))}",
+    variable=_VARIABLE,
+    remedy='a law of type "table" takes such values: its curve has no corners',
+)
 _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''")
 
 
 @dataclass(frozen=True, kw_only=True)
 class FormulaRise(Brief):
-    """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic."""
+    """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic.
 
-    formula: str = param(TEXT, doc="S over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)")
+    From Python it may be a function, or a tuple of a function and its first derivatives.
+    """
+
+    formula: Given = param(
+        TEXT, function=True, doc="S over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)"
+    )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -47,8 +53,8 @@ class FormulaRise(Brief):
         InfeasibleError
             Where the formula is not finite or not smooth, or does not go from 0 to 1.
         """
-        shape = compiled(self.formula, _VARIABLE)
-        cuts = _demand_smooth(shape, tolerances)
+        shape, error = function_of(self.formula, _AXIS, tolerances.expansion)
+        cuts = demand_smooth(shape, self.formula, _AXIS, _NAMES, tolerances)
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
             if not abs(value - place) <= TYPED:
@@ -61,44 +67,17 @@ class FormulaRise(Brief):
                 )
         scale = 1.0 / (end - start)
         piece = Piece(lambda x: (shape(x) - start) * scale)
-        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts[1:-1].tolist())
+        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts[1:-1].tolist(), error=error)
 
 
-def _from_corner_to_corner(formula: str, start: float, end: float) -> str:
+def _from_corner_to_corner(formula: Given, start: float, end: float) -> str:
     if not abs(end - start) > TYPED:
         return "it is the same at both ends"
+    if not isinstance(formula, str):
+        off = f"subtract {start:.17g} and " if abs(start) > TYPED else ""
+        return f"{off}divide by {end - start:.17g}"
     top = f"({formula})" if start == 0.0 else f"(({formula}) - ({start:.17g}))"
     return f"this one does: {top}/({end - start:.17g})"
-
-
-def _demand_smooth(shape: Callable[[Jet], Jet], tolerances: Tolerances) -> Array:
-    """Refuse a formula that has no jerk, or a rough one; return the places that show its peaks."""
-    *_, cuts = [_cuts(shape, order, tolerances) for order in range(len(_NAMES))]
-    ends = np.array(shape(Jet.variable([0.0, 1.0], len(_NAMES))).derivatives())
-    for place, found in zip((0.0, 1.0), ends.T, strict=True):
-        if not np.isfinite(found).all():
-            order = int(np.argmin(np.isfinite(found)))
-            raise InfeasibleError(
-                f"{(*_NAMES, 'the derivative of its jerk')[order]} cannot be computed",
-                where=f"{_WHERE}, x = {shown(place)}",
-                nearest="roots of zero and powers of zero that are not whole have no derivatives",
-            )
-    return cuts
-
-
-def _cuts(shape: Callable[[Jet], Jet], order: int, tolerances: Tolerances) -> Array:
-    """Return the knots that an expansion of a derivative needs."""
-
-    def values(x: Array) -> Array:
-        # with 1 added, the rounding of a derivative that is zero does not count as rough
-        return 1.0 + shape(Jet.variable(x, order)).derivatives()[order]
-
-    try:
-        return expand(values, [0.0, _ODD_PLACE, 1.0], tolerances.expansion).knots
-    except NotSmoothError as error:
-        state = "smooth" if error.finite else "finite"
-        place = f"{_WHERE}, x = {shown(round(error.place, 5))}"
-        raise InfeasibleError(f"{_NAMES[order]} is not {state}", where=place) from error
 
 
 RISES.register(

@@ -17,7 +17,7 @@ from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm, Rise
 from gearcam.laws.rises.pieces import about, spline
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.hermite import hermite_quintics
+from gearcam.numeric.least_jerk import chain_slopes, coefficients
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.quantities import COUNT, NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
@@ -183,51 +183,7 @@ def _point_problems(points: Array) -> Iterator[Problem]:
 def _through(points: Array, start: tuple[float, float], end: tuple[float, float]) -> Piecewise:
     """Return the quintic spline through points, with S' and S'' given at its ends."""
     x, y = points.T
-    slopes, bends = _joined(x, y, start, end).T
-    h = np.diff(x)
-    left = hermite_quintics(x, y, slopes, bends).T
-    cubic, quartic, quintic = left[3:]
-    jerk = cubic + h * (4.0 * quartic + 10.0 * h * quintic)
-    right = np.array(
-        [y[1:], slopes[1:], 0.5 * bends[1:], jerk, quartic + 5.0 * h * quintic, quintic]
-    )
-    # the jerk at a point is one number for both sides, not only to rounding: the wider side's
-    shared = np.where(h[1:] > h[:-1], left[3, 1:], right[3, :-1])
-    left[3, 1:], right[3, :-1] = shared, shared
-    return spline(x, left.T, right.T)
-
-
-def _joined(x: Array, y: Array, start: tuple[float, float], end: tuple[float, float]) -> Array:
-    """Return S' and S'' at the points with which third and fourth derivative go on, (n, 2).
-
-    The two conditions at each inner point are those of the least squared jerk: a symmetric,
-    positive definite system of blocks beside the diagonal, eliminated without pivots.
-    """
-    h = np.diff(x)
-    a, b = h[:-1], h[1:]
-    rise = np.diff(y)
-    mixed = 36.0 * (b**-2 - a**-2)
-    diagonal = _blocks(192.0 * (a**-3 + b**-3), mixed, mixed, 9.0 * (1.0 / a + 1.0 / b))
-    beside = _blocks(168.0 * h**-3, -24.0 * h**-2, 24.0 * h**-2, -3.0 / h)
-    fourth = 360.0 * (rise[1:] / b**4 + rise[:-1] / a**4)
-    third = 60.0 * (rise[1:] / b**3 - rise[:-1] / a**3)
-    wanted = np.stack([fourth, third], axis=1)
-    wanted[0] -= beside[0].T @ start
-    wanted[-1] -= beside[-1] @ end
-    count = len(wanted)
-    for k in range(1, count):
-        factor = np.linalg.solve(diagonal[k - 1].T, beside[k]).T
-        diagonal[k] -= factor @ beside[k]
-        wanted[k] -= factor @ wanted[k - 1]
-    found = np.array([start, *wanted, end])
-    for k in range(count, 0, -1):
-        known = beside[k] @ found[k + 1] if k < count else 0.0
-        found[k] = np.linalg.solve(diagonal[k - 1], found[k] - known)
-    return found
-
-
-def _blocks(*entries: Array) -> Array:
-    return np.stack(entries, axis=1).reshape(-1, 2, 2)
+    return spline(x, *coefficients(x, y, chain_slopes(x, y, start, end), ring=False))
 
 
 RISES.register(

@@ -1,0 +1,336 @@
+"""Functions written in Python as functions of jets, which bring derivatives with them.
+
+A function gives values, and perhaps a few derivatives; laws ask for more. It is therefore expanded
+over its interval: in harmonics about a straight line if few of these carry it (most closed laws),
+which keeps all digits of derivatives, else in Chebyshev pieces, which lose some. It is called with
+whole arrays, a few times, or value by value if it takes no arrays; never after that.
+
+Refused with the place: what is no number or not finite, what changes from call to call, scatters,
+or is not smooth, and derivatives that are not those of the function.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.chebyshev import Expansion, NotSmoothError, expand
+from gearcam.numeric.jets import Jet, composed, harmonics
+
+if TYPE_CHECKING:
+    from gearcam.laws.formula import Axis, Function, Functions
+
+_PLACES: Final = 2054
+"""Places, ends included, at which a function is first asked, and its expansion is compared: a prime
+number of steps, so that no wave hides from both these and the samples."""
+
+_SAMPLES: Final = 256
+_MOST_HARMONICS: Final = 96
+"""Harmonics that are kept of what the samples show; those above must be rounding."""
+
+_DEGREE: Final = 16
+_CUTS: Final = (1, 8, 64, 512)
+"""Of Chebyshev pieces: their degree, and with how many is begun. Few wide ones keep most digits of
+derivatives; where they miss something between their nodes, more are tried."""
+
+_SCATTER: Final = 1e-12
+"""Largest scatter of values, in the largest: the fourth derivative still has four digits."""
+
+_MISS: Final = 1e-11
+"""Largest miss of an expansion between its nodes, in the largest value."""
+
+_ROUNDING: Final = 4.0 * np.finfo(float).eps
+"""Of a value, in the largest."""
+
+_ROUGH: Final = 1e-4
+"""Jump of a derivative between pieces, in its largest value, that makes a function not smooth."""
+
+_SMOOTH_TO: Final = 4
+"""Derivatives that are looked at: one more than the jerk."""
+
+_AGREEMENT: Final = 1e-7
+"""Largest difference of a given derivative from that of the expansion, in its largest value."""
+
+_SPOTS: Final = 8
+_BESIDE: Final = 1e-7
+"""Where scatter is looked for: spots, and the distance of places there, in the interval."""
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """A straight line and harmonics of an interval.
+
+    Parameters
+    ----------
+    low, rate : float
+        Beginning of the interval; ``2*pi`` over its length.
+    start, slope : float
+        Of the line.
+    cosines, sines : (n,) arrays
+        Of the harmonics, from the first.
+    """
+
+    low: float
+    rate: float
+    start: float
+    slope: float
+    cosines: Array
+    sines: Array
+
+    def derivatives(self, x: Array, order: int) -> list[Array]:
+        """Return ``[f, f', ..., f^(order)]`` at places `x`."""
+        distance = Jet.variable(x, order) - self.low
+        waves = harmonics(self.rate * distance, self.cosines, self.sines)
+        return (waves + self.slope * distance + self.start).derivatives()
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Chebyshev pieces: an `expansion` and its derivatives."""
+
+    expansion: Expansion
+
+    @cached_property
+    def _chain(self) -> list[Expansion]:
+        return [self.expansion]
+
+    def order(self, order: int) -> Expansion:
+        """Return the derivative of an `order`."""
+        while len(self._chain) <= order:
+            self._chain.append(self._chain[-1].derivative())
+        return self._chain[order]
+
+    def derivatives(self, x: Array, order: int) -> list[Array]:
+        """Return ``[f, f', ..., f^(order)]`` at places `x`."""
+        return [self.order(k)(x) for k in range(order + 1)]
+
+
+@dataclass(frozen=True, eq=False)
+class Expanded:
+    """A function of jets made from one written in Python.
+
+    Parameters
+    ----------
+    curves : tuple of Waves or Pieces
+        The function and the derivatives that were given with it.
+    error : float
+        Estimated error of its values: the largest difference between expansion and function, at
+        places between its nodes, and rounding.
+    """
+
+    curves: tuple[Waves | Pieces, ...]
+    error: float
+
+    def __call__(self, x: Jet) -> Jet:
+        """Return the function of a jet."""
+        places, last = np.asarray(x.c[0]), min(x.order, len(self.curves) - 1)
+        found = [curve.derivatives(places, 0)[0] for curve in self.curves[:last]]
+        found += self.curves[last].derivatives(places, x.order - last)
+        return composed(x, [values / math.factorial(k) for k, values in enumerate(found)])
+
+
+def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
+    """Expand a function that was written in Python.
+
+    Parameters
+    ----------
+    given : callable or tuple of callables
+        The function, or the function with its first derivatives, each of the one before it.
+    axis : Axis
+        Over what.
+    tolerance : float
+        Truncation error allowed, in the largest value.
+
+    Returns
+    -------
+    Expanded
+        It is called no more.
+
+    Raises
+    ------
+    InfeasibleError
+        With the place (see the module).
+    """
+    functions = given if isinstance(given, tuple) else (given,)
+    places = np.linspace(axis.low, axis.high, _PLACES)
+    curves: list[Waves | Pieces] = []
+    first = 0.0
+    for number, function in enumerate(functions):
+        ask = _Asked(function, axis, number)
+        values = ask(places)
+        scale = float(np.abs(values).max())
+        allowed = max(tolerance, _ROUNDING, 8.0 * _scatter(ask, places, values, scale))
+        curve: Waves | Pieces | None = _waves(ask, values, allowed * scale)
+        if curve is None:
+            curve = _pieces(ask, places, values, allowed, scale)
+            if axis.series:
+                what = f"needs more than {_MOST_HARMONICS} harmonics over its interval"
+                raise ask.refusal(what, axis.low, nearest="a formula as text has no such limit")
+        if curves:
+            _demand_agreement(curves[-1], ask, places, values)
+        else:
+            miss = np.abs(curve.derivatives(places, 0)[0] - values)
+            first = float(miss.max()) + _ROUNDING * scale
+        curves.append(curve)
+    return Expanded(tuple(curves), first)
+
+
+class _Asked:
+    """A function (or its `number`-th derivative) that is asked for values and must give them."""
+
+    def __init__(self, function: Function, axis: Axis, number: int) -> None:
+        self.function, self.axis, self.number = function, axis, number
+        self.takes_arrays = True
+
+    def refusal(self, state: str, x: float, **numbers: Any) -> InfeasibleError:
+        """Return the error that says in which `state` it is at a place."""
+        of = f"{_ordinal(self.number)} derivative given with " if self.number else ""
+        name = f"the {of}{self.axis.name}" if of else self.axis.name
+        return InfeasibleError(f"{name} {state}", where=self.axis.place(x), **numbers)
+
+    def not_smooth(self, x: float) -> InfeasibleError:
+        return self.refusal("is not smooth", x, nearest=self.axis.remedy)
+
+    def __call__(self, x: Array) -> Array:
+        """Return its values, (n,) at (n,) places, all finite."""
+        values = self._of_array(x) if self.takes_arrays else None
+        if values is None:
+            self.takes_arrays = False
+            values = np.array([self._value(place) for place in x.tolist()])
+        bad = ~np.isfinite(values)
+        if bad.any():
+            raise self.refusal("is not finite", float(x[bad][0]))
+        return values
+
+    def _of_array(self, x: Array) -> Array | None:
+        """Return its values; None where it takes no arrays."""
+        try:
+            with np.errstate(all="ignore"):
+                found = np.asarray(self.function(x.copy()))
+        except Exception:
+            return None  # what it raises is told if it takes no floats either
+        usable = found.dtype.kind in "iuf" and found.shape in ((), x.shape)
+        return np.broadcast_to(found.astype(float), x.shape) if usable else None
+
+    def _value(self, x: float) -> float:
+        try:
+            with np.errstate(all="ignore"):
+                result = self.function(x)
+                found = np.asarray(result)
+        except Exception as error:
+            told = f"raises {type(error).__name__}: {error}".rstrip(": ")
+            raise self.refusal(told, x) from error
+        if found.size != 1 or found.dtype.kind not in "iuf":
+            what = f"an array of shape {found.shape}" if found.shape else repr(result)
+            rule = (
+                "a function takes a float and returns one number, or an array and returns as many"
+            )
+            raise self.refusal(f"gives {what}, not a number", x, nearest=rule)
+        return float(found.item())
+
+
+def _ordinal(number: int) -> str:
+    return {1: "first", 2: "second", 3: "third"}.get(number, f"{number}th")
+
+
+def _scatter(ask: _Asked, places: Array, values: Array, scale: float) -> float:
+    """Return how far values scatter about a smooth curve, in the largest; refuse if too far."""
+    again = slice(_PLACES - 2, _PLACES // 3, -3)
+    other = ask(places[again])
+    for k in np.flatnonzero(~(np.abs(other - values[again]) <= _MISS * scale))[:1]:
+        raise ask.refusal(
+            "is no function: asked again among other places, it gives another value",
+            float(places[again][k]),
+            value=float(other[k]),
+            limit=float(values[again][k]),
+            nearest="the limit is the value that it gave first",
+        )
+    span = places[-1] - places[0]
+    spots = places[0] + span * ((np.arange(_SPOTS) + 0.5) * 0.6180339887498949 % 0.99)
+    beside = spots[:, None] + span * _BESIDE * np.arange(16)
+    fourth = np.diff(ask(beside.ravel()).reshape(beside.shape), 4, axis=1) / math.sqrt(70.0)
+    found = float(np.median(np.sqrt((fourth**2).mean(axis=1)))) / (scale or 1.0)
+    if found > _SCATTER:
+        raise ask.refusal(
+            f"is not smooth anywhere: its values scatter by {shown(found)} of the largest",
+            float(spots[0]),
+            value=found,
+            limit=_SCATTER,
+            nearest=ask.axis.remedy,
+        )
+    return found
+
+
+def _waves(ask: _Asked, values: Array, allowed: float) -> Waves | None:
+    """Return harmonics about the straight line between the ends, if few carry the function."""
+    low, span = ask.axis.low, ask.axis.high - ask.axis.low
+    start, slope = float(values[0]), float(values[-1] - values[0]) / span
+    distance = span * np.arange(_SAMPLES) / _SAMPLES
+    rest = ask(low + distance) - start - slope * distance
+    found = np.fft.rfft(rest) * (2.0 / _SAMPLES)
+    last = int(np.flatnonzero(np.abs(found[1:]) > allowed).max(initial=-1)) + 1
+    if last > _MOST_HARMONICS:
+        return None
+    kept = found[1 : last + 1]
+    made = Waves(
+        low, 2.0 * math.pi / span, start + 0.5 * float(found[0].real), slope, kept.real, -kept.imag
+    )
+    places = np.linspace(low, ask.axis.high, len(values))
+    missed = np.abs(made.derivatives(places, 0)[0] - values).max()
+    return made if missed <= _MISS * np.abs(values).max() else None
+
+
+def _pieces(ask: _Asked, places: Array, values: Array, allowed: float, scale: float) -> Pieces:
+    ends = [ask.axis.low, ask.axis.high]
+    worst = places[0]
+    for cuts in _CUTS:
+        try:
+            found = expand(ask, ends, allowed, degree=_DEGREE, cuts=cuts)
+        except NotSmoothError as error:
+            raise ask.not_smooth(error.place) from error
+        # digits that are rounding would be all that high derivatives show
+        counts = np.logical_or.accumulate(np.abs(found.coefficients[::-1]) > allowed * scale)
+        made = Pieces(replace(found, coefficients=found.coefficients * counts[::-1]))
+        missed = np.abs(made.expansion(places) - values)
+        if missed.max() <= _MISS * scale:
+            _demand_smooth(made, ask, allowed * scale)
+            return made
+        worst = places[int(missed.argmax())]
+    raise ask.not_smooth(float(worst))
+
+
+def _demand_smooth(made: Pieces, ask: _Asked, rounding: float) -> None:
+    """Refuse a function one of whose derivatives jumps between the pieces: they hide corners."""
+    knots = made.expansion.knots
+    loss = (
+        2.0 * _DEGREE**2 / np.diff(knots).max()
+    )  # of digits in one derivative, at the ends of a piece
+    for order in range(1, _SMOOTH_TO + 1 - ask.number):
+        c = made.order(order).coefficients
+        ends, starts = c.sum(axis=0), ((-1.0) ** np.arange(len(c))) @ c
+        jumps = np.abs(ends[:-1] - starts[1:])
+        noise = 100.0 * rounding * loss**order / math.prod(range(1, 2 * order, 2))
+        if jumps.size and jumps.max() > _ROUGH * np.abs(c).sum(axis=0).max() + noise:
+            raise ask.not_smooth(float(knots[int(jumps.argmax()) + 1]))
+
+
+def _demand_agreement(before: Waves | Pieces, ask: _Asked, places: Array, values: Array) -> None:
+    """Refuse a given derivative that is not that of the function before it."""
+    slopes = before.derivatives(places, 1)[1]
+    off = np.abs(slopes - values)
+    worst = int(off.argmax())
+    if off[worst] > _AGREEMENT * np.abs(slopes).max():
+        raise ask.refusal(
+            "is not the derivative of what was given before it",
+            float(places[worst]),
+            value=float(values[worst]),
+            limit=float(slopes[worst]),
+            nearest="the limit is that derivative",
+        )

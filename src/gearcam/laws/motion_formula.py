@@ -1,0 +1,104 @@
+"""The lift of a follower over a turn of the cam as one formula, or a function written in Python.
+
+Refused: what is not finite or smooth, does not repeat after the turn, does not move.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.entry import TYPED
+from gearcam.laws.formula import Axis, Given, formula_problems, function_of
+from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.program import Program
+from gearcam.laws.rows_of_lift import stretches_of
+from gearcam.laws.smoothness import demand_smooth
+from gearcam.numerals import shown
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import Piece, piecewise
+from gearcam.quantities import TEXT, param
+from gearcam.tolerances import Tolerances
+
+_VARIABLE: Final = "theta"
+_WHERE: Final = "motion.lift"
+_AXIS: Final = Axis(
+    name="the lift",
+    high=TURN,
+    place=lambda x: f"{_WHERE}, theta = {shown(math.degrees(x))} deg",
+    variable=_VARIABLE,
+    remedy="a motion table takes such values: its curve has no corners",
+)
+_NAMES: Final = ("the lift", "its velocity", "its acceleration", "its jerk")
+
+_PLACES: Final = 1440
+"""Places at which it is asked whether the lift moves: a quarter of a degree."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionFormula:
+    """The lift over a turn as a formula in theta; derivatives are exact, by Taylor arithmetic.
+
+    From Python it may be a function, or a tuple of a function and its first derivatives.
+    """
+
+    lift: Given = param(
+        TEXT,
+        function=True,
+        doc="formula in theta, rad, such as 5*(1 - cos(theta)); mm, or rad (oscillating)",
+    )
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        yield from formula_problems("lift", self.lift, _VARIABLE)
+
+    def turn_problems(self, *, oscillating: bool) -> Iterator[tuple[str, int | None, str, str]]:  # noqa: ARG002  (as of a table)
+        """Yield nothing: a formula suits followers of either kind."""
+        yield from ()
+
+    def program(self, tolerances: Tolerances, *, oscillating: bool = False) -> Program:
+        """Return the program of the formula.
+
+        Parameters
+        ----------
+        tolerances : Tolerances
+            Accuracy of the expansion of a function.
+        oscillating : bool
+            Whether lifts are angles, rad.
+
+        Returns
+        -------
+        Program
+            Of one piece; what jumps over the end of the turn is told among its jumps.
+
+        Raises
+        ------
+        InfeasibleError
+            Where the formula is not finite or not smooth, does not repeat or does not move.
+        """
+        function, error = function_of(self.lift, _AXIS, tolerances.expansion)
+        cuts = demand_smooth(function, self.lift, _AXIS, _NAMES, tolerances)
+        theta = np.linspace(0.0, TURN, _PLACES + 1)
+        values = function(Jet.variable(theta, 0)).derivatives()[0]
+        extent, size = float(np.ptp(values)), float(np.abs(values).max())
+        scale, unit = (math.degrees(1.0), "deg") if oscillating else (1.0, "mm")
+        if extent <= TYPED * size:
+            raise InfeasibleError("the follower never moves", where=_WHERE)
+        miss = float(values[-1] - values[0])
+        if abs(miss) > TYPED * extent:
+            raise InfeasibleError(
+                "the lift does not repeat after the turn",
+                where=_WHERE,
+                value=scale * float(values[-1]),
+                limit=scale * float(values[0]),
+                unit=unit,
+                nearest="the limit is the lift at the beginning",
+            )
+        lift = piecewise([0.0, TURN], [Piece(lambda x: function(x) - (miss / TURN) * x)])
+        rows = theta[:-1], values[:-1], TYPED * extent, 0.5 * _PLACES
+        return Program(lift=lift, stretches=stretches_of(lift, *rows), cuts=cuts, error=error)

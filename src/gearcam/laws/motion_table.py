@@ -1,0 +1,212 @@
+"""Motion tables: the lift of a follower over a turn of the cam, by rows of angle and lift.
+
+What comes of the rows, through them or smoothed, `gearcam.laws.rows_of_lift` says. Refused by
+reading: rows that do not rise in angle, fill the turn, repeat after it or move.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain, islice
+from typing import Final
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError
+from gearcam.laws.columns import ColumnsError, FromFile
+from gearcam.laws.entry import TYPED
+from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.program import Program
+from gearcam.laws.rows_of_lift import program_of_rows
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
+from gearcam.quantities import ANGLE, LENGTH, TEXT, Param, param
+from gearcam.tolerances import Tolerances
+
+Problem = tuple[str, int | None, str, str]
+
+_RULE: Final = "file, or theta_deg with lift_mm or lift_deg"
+
+_FEWEST: Final = 6
+_MOST: Final = 2000
+"""Rows: fewer make no curve of quintics, more are finer than a fifth of a degree, where rounding
+leaves smoothing no digits."""
+
+_NARROWEST: Final = 1e-6 * TURN
+"""Least step of the angle, rad: a second of arc; the place of a row in it is known to 1e-10."""
+
+_OPEN: Final = 1.5
+"""Gap over the end of the turn, in widest steps, above which rows are missing: a last row that is
+left out leaves a step."""
+
+_LONGEST: Final = 1e6
+"""Largest lift, mm, as of phases."""
+
+_DEG: Final = math.radians(1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionTable(FromFile):
+    """The lift over a whole turn, by rows in a CSV file or in the design itself.
+
+    Lifts and their tolerance are in mm, or in rad where the follower oscillates. The last row may
+    repeat the first one, a turn on, or be left out.
+    """
+
+    file: str | None = param(
+        TEXT, default=None, doc="CSV file with the columns theta_deg and lift_mm or lift_deg"
+    )
+    theta: tuple[float, ...] | None = param(
+        ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="cam angles, without a file"
+    )
+    lift: tuple[float, ...] | None = param(
+        LENGTH,
+        default=None,
+        ge=-_LONGEST,
+        le=_LONGEST,
+        min_length=_FEWEST,
+        doc="lifts at theta (translating follower)",
+        angular=Param(
+            ANGLE, gt=-180, lt=180, min_length=_FEWEST, doc="lifts at theta (oscillating follower)"
+        ),
+    )
+    smoothing_tolerance: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        doc="largest distance from rows; 0 if left out (translating)",
+        angular=Param(ANGLE, gt=0, doc="largest distance from rows; 0 if left out (oscillating)"),
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        if self.file is not None:
+            if self.theta is not None or self.lift is not None:
+                yield "file", None, "the rows are given twice", _RULE
+        elif self.theta is None or self.lift is None:
+            missing = "theta" if self.theta is None else "lift"
+            yield missing, None, "is missing: a table has both, or a file", _RULE
+        elif len(self.lift) != len(self.theta):
+            message = f"{len(self.lift)} lifts for {len(self.theta)} angles"
+            yield "lift", None, message, "one lift for each angle"
+
+    def turn_problems(self, *, oscillating: bool) -> Iterator[Problem]:
+        """Yield what is wrong with the rows for a follower: field, index, message, allowed.
+
+        Parameters
+        ----------
+        oscillating : bool
+            Whether lifts are angles.
+
+        Yields
+        ------
+        tuple
+            The first thing only: the others may follow from it.
+        """
+        try:
+            theta, lift, lines = self._rows(oscillating)
+        except ColumnsError as error:
+            yield "file", None, str(error), f"a CSV file with {' and '.join(_columns(oscillating))}"
+            return
+        told = chain(_angle_problems(theta), self._lift_problems(theta, lift, oscillating))
+        for name, row, message, rule in islice(told, 1):
+            if self.file is None or name == "smoothing_tolerance":
+                yield name, row, message, rule
+            else:
+                place = "" if row is None else f"line {lines[row]}: "
+                yield "file", None, place + message, rule
+
+    def _rows(self, oscillating: bool) -> tuple[Array, Array, list[int]]:
+        """Return angles, rad, lifts, mm or rad, and their lines in the file, if there is one."""
+        if self.rows is None:
+            return np.array(self.theta, dtype=float), np.array(self.lift, dtype=float), []
+        columns, wrong = _columns(oscillating), _columns(not oscillating)[1]
+        if wrong in self.rows.cells[0] and columns[1] not in self.rows.cells[0]:
+            kind = "an oscillating" if oscillating else "a translating"
+            message = f"{wrong} is of the wrong kind for {kind} follower"
+            raise ColumnsError(f"line {self.rows.lines[0]}: {message}")
+        points, lines = self.rows.columns(columns)
+        theta, lift = points.T * [[_DEG], [_DEG if oscillating else 1.0]]
+        return theta, lift, lines
+
+    def _lift_problems(self, theta: Array, lift: Array, oscillating: bool) -> Iterator[Problem]:
+        scale, unit = (_DEG, "deg") if oscillating else (1.0, "mm")
+
+        def told(value: float) -> str:
+            return f"{shown(value / scale, 10)} {unit}"
+
+        largest = math.pi if oscillating else _LONGEST
+        for row in np.flatnonzero(np.abs(lift) > largest).tolist():
+            yield "lift", row, f"the lift is {told(lift[row])}", f"at most {told(largest)}"
+        extent, tolerance = float(np.ptp(lift)), self.smoothing_tolerance or 0.0
+        if extent <= TYPED * float(np.abs(lift).max()):
+            yield "lift", None, "the follower never moves", "lifts that differ"
+        if tolerance >= 0.5 * extent:
+            rule = f"below {told(0.5 * extent)}, half of what the lifts differ by"
+            yield "smoothing_tolerance", None, "leaves no lift", rule
+        jump = float(lift[-1] - lift[0])
+        if _repeats(theta) and abs(jump) > max(tolerance, TYPED * extent):
+            state = f"the lift after the turn is {told(lift[-1])}: it jumps by {told(abs(jump))}"
+            yield "lift", len(lift) - 1, state, f"that of the first row, {told(lift[0])}"
+
+    def program(self, tolerances: Tolerances, *, oscillating: bool = False) -> Program:  # noqa: ARG002  (a spline is in closed form)
+        """Return the program that the rows make.
+
+        Parameters
+        ----------
+        tolerances : Tolerances
+            Accuracy of what is expanded; here nothing is.
+        oscillating : bool
+            Whether lifts are angles.
+
+        Returns
+        -------
+        Program
+            See `gearcam.laws.rows_of_lift.program_of_rows`.
+
+        Raises
+        ------
+        InfeasibleError
+            If the file is not such a table any more.
+        """
+        for name, index, message, rule in self.turn_problems(oscillating=oscillating):
+            where = f"motion.{name}" + ("" if index is None else f"[{index}]")
+            raise InfeasibleError(message, where=where, nearest=rule)
+        (theta, lift, _), spread = self._rows(oscillating), 0.0
+        if _repeats(theta):
+            spread = 0.5 * abs(float(lift[-1] - lift[0]))
+            lift[0] = 0.5 * (lift[0] + lift[-1])
+            theta, lift = theta[:-1], lift[:-1]
+        return program_of_rows(theta, lift, self.smoothing_tolerance or 0.0, spread)
+
+
+def _columns(oscillating: bool) -> tuple[str, str]:
+    return "theta_deg", "lift_deg" if oscillating else "lift_mm"
+
+
+def _repeats(theta: Array) -> bool:
+    """Whether the last row is the first one, a turn on."""
+    return TURN - float(theta[-1] - theta[0]) < _NARROWEST
+
+
+def _angle_problems(theta: Array) -> Iterator[Problem]:
+    if not _FEWEST <= len(theta) <= _MOST:
+        yield "theta", None, f"has {len(theta)} rows", f"{_FEWEST} to {_MOST} rows"
+    for row in np.flatnonzero((theta < 0.0) | (theta > TURN + TYPED)).tolist():
+        yield "theta", row, f"the angle is {_degrees(theta[row])}", "0 to 360 deg"
+    steps = np.diff(theta)
+    for row in np.flatnonzero(steps < _NARROWEST).tolist():
+        before, here = _degrees(theta[row]), _degrees(theta[row + 1])
+        state = f"{here} stands twice" if steps[row] == 0.0 else f"{here} follows {before}"
+        rule = f"each angle at least {_degrees(_NARROWEST)} above the one before"
+        yield "theta", row + 1, state, rule
+    if TURN - float(theta[-1] - theta[0]) > _OPEN * steps.max() + TYPED:
+        state = f"the rows go from {_degrees(theta[0])} to {_degrees(theta[-1])}"
+        rule = "rows over the whole turn; the last one, at 360 deg, may be left out"
+        yield "theta", None, state, rule
+
+
+def _degrees(angle: float) -> str:
+    return f"{shown(math.degrees(angle), 10)} deg"

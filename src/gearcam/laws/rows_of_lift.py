@@ -1,0 +1,221 @@
+"""From rows of angle and lift to a lift program.
+
+The lift goes through the rows as the closed curve with the least integral of the squared jerk:
+quintics between rows, C4 at all of them and over the end of the turn, whose error falls with the
+sixth power of the step where the motion is smooth. Rows that were measured are noisy, and the jerk
+of a curve through them is that of the noise. With a tolerance the curve passes near them instead:
+it is the smoothing spline, which weighs the same jerk against the distances from the rows. One
+number, its cutoff, makes it smoother; the lowest is taken at which no row is farther off than the
+tolerance. So noise is averaged by one rule all over the turn. (The curve of least jerk among all
+that stay within the tolerance would be smoother still; it runs along the tolerance wherever that
+spares jerk, and takes as much off every peak.)
+
+Where rows stay at a height is a dwell; between dwells the lift rises and returns, and turns where
+its curve does.
+
+Source: C. de Boor, A Practical Guide to Splines, chapter XIV (the smoothing spline).
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import groupby
+from typing import Final
+
+import numpy as np
+
+from gearcam.laws.entry import TYPED
+from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.program import Deviation, PlacedPhase, Program
+from gearcam.laws.rises.pieces import from_both_ends
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
+from gearcam.numeric.piecewise import Piecewise, extremes, piecewise
+
+_NEAR: Final = 0.01
+"""The search for the cutoff stops where it is known to this part."""
+
+_KINDS: Final = {1: "rise", -1: "return", 0: "dwell"}
+
+_DWELL: Final = 2
+"""Steps without a change that are a dwell; one is an extreme between two rows."""
+
+_SAME: Final = 1e-9
+"""Distance of an extreme from a row, rad, at which it is the row: an extreme is flat, and known to
+half the digits."""
+
+_ORDER: Final = 6
+"""Power of the step with which the error of a smooth lift falls."""
+
+_BESIDE: Final = 2.0
+"""A miss is seen in the middle between rows; beside it, where a derivative jumps near a row, it may
+be twice as large."""
+
+
+def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
+    """Return the program that rows make.
+
+    Parameters
+    ----------
+    theta : (n,) array, rad
+        Rising, within a turn.
+    lift : (n,) array, mm or rad
+        Lifts there.
+    tolerance : float, mm or rad
+        Largest distance from a row; 0 for a curve through the rows.
+    spread : float, mm or rad
+        What is known of the first row: its lift is the mean of two that differ by twice as much.
+
+    Returns
+    -------
+    Program
+        With a knot at each row and at the ends of the turn.
+    """
+    values, cutoff, deviation = lift, 0.5 * len(theta), None
+    if tolerance:
+        apart = np.append(spread, np.zeros(len(theta) - 1))
+        values, cutoff = _smoothed(theta, lift, apart, tolerance)
+        off = values - lift
+        far = int(np.argmax(np.abs(off) + apart))
+        value = math.copysign(abs(off[far]) + apart[far], off[far])
+        deviation = Deviation(theta=float(theta[far]), value=value)
+    curve = _curve(theta, values)
+    level = max(tolerance, TYPED * float(np.ptp(lift)))
+    return Program(
+        lift=curve,
+        stretches=stretches_of(curve, theta, values, level, cutoff),
+        cuts=curve.knots,
+        error=_error(theta, values),
+        deviation=deviation,
+    )
+
+
+def _smoothed(theta: Array, lift: Array, apart: Array, tolerance: float) -> tuple[Array, float]:
+    """Return the smoothest lifts within a tolerance, and their cutoff, 1/rad."""
+    low, high = 1.0, 2.0 * len(theta)  # a wave a turn; a quarter of a step
+    found, cutoff = lift, high
+    while high > low * (1.0 + _NEAR):
+        middle = math.sqrt(low * high)
+        values = smoothed_ring(theta, lift, TURN, middle)
+        if float((np.abs(values - lift) + apart).max()) <= tolerance:
+            found, cutoff, high = values, middle, middle
+        else:
+            low = middle
+    return found, cutoff
+
+
+def _curve(theta: Array, lift: Array) -> Piecewise:
+    """Return the closed curve of quintics through rows, cut at the ends of the turn."""
+    x, y = np.append(theta, theta[0] + TURN), np.append(lift, lift[0])
+    slopes = ring_slopes(theta, lift, TURN)
+    both = coefficients(x, y, np.concatenate([slopes, slopes[:1]]), ring=True)
+    rows = zip(*(side.tolist() for side in both), x[:-1].tolist(), x[1:].tolist(), strict=True)
+    pieces = [from_both_ends(*row) for row in rows]
+    if theta[0] == 0.0:
+        return piecewise(np.append(theta, TURN), pieces)
+    left, right = (side[-1].tolist() for side in both)
+    over = from_both_ends(left, right, float(x[-2]) - TURN, float(x[-1]) - TURN)
+    return piecewise(np.concatenate([[0.0], theta, [TURN]]), [over, *pieces])
+
+
+def _error(theta: Array, lift: Array) -> float:
+    """Estimate the error of the curve between rows from that of curves through fewer.
+
+    Curves through every second row miss the rows between by so much, those through every fourth by
+    more. By what it falls between these, which the smoothness of the motion decides, it is taken to
+    fall again. The worst of all choices of rows counts, as a jump of a derivative may lie anywhere.
+    """
+    two, four = (
+        max(_missed(np.roll(theta, -k), np.roll(lift, -k), step) for k in range(step))
+        for step in (2, 4)
+    )
+    rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max())
+    falls = min(max(four / max(two, rounding), 1.0), 2.0**_ORDER)
+    return _BESIDE * two / falls + rounding
+
+
+def _missed(theta: Array, lift: Array, step: int) -> float:
+    """Return by how much a curve through every `step`-th row misses those in the middle between."""
+    theta = theta[0] + (theta - theta[0]) % TURN
+    x, y = theta[::step], lift[::step]
+    slopes = ring_slopes(x, y, TURN)
+    ends = np.append(x, x[0] + TURN), np.append(y, y[0]), np.concatenate([slopes, slopes[:1]])
+    left, _ = coefficients(*ends, ring=True)
+    between = np.arange(step // 2, len(theta), step)
+    distance = (theta[between] - x[: len(between)])[:, None]
+    found = (left[: len(between)] * distance ** np.arange(6)).sum(axis=1)
+    return float(np.abs(found - lift[between]).max())
+
+
+def stretches_of(
+    lift: Piecewise, theta: Array, values: Array, level: float, cutoff: float
+) -> tuple[PlacedPhase, ...]:
+    """Return rises, returns and dwells; one that goes on over the end of the turn is cut there.
+
+    Parameters
+    ----------
+    lift : Piecewise
+        The curve.
+    theta, values : (n,) arrays
+        Places of it, rad, and lifts there.
+    level : float, mm or rad
+        What a lift may change by in a dwell.
+    cutoff : float, 1/rad
+        Wave number above which the curve has none.
+
+    Returns
+    -------
+    tuple of PlacedPhase
+    """
+    runs = _runs(theta, values, level, cutoff)
+    turns = [
+        _turning(lift, theta, (first, row), sign) if sign * before else float(theta[row])
+        for (before, first), (sign, row) in zip([runs[-1], *runs], runs, strict=False)
+    ]
+    kinds, first = [_KINDS[sign] for sign, _ in runs], int(np.argmin(turns))
+    kinds, turns = kinds[first:] + kinds[:first], turns[first:] + turns[:first]
+    bounds = zip([kinds[-1], *kinds], [0.0, *turns], [*turns, TURN], strict=True)
+    return tuple(
+        PlacedPhase(kind=kind, start=start, end=end) for kind, start, end in bounds if end > start
+    )
+
+
+def _runs(theta: Array, values: Array, level: float, cutoff: float) -> list[tuple[int, int]]:
+    """Return what the lift does, 1, -1 or 0, and from which row on, in a ring.
+
+    It stands still where it changes by less than the level in a phase of 1 of waves at the cutoff,
+    over half such a wave and two steps at least, and by no more than twice the level in all.
+    """
+    steps, widths = np.diff(values, append=values[0]), np.diff(theta, append=theta[0] + TURN)
+    still = np.abs(steps) <= level * np.minimum(cutoff * widths, 1.0)
+    signs = np.where(still & (not still.all()), 0.0, np.sign(steps)).astype(int)
+    begin = int(np.flatnonzero(signs * (signs - np.roll(signs, 1)))[0])
+    runs: list[tuple[int, int]] = []
+    for sign, group in groupby(np.roll(np.arange(len(steps)), -begin), key=signs.__getitem__):
+        own = np.array(list(group))
+        change = np.cumsum(steps[own])
+        short = len(own) < _DWELL or widths[own].sum() < math.pi / cutoff
+        if sign == 0 and short:
+            continue  # it turns, or goes on
+        if sign == 0 and np.abs(change).max() > 2.0 * level:
+            sign = int(np.sign(change[-1]))
+        if not runs or runs[-1][0] != sign:
+            runs.append((int(sign), int(own[0])))
+    if runs[0][0] == runs[-1][0]:
+        return runs[1:]
+    return runs
+
+
+def _turning(lift: Piecewise, theta: Array, rows: tuple[int, int], sign: int) -> float:
+    """Return where a lift is extreme, rad, that comes from one row and goes from another."""
+    first, last = rows
+    row = theta[np.arange(first - 1, last + 2 + len(theta) * (last < first)) % len(theta)]
+    near = np.unwrap(row, period=TURN)
+
+    def function(x: Array) -> list[Array]:
+        return lift.derivatives(x % TURN, 1)
+
+    places, found = extremes(function, near)
+    place = float(places[np.argmin(sign * found)])
+    nearest = float(near[np.abs(near - place).argmin()])
+    return (nearest if abs(nearest - place) < _SAME else place) % TURN

@@ -1,0 +1,188 @@
+"""Curves through points, or near them, with the least integral of the squared third derivative.
+
+Between points runs a quintic; derivatives go on up to the fourth. A curve that repeats after a
+period is a *ring*, one with two ends a *chain*. Slopes and second derivatives at the points, and
+the values of a smoothed ring, are the minimum of a quadratic form: its system is symmetric,
+positive definite, and couples neighbours only. Every second point is eliminated at once, again and
+again, so that n points take log2(n) steps.
+
+Source: C. de Boor, A Practical Guide to Splines (smoothing and interpolating splines); the
+coefficients are integrals over one quintic.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.hermite import hermite_quintics
+
+_SAME: Final = np.array([[720.0, 360.0, 60.0], [360.0, 192.0, 36.0], [60.0, 36.0, 9.0]])
+"""Integral of the squared third derivative over an interval of length 1: the part of value, slope
+and second derivative at its left end. At the right end entries of odd order change their sign."""
+
+_OTHER: Final = np.array([[-720.0, 360.0, -60.0], [-360.0, 168.0, -24.0], [-60.0, 24.0, -3.0]])
+"""The part of the left end (rows) with the right end (columns)."""
+
+_ORDER: Final[Array] = np.add.outer(np.arange(3.0), np.arange(3.0))
+
+_FEW: Final = 3
+"""Points from which on a ring is solved at once: of fewer each is its own second neighbour."""
+
+
+def ring_slopes(x: Array, y: Array, period: float) -> Array:
+    """Return slope and second derivative at the points of a ring.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Rising, within a period.
+    y : (n,) array
+        Values.
+    period : float
+        After which it repeats.
+
+    Returns
+    -------
+    (n, 2) array
+    """
+    left, right, beside = _forms(_widths(x, period))
+    rise = (np.roll(y, -1) - y)[:, None]
+    wanted = left[:, 1:, 0] * rise - np.roll(right[:, 1:, 0] * rise, 1, axis=0)
+    diagonal = left + np.roll(right, 1, axis=0)
+    return _solved(diagonal[:, 1:, 1:], beside[:, 1:, 1:], wanted[..., None])[..., 0]
+
+
+def chain_slopes(x: Array, y: Array, start: tuple[float, float], end: tuple[float, float]) -> Array:
+    """Return slope and second derivative at the points of a chain.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Rising, three points at least.
+    y : (n,) array
+        Values.
+    start, end : (float, float)
+        Slope and second derivative at the ends.
+
+    Returns
+    -------
+    (n, 2) array
+    """
+    left, right, beside = (form[:, 1:] for form in _forms(np.diff(x)))
+    rise = np.diff(y)[:, None]
+    wanted = left[1:, :, 0] * rise[1:] - right[:-1, :, 0] * rise[:-1]
+    inner = beside[..., 1:]
+    wanted[0] -= inner[0].T @ start
+    wanted[-1] -= inner[-1] @ end
+    coupled = np.concatenate([inner[1:-1], np.zeros((1, 2, 2))])
+    found = _solved(left[1:, :, 1:] + right[:-1, :, 1:], coupled, wanted[..., None])[..., 0]
+    return np.concatenate([[start], found, [end]])
+
+
+def smoothed_ring(x: Array, y: Array, period: float, cutoff: float) -> Array:
+    """Return the values, at its points, of the smoothing ring that passes near them.
+
+    It has the least sum of the integral of the squared third derivative and the squared distances
+    from the points times a weight, ``cutoff**6`` over their mean spacing.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Rising, within a period.
+    y : (n,) array
+        Values.
+    period : float
+        After which it repeats.
+    cutoff : float
+        Of evenly spaced points, waves of this wave number, phase per unit of x, keep half their
+        height; longer ones more, shorter ones less, ``1/(1 + (number/cutoff)**6)``.
+
+    Returns
+    -------
+    (n,) array
+    """
+    left, right, beside = _forms(_widths(x, period))
+    diagonal, mean = left + np.roll(right, 1, axis=0), y.mean()
+    weight = cutoff**6 * period / len(x)
+    diagonal[:, 0, 0] += weight
+    wanted = np.zeros((len(x), 3, 1))
+    wanted[:, 0, 0] = weight * (y - mean)  # a constant costs nothing; without it digits are left
+    return mean + _solved(diagonal, beside, wanted)[:, 0, 0]
+
+
+def coefficients(x: Array, y: Array, slopes: Array, *, ring: bool) -> tuple[Array, Array]:
+    """Return the quintics through points with known derivatives, from both ends of each interval.
+
+    Parameters
+    ----------
+    x, y : (n + 1,) arrays
+        Points; the last of a ring is the first one, a period on.
+    slopes : (n + 1, 2) array
+        Slopes and second derivatives there.
+    ring : bool
+        Whether it is a ring.
+
+    Returns
+    -------
+    left, right : (n, 6) arrays
+        Of rising powers of the distance from the point before and from the point behind. At a
+        point the third derivative is one number on both sides, not only to rounding.
+    """
+    h = np.diff(x)
+    left = hermite_quintics(x, y, *slopes.T).T
+    cubic, quartic, quintic = left[3:]
+    jerk = cubic + h * (4.0 * quartic + 10.0 * h * quintic)
+    slope, bend = slopes[1:].T
+    right = np.array([y[1:], slope, 0.5 * bend, jerk, quartic + 5.0 * h * quintic, quintic])
+    right[3] = np.append(left[3, 1:], left[3, 0] if ring else right[3, -1])
+    return left.T, right.T
+
+
+def _widths(x: Array, period: float) -> Array:
+    return np.diff(np.append(x, x[0] + period))
+
+
+def _forms(h: Array) -> tuple[Array, Array, Array]:
+    """Return the forms of intervals: of their left ends, of their right ends, and between both."""
+    scale = h[:, None, None] ** (_ORDER - 5.0)
+    left = _SAME * scale
+    return left, left * (-1.0) ** _ORDER, _OTHER * scale
+
+
+def _solved(diagonal: Array, beside: Array, wanted: Array) -> Array:
+    """Solve a symmetric system of n blocks in a ring, (n, b, 1).
+
+    Row k has the block ``diagonal[k]``, and ``beside[k]`` in the column of the next one.
+    """
+    count, size = diagonal.shape[:2]
+    if count <= _FEW:
+        matrix = np.zeros((count, size, count, size))
+        for k in range(count):
+            after = (k + 1) % count
+            matrix[k, :, k] += diagonal[k]
+            matrix[k, :, after] += beside[k]
+            matrix[after, :, k] += beside[k].T
+        found = np.empty_like(wanted)
+        flat = matrix.reshape(count * size, -1)
+        found[...] = np.linalg.solve(flat, wanted.ravel()).reshape(wanted.shape)
+        return found
+    odd = np.arange(1, count, 2) if count % 2 == 0 else np.arange(1, count - 1, 2)
+    before, after = beside[odd - 1], beside[odd].transpose(0, 2, 1)
+    known = np.concatenate([before.transpose(0, 2, 1), beside[odd], wanted[odd]], axis=2)
+    back, on, own = np.split(np.linalg.solve(diagonal[odd], known), [size, 2 * size], axis=2)
+    rest, here = diagonal[::2].copy(), slice(len(odd))
+    following = (np.arange(len(odd)) + 1) % len(rest)
+    left = wanted[::2].copy()
+    rest[here] -= before @ back
+    left[here] -= before @ own
+    rest[following] -= after @ on
+    left[following] -= after @ own
+    coupled = np.concatenate([-before @ on, beside[count - count % 2 :]])
+    even = _solved(rest, coupled, left)
+    found = np.empty_like(wanted)
+    found[::2] = even
+    found[odd] = own - back @ even[here] - on @ even[following]
+    return found
