@@ -76,7 +76,7 @@ def test_both_sides_of_a_knot_are_drawn():
     # a cycloidal rise of h over beta ends with the jerk h*4*pi^2/beta^3, a dwell has none
     line = chart(CAM, "jerk").lines[0]
     design: Any = gearcam.load(CAM)
-    rise = design.phases[0]
+    rise = design.motion[0]
     jerk = rise.lift * 4.0 * math.pi**2 / rise.angle**3
     at = np.flatnonzero(np.isclose(line.x, math.degrees(rise.angle), atol=1e-9))
     assert line.y[at] == pytest.approx([jerk, 0.0])
