@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import Axis, Given, formula_problems, function_of
@@ -30,7 +31,7 @@ _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''"
 
 
 @dataclass(frozen=True, kw_only=True)
-class FormulaRise:
+class FormulaRise(Brief):
     """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic.
 
     From Python it may be a function, or a tuple of a function and its first derivatives.
