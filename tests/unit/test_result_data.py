@@ -49,6 +49,7 @@ def tables(pair: GearPairResult, cam: CamResult) -> dict[str, Columns]:
         "flanks": pair.gear2.flanks,
         "mesh": pair.mesh(steps=3, to_deg=10).columns,
         "cam": cam.motion(),
+        "cam contact": cam.contact(),
         "followed": cam.follow(cam.profile.vertices).columns,
     }
 
@@ -130,6 +131,7 @@ Call = Callable[[GearPairResult, CamResult], object]
         (lambda pair, _: pair.mesh(steps=0), "meshing.steps", "0 is out of range"),
         (lambda pair, _: pair.mesh(step_s=9), "meshing.step_s", "did you mean steps?"),
         (lambda _, cam: cam.motion(math.inf), "theta", "inf is out of range"),
+        (lambda _, cam: cam.contact("top"), "theta", "'top' is no number"),
         (lambda _, cam: cam.follow([[0.0, 1.0]]), "profile", "the shape (1, 2)"),
         (lambda _, cam: cam.follow([[0, 1], [1, "x"]]), "profile", "is no array of numbers"),
         (lambda _, cam: cam.follow([[0, 1], [1, 0], [math.nan, 0]]), "profile", "no finite"),
