@@ -67,6 +67,22 @@ def test_motion_is_the_ellipses_in_closed_form(ellipses: GearPairResult) -> None
     np.testing.assert_allclose(found["jerk_per_rad2"], bend, rtol=1e-9, atol=1e-11)
 
 
+def test_a_rack_moves_by_the_pitch_radius() -> None:
+    result = profile("feeder")
+    found, centrodes = result.motion(), result.centrodes()
+    np.testing.assert_allclose(found["velocity_mm_per_rad"], centrodes["r1_mm"], rtol=1e-12)
+    np.testing.assert_allclose(found["travel_mm"], centrodes["travel_mm"], atol=1e-9)
+    step = 1e-4
+    around = result.motion(np.array([1.0 - step, 1.0, 1.0 + step]))
+    for name, slope in (
+        ("travel_mm", "velocity_mm_per_rad"),
+        ("velocity_mm_per_rad", "acceleration_mm_per_rad2"),
+        ("acceleration_mm_per_rad2", "jerk_mm_per_rad3"),
+    ):
+        low, _, high = around[name]
+        assert around[slope][1] == pytest.approx((high - low) / (2.0 * step), rel=1e-6)
+
+
 def test_circular_wheels_touch_on_the_line_of_action(circles: GearPairResult) -> None:
     r1, r2 = 10.0 * MODULE, 15.0 * MODULE
     tip1, tip2 = (
