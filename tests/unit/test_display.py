@@ -96,7 +96,11 @@ def test_an_object_is_its_type_and_its_fields_but_for_defaults() -> None:
     )
     long = Made("n" * 200, 2.0, list(range(20)), {"a": 1})
     assert repr(long).startswith("Made(name='nnn")
-    assert "points=20 items, inner=1 item" in repr(long)
+    assert "points=20 items, inner={a: 1}" in repr(long)
+    assert word((np.zeros(2), made)) == "(array(2,), Made)"
+    assert word((print, 1)) == "2 items"
+    assert word(["w" * 29] * 3) == "3 items"
+    assert word(("w",)) == "('w',)"
     assert line("Made", ["w" * 40] * 5) == f"Made({'w' * 40}, {'w' * 40}, ...)"
     assert word(print) == word(None) == ""
     assert word(True) == "True"
