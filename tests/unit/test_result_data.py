@@ -221,6 +221,8 @@ def test_a_dictionary_is_what_the_summary_holds(name: str, tmp_path: Path) -> No
     for one in (summary, found):
         one.pop("timings_s")
     assert summary.pop("files") == {}
+    assert found["hash"] == result.design_hash
+    assert {"format", "kind", "findings", "versions", "design"} <= set(found)
     assert found == summary
 
 

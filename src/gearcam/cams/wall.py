@@ -266,7 +266,7 @@ class Wall(PitchMotion):
 
     @property
     def outline(self) -> Array:
-        """Vertices of the profile before clearance, (n, 2), mm, counter-clockwise."""
+        """Vertices of the profile before clearance, (n, 2), mm, counter-clockwise, cam's frame."""
         return self.contour.vertices
 
     @cached_property
