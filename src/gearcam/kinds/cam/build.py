@@ -228,7 +228,7 @@ class CamResult(Result):
                 found += run_checks(PARTS_KIND, subject, self.design.limits)
         return in_order(found)
 
-    def follow(self, profile: str | Path | ArrayLike, progress: Progress | None = None) -> Study:
+    def follow(self, profile: str | Path | ArrayLike, *, progress: Progress | None = None) -> Study:
         """Put the design's follower on a given profile: what motion it makes.
 
         Parameters
