@@ -241,6 +241,16 @@ def test_findings_stand_below_the_facts() -> None:
         assert any(finding.message in text and finding.code in text for text in texts)
 
 
+def test_all_facts_are_folded_below_by_name() -> None:
+    facts = profile("ellipse").facts
+    texts = Page(facts._repr_html_()).texts
+    assert f"all {len(facts)} facts, by name" in texts
+    assert {"pair.module_mm", "gears.1.outline.vertices"} <= {*texts}
+    least = texts.index("least contact ratio")
+    assert texts[least + 1].startswith("1.7")
+    assert texts[least + 2] == "at least 1.1"
+
+
 def test_what_has_no_picture_shows_facts(monkeypatch: pytest.MonkeyPatch) -> None:
     from arch.test_kinds import GOOD, TOY
 
