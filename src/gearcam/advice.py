@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.design import Design, document_of, value_at
 from gearcam.designs.kind import KINDS
+from gearcam.display import Brief
 from gearcam.errors import DesignError, InfeasibleError, Way
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ _INSIDE: Final = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Remedy:
+class Remedy(Brief):
     """A change with which a design was built, free of errors.
 
     Parameters
@@ -54,7 +55,7 @@ class Remedy:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Remedies:
+class Remedies(Brief):
     """What a search for remedies found.
 
     Parameters

@@ -6,8 +6,9 @@ Pictures and tables are made by `gearcam.markup`, which is loaded when a noteboo
 from __future__ import annotations
 
 import dataclasses
+import os
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence, Sized
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,7 +22,7 @@ _WORD: Final = 30
 """Letters of a text within it."""
 
 _FEW: Final = 4
-"""Items of a row of numbers that are shown."""
+"""Items up to which each is shown."""
 
 
 class Brief:
@@ -59,6 +60,7 @@ def cut(text: str) -> str:
 
 def word(value: Any) -> str:
     """Return a `value` in a word, or nothing of what has none: functions and what is missing."""
+    value = os.fspath(value) if isinstance(value, os.PathLike) else value
     if isinstance(value, str):
         return repr(value if len(value) <= _WORD else f"{value[: _WORD - 3]}...")
     if isinstance(value, bool | int):
@@ -67,16 +69,23 @@ def word(value: Any) -> str:
         return f"{value:.6g}"
     if getattr(value, "shape", None):
         return f"array{value.shape}"
-    if isinstance(value, tuple | list):
-        plain = len(value) <= _FEW and all(isinstance(one, int | float | str) for one in value)
-        return f"({', '.join(map(word, value))})" if plain else _count(value)
-    if isinstance(value, Mapping):
-        return _count(value)
+    if isinstance(value, tuple | list | Mapping):
+        return _items(value)
     return "" if value is None or callable(value) else type(value).__name__
 
 
-def _count(values: Sized) -> str:
-    return "1 item" if len(values) == 1 else f"{len(values)} items"
+def _items(values: Sequence[Any] | Mapping[str, Any]) -> str:
+    """Return a few short items in a word each, of others how many there are."""
+    named = isinstance(values, Mapping)
+    rows = list(values.values() if isinstance(values, Mapping) else values)
+    texts = [word(one) for one in rows] if len(rows) <= _FEW else []
+    if all(texts) and len(texts) == len(rows):
+        if named:
+            texts = [f"{key}: {text}" for key, text in zip(values, texts, strict=True)]
+        text = ", ".join(texts) + "," * (len(texts) == 1 and not named)
+        if len(text) <= WIDTH // 2:
+            return f"{{{text}}}" if named else f"({text})"
+    return "1 item" if len(rows) == 1 else f"{len(rows)} items"
 
 
 def _usual(field: dataclasses.Field[Any], value: Any) -> bool:

@@ -151,6 +151,9 @@ class Facts(Mapping[str, Any]):
 
         return page("", self)
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
     def lines(self) -> Iterator[str]:
         """Yield the headline, then the quantities that are always shown, lined up."""
         if self.headline:

@@ -15,7 +15,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns
 from helpers_cam_files import ROLLER, SWINGING
-from helpers_pairs import job, profile
+from helpers_pairs import PROFILES, job, profile
 
 E, MODULE, ALPHA = 0.3, 2.0, math.radians(20.0)
 
@@ -65,6 +65,22 @@ def test_motion_is_the_ellipses_in_closed_form(ellipses: GearPairResult) -> None
     np.testing.assert_allclose(found["acceleration_per_rad"], slope, atol=1e-12)
     bend = 2.0 * E * k * (np.cos(phi) / d**2 + 4.0 * E * np.sin(phi) ** 2 / d**3)
     np.testing.assert_allclose(found["jerk_per_rad2"], bend, rtol=1e-9, atol=1e-11)
+
+
+def test_a_rack_moves_by_the_pitch_radius() -> None:
+    result = profile("feeder")
+    found, centrodes = result.motion(), result.centrodes()
+    np.testing.assert_allclose(found["velocity_mm_per_rad"], centrodes["r1_mm"], rtol=1e-12)
+    np.testing.assert_allclose(found["travel_mm"], centrodes["travel_mm"], atol=1e-9)
+    step = 1e-4
+    around = result.motion(np.array([1.0 - step, 1.0, 1.0 + step]))
+    for name, slope in (
+        ("travel_mm", "velocity_mm_per_rad"),
+        ("velocity_mm_per_rad", "acceleration_mm_per_rad2"),
+        ("acceleration_mm_per_rad2", "jerk_mm_per_rad3"),
+    ):
+        low, _, high = around[name]
+        assert around[slope][1] == pytest.approx((high - low) / (2.0 * step), rel=1e-6)
 
 
 def test_circular_wheels_touch_on_the_line_of_action(circles: GearPairResult) -> None:
@@ -119,7 +135,9 @@ def test_flanks_of_circular_wheels_are_involutes(circles: GearPairResult, wheel:
     assert (np.sign(moment) == found["side"] * (1 if wheel == 1 else -1)).all()
     assert (found["tooth"] == np.repeat(np.arange(1, (20, 30)[wheel - 1] + 1), 18)).all()
     assert (found["point"] == np.tile(np.arange(1, 10), len(points) // 9)).all()
-    assert (np.diff(found["reach_mm"].reshape(-1, 9), axis=1) > 0.0).all()
+    assert (found["side"] == np.tile(np.repeat([1, -1], 9), len(points) // 18)).all()
+    for rising in (found["reach_mm"], np.hypot(*points.T)):
+        assert (np.diff(rising.reshape(-1, 9), axis=1) > 0.0).all()
 
 
 @pytest.mark.parametrize("name", ["two_speeds", "feeder", "log_spiral"])
@@ -175,6 +193,33 @@ def test_the_motion_of_a_cam_is_its_law() -> None:
     top = math.hypot(8.0, s0 + 10.0)
     np.testing.assert_allclose(found["rho_pitch_mm"][-1], top, rtol=1e-12)
     np.testing.assert_allclose(found["rho_profile_mm"][-1], top - 6.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+def test_a_roller_touches_where_its_circle_does(rotation: str) -> None:
+    made = gearcam.build(gearcam.loads(ROLLER).with_({"cam.rotation": rotation}))
+    theta = np.radians([0.0, 20.0, 45.0, 100.0, 200.0, 300.0, 405.0])
+    found = made.contact(theta)
+    side = 1.0 if rotation == "ccw" else -1.0
+    height = math.sqrt(30.0**2 - 8.0**2) + made.motion(theta)["lift_mm"]
+    away = side * 8.0 + 1j * height - (found["fixed_x_mm"] + 1j * found["fixed_y_mm"])
+    np.testing.assert_allclose(np.abs(away), 6.0, rtol=1e-12)
+    pressed = np.degrees(np.arctan2(-side * away.real, away.imag))
+    np.testing.assert_allclose(pressed, made.motion(theta)["pressure_angle_deg"], atol=1e-10)
+    turn = np.exp(-1j * side * theta)
+    np.testing.assert_allclose(found["nx"] + 1j * found["ny"], away * turn / 6.0, atol=1e-12)
+    place = (found["fixed_x_mm"] + 1j * found["fixed_y_mm"]) * turn
+    np.testing.assert_allclose(found.points @ [1, 1j], place, atol=1e-12)
+    np.testing.assert_allclose(found.points[2], found.points[-1], atol=1e-12)
+
+
+def test_where_the_follower_rests_on_a_corner_there_is_no_contact() -> None:
+    result = gearcam.build(gearcam.load(PROFILES / "undercut_cam.toml"))
+    middles = np.array([0.5 * (one.before + one.after) for one in result.cam.corners])
+    assert len(middles) > 0
+    assert len(result.contact(middles)["theta_deg"]) == 0
+    beside = np.array([one.after + 1e-6 for one in result.cam.corners])
+    assert len(result.contact(np.append(middles, beside))["theta_deg"]) == len(beside)
 
 
 def test_an_oscillating_follower_is_told_in_degrees() -> None:

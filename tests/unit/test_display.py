@@ -60,7 +60,8 @@ def _got(one: object, name: str) -> object:
     "name", ["shop_order", "stepped_ellipse", "feeder", "valve_lever", "undercut_cam"]
 )
 def test_everything_that_is_reached_shows_itself_in_one_line(name: str) -> None:
-    result = build(name)
+    coarse = {"output.chord_tolerance_mm": 0.01}
+    result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml").with_(coarse))
     extra = result.mesh(steps=2, to_deg=5) if hasattr(result, "mesh") else None
     types = set()
     for start in (result, extra):
@@ -96,7 +97,11 @@ def test_an_object_is_its_type_and_its_fields_but_for_defaults() -> None:
     )
     long = Made("n" * 200, 2.0, list(range(20)), {"a": 1})
     assert repr(long).startswith("Made(name='nnn")
-    assert "points=20 items, inner=1 item" in repr(long)
+    assert "points=20 items, inner={a: 1}" in repr(long)
+    assert word((np.zeros(2), made)) == "(array(2,), Made)"
+    assert word((print, 1)) == "2 items"
+    assert word(["w" * 29] * 3) == "3 items"
+    assert word(("w",)) == "('w',)"
     assert line("Made", ["w" * 40] * 5) == f"Made({'w' * 40}, {'w' * 40}, ...)"
     assert word(print) == word(None) == ""
     assert word(True) == "True"
@@ -112,7 +117,7 @@ def test_what_a_design_asks_for_shows_itself_in_one_line(path: Path) -> None:
 def test_long_names_and_many_stages_are_cut(tmp_path: Path) -> None:
     result = gearcam.build(build("ellipse").design.with_({"name": "n" * 99}))
     study = result.mesh(steps=2, to_deg=5)
-    result.write(tmp_path, files=["csv", "svg", "dxf"])
+    result.write(tmp_path, files=["csv", "svg"])
     for one in (result, result.design, study, profile("ellipse")):
         assert len(repr(one)) < 100
         assert repr(one).endswith(">")
@@ -234,6 +239,16 @@ def test_findings_stand_below_the_facts() -> None:
     texts = Page(result._repr_html_()).texts
     for finding in result.findings:
         assert any(finding.message in text and finding.code in text for text in texts)
+
+
+def test_all_facts_are_folded_below_by_name() -> None:
+    facts = profile("ellipse").facts
+    texts = Page(facts._repr_html_()).texts
+    assert f"all {len(facts)} facts, by name" in texts
+    assert {"pair.module_mm", "gears.1.outline.vertices"} <= {*texts}
+    least = texts.index("least contact ratio")
+    assert texts[least + 1].startswith("1.7")
+    assert texts[least + 2] == "at least 1.1"
 
 
 def test_what_has_no_picture_shows_facts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -49,6 +49,7 @@ def tables(pair: GearPairResult, cam: CamResult) -> dict[str, Columns]:
         "flanks": pair.gear2.flanks,
         "mesh": pair.mesh(steps=3, to_deg=10).columns,
         "cam": cam.motion(),
+        "cam contact": cam.contact(),
         "followed": cam.follow(cam.profile.vertices).columns,
     }
 
@@ -130,6 +131,7 @@ Call = Callable[[GearPairResult, CamResult], object]
         (lambda pair, _: pair.mesh(steps=0), "meshing.steps", "0 is out of range"),
         (lambda pair, _: pair.mesh(step_s=9), "meshing.step_s", "did you mean steps?"),
         (lambda _, cam: cam.motion(math.inf), "theta", "inf is out of range"),
+        (lambda _, cam: cam.contact("top"), "theta", "'top' is no number"),
         (lambda _, cam: cam.follow([[0.0, 1.0]]), "profile", "the shape (1, 2)"),
         (lambda _, cam: cam.follow([[0, 1], [1, "x"]]), "profile", "is no array of numbers"),
         (lambda _, cam: cam.follow([[0, 1], [1, 0], [math.nan, 0]]), "profile", "no finite"),
@@ -149,7 +151,7 @@ def test_an_open_pair_is_asked_within_its_travel() -> None:
     result = profile("log_spiral")
     end = result.law.period
     for call in (result.motion, result.contact):
-        assert len(call([0.0, math.radians(math.degrees(end))])["phi1_deg"]) > 1
+        assert len(call([0.0, end * (1.0 + 1e-13)])["phi1_deg"]) > 1
         for beyond in (-1e-6, end + 1e-6):
             with pytest.raises(DesignError, match=r"phi1: .* is out of range"):
                 call(beyond)
@@ -219,6 +221,8 @@ def test_a_dictionary_is_what_the_summary_holds(name: str, tmp_path: Path) -> No
     for one in (summary, found):
         one.pop("timings_s")
     assert summary.pop("files") == {}
+    assert found["hash"] == result.design_hash
+    assert {"format", "kind", "findings", "versions", "design"} <= set(found)
     assert found == summary
 
 

@@ -266,7 +266,7 @@ class Wall(PitchMotion):
 
     @property
     def outline(self) -> Array:
-        """Vertices of the profile before clearance, (n, 2), mm, counter-clockwise."""
+        """Vertices of the profile before clearance, (n, 2), mm, counter-clockwise, cam's frame."""
         return self.contour.vertices
 
     @cached_property
@@ -286,27 +286,27 @@ class Wall(PitchMotion):
             chord_error=error,
         )
 
-    def places(self, count: int) -> tuple[Array, Plane, Plane]:
-        """Return points of the profile at even cam angles, where they are left by trimming.
+    def places(self, theta: Array) -> tuple[Array, Plane, Plane]:
+        """Return points of the profile at cam angles, where they are left by trimming.
 
         Parameters
         ----------
-        count : int
-            Cam angles of a turn.
+        theta : (m,) array, rad
+            Cam angles, any number of turns.
 
         Returns
         -------
         theta : (n,) array, rad
-            At most `count`.
+            Those at which a point is left.
         points, normals : (n,) complex arrays, mm and 1
             Touched at those angles, with the outward normals of the metal.
         """
         kept = self._kept.drawn
-        theta = 2.0 * math.pi * np.arange(count) / count
+        within = np.mod(theta, 2.0 * math.pi)
         sweeps = np.flatnonzero(~kept.jump)
-        inside = (kept.start[sweeps] <= theta[:, None]) & (theta[:, None] < kept.end[sweeps])
+        inside = (kept.start[sweeps] <= within[:, None]) & (within[:, None] < kept.end[sweeps])
         left = inside.any(axis=1)
         index = sweeps[inside.argmax(axis=1)][left]
-        points, tangents = kept.at(index, theta[left])
+        points, tangents = kept.at(index, within[left])
         # drawn against the cam's turning, the metal lies to the right, mirrored to the left
         return theta[left], points, tangents * self.side * (-1j if self.clockwise else 1j)

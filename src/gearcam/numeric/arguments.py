@@ -135,7 +135,7 @@ def whole(name: str, value: object, least: int) -> int:
         found = operator.index(value)  # pyright: ignore[reportArgumentType]
     except TypeError:
         raise refused(f"{_text(value)} is no whole number", name, value, rule) from None
-    if isinstance(value, bool) or found < least:
+    if found < least:
         raise refused(f"{_text(value)} is out of range", name, value, rule)
     return found
 

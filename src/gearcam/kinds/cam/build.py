@@ -159,6 +159,45 @@ class CamResult(Result):
             blank = self.design.blank
             return make_part(STEM, [finished(profile, blank, place)], thickness, blank, place)
 
+    def contact(self, theta: ArrayLike | None = None) -> Columns:
+        """Return where the follower touches the profile (before clearance).
+
+        Parameters
+        ----------
+        theta : float or (n,) array, rad, optional
+            Cam angles, any number of turns; those of `motion` where left out.
+
+        Returns
+        -------
+        Columns
+            A row for each angle at which trimming has left the point; elsewhere the follower rests
+            on a corner. ``theta_deg``; ``x_mm``, ``y_mm`` in the cam's frame; ``nx``, ``ny``, the
+            outward unit normal of the metal there; ``fixed_x_mm``, ``fixed_y_mm``, the same point
+            in the fixed frame, whose rows are the path of contact. Where the velocity jumps, the
+            point after it counts.
+
+        Raises
+        ------
+        DesignError
+            If `theta` is no row of finite numbers.
+        InfeasibleError
+            If the cam cannot be made.
+        """
+        asked = self.angles if theta is None else angles("theta", theta)
+        left, points, normals = self.cam.places(asked)
+        fixed = points * np.exp((-1j if self.design.cam.clockwise else 1j) * left)
+        return Columns(
+            {
+                "theta_deg": np.degrees(left),
+                "x_mm": points.real,
+                "y_mm": points.imag,
+                "nx": normals.real,
+                "ny": normals.imag,
+                "fixed_x_mm": fixed.real,
+                "fixed_y_mm": fixed.imag,
+            }
+        )
+
     @cached_property
     def parts(self) -> tuple[Part]:
         """The cam as the only part."""
@@ -189,7 +228,7 @@ class CamResult(Result):
                 found += run_checks(PARTS_KIND, subject, self.design.limits)
         return in_order(found)
 
-    def follow(self, profile: str | Path | ArrayLike, progress: Progress | None = None) -> Study:
+    def follow(self, profile: str | Path | ArrayLike, *, progress: Progress | None = None) -> Study:
         """Put the design's follower on a given profile: what motion it makes.
 
         Parameters

@@ -25,7 +25,7 @@ def _adapt(design: Design, _: Mapping[str, Any]) -> Design:
 def _run(
     result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
 ) -> Written:
-    return result.follow(options["profile"], progress).write(output)
+    return result.follow(options["profile"], progress=progress).write(output)
 
 
 COMMANDS: Final = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -157,7 +158,8 @@ def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
 def _inspection(result: CamResult, _: Measured) -> Files:
     from gearcam.export.table import table_bytes
 
-    theta, points, normals = result.cam.places(result.design.output.inspection_points)
+    count = result.design.output.inspection_points
+    theta, points, normals = result.cam.places(2.0 * math.pi * np.arange(count) / count)
     clearance = result.design.blank.clearance
     if clearance:
         from gearcam.parts.parallel import touches

@@ -164,7 +164,7 @@ class GearPairResult(PairStages):
         end = self.law.period
         return angles("phi1", phi1, 0.0, end, ROUNDING * end)
 
-    def mesh(self, progress: Progress | None = None, **settings: object) -> Study:
+    def mesh(self, *, progress: Progress | None = None, **settings: object) -> Study:
         """Turn the pair step by step: contact, interference, backlash, as made and as mounted.
 
         Parameters

@@ -75,7 +75,7 @@ def _run(
     result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
 ) -> Written:
     _ = options  # they are in the design
-    return result.mesh(progress).write(output)
+    return result.mesh(progress=progress).write(output)
 
 
 COMMANDS: Final = (
