@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 
 import gearcam
@@ -70,11 +71,9 @@ def test_every_table_is_of_plain_columns_of_one_length(
             np.testing.assert_array_equal(again[key], values)
 
 
-@pytest.mark.parametrize("library", ["pandas", "polars"])
-def test_frames_take_every_table(library: str, pair: GearPairResult, cam: CamResult) -> None:
-    frames: Any = pytest.importorskip(library)
+def test_frames_take_every_table(pair: GearPairResult, cam: CamResult) -> None:
     for columns in tables(pair, cam).values():
-        frame = frames.DataFrame(columns)
+        frame = pl.DataFrame(columns)
         assert list(frame.columns) == list(columns)
         for key, values in columns.items():
             np.testing.assert_array_equal(frame[key].to_numpy(), values)
@@ -250,3 +249,32 @@ def test_absent_values_of_whole_numbers_are_not_a_number() -> None:
     assert found["tooth"][0] == 1.0
     assert np.isnan(found["tooth"][1])
     assert type(found["side"]) is np.ndarray
+
+
+def test_a_study_with_other_settings_belongs_to_another_design(tmp_path: Path) -> None:
+    made = job(Ellipse(eccentricity=0.2), (20, 20), module=2.0, tolerance=0.01)
+    before = made.design
+    study = made.mesh(steps=24)
+    other: Any = study.result
+    assert other.design == before.with_({"meshing.steps": 24}) != before
+    assert study.write(tmp_path).summary["design"]["meshing"]["steps"] == 24
+    assert made.design is before
+    assert "meshing" not in made.timings
+    assert other.gear1 is made.gear1  # what the settings do not change is made once
+
+
+@pytest.mark.parametrize("name", ["nail_machine_two_phase", "feeder", "valve_lever"])
+def test_facts_are_plain_numbers(name: str) -> None:
+    def kinds(value: Any) -> set[type]:
+        if isinstance(value, dict):
+            value = list(value.values())
+        return set().union(*map(kinds, value)) if isinstance(value, list) else {type(value)}
+
+    found = gearcam.build(gearcam.load(PROFILES / f"{name}.toml")).facts.document
+    assert kinds(found) <= {int, float, str, bool}
+
+
+def test_facts_of_functions_are_plain_numbers() -> None:
+    law = gearcam.laws.Formula(phi2=lambda phi1: phi1 - 0.3 * np.sin(phi1))
+    made = job(law, (20, 20), module=2.0, tolerance=0.01)
+    assert type(made.facts["accuracy.law"]) is float

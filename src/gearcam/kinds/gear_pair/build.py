@@ -221,7 +221,7 @@ class GearPairResult(PairStages):
             return self
         design = self.design.with_({f"meshing.{key}": value for key, value in settings.items()})
         other = type(self)(design, self.tolerances)
-        vars(other).update(vars(self) | {"design": design})
+        vars(other).update(vars(self) | {"design": design, "timings": dict(self.timings)})
         return other
 
 
