@@ -126,7 +126,10 @@ def _turn(d: Draw, lift: float, unit: str) -> dict[str, Any]:
     count = d.whole(12, 72)
     theta = [short(360 * k / count) for k in range(count)]
     waves = [(0.5 - 0.5 * math.cos(math.radians(angle))) ** power for angle in theta]
-    motion = {"theta_deg": theta, f"lift_{unit}": [short(lift * wave) for wave in waves]}
+    motion: dict[str, Any] = {
+        "theta_deg": theta,
+        f"lift_{unit}": [short(lift * wave) for wave in waves],
+    }
     if d.chance(0.4):
         motion[f"smoothing_tolerance_{unit}"] = short(lift * d.log(1e-5, 1e-2))
     return motion
