@@ -1,5 +1,5 @@
 # make demo    build the nail machine's gears into output/ (installs into .venv first)
-# make test    every test that is not slow (installs the extra for STEP files, 380 MB, too)
+# make test    every test that is not slow (installs both extras, STEP files and charts, 440 MB, too)
 # make lint    style, types, import contracts
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
 # make peers   compare flanks with those of another package
@@ -19,7 +19,7 @@ PYTHON ?=
 
 # Sections of the lock that an environment takes; `make matrix` takes others.
 RUN    := run install
-TEST   := $(RUN) step test
+TEST   := $(RUN) step plot test
 
 .DELETE_ON_ERROR:
 .PHONY: demo test lint slow bench peers compare matrix lock clean help

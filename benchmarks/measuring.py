@@ -31,6 +31,11 @@ class Timing:
         """The middle sample."""
         return statistics.median(self.samples)
 
+    def over(self, other: Timing) -> float:
+        """The middle of the ratios to samples of another that were taken in turns with these."""
+        pairs = zip(self.samples, other.samples, strict=True)
+        return statistics.median(mine / theirs for mine, theirs in pairs)
+
     def line(self) -> str:
         """One row of a table: name, median, all samples."""
         raw = ", ".join(show(sample) for sample in self.samples)
@@ -39,13 +44,19 @@ class Timing:
 
 @dataclass(frozen=True)
 class Result:
-    """One target: what was asked, what was found, and the text that shows it."""
+    """One target: what was asked, what was found, the text that shows it, why it is given up."""
 
     title: str
     asked: str
     found: str
     passed: bool
     body: list[str] = field(default_factory=list)
+    given_up: str = ""
+
+    @property
+    def verdict(self) -> str:
+        """What became of it: one that is given up stays, with the reason measured."""
+        return "pass" if self.passed else "given up" if self.given_up else "fail"
 
 
 def show(seconds: float) -> str:

@@ -24,6 +24,7 @@ SECTIONS = {
     "run": ["pyproject.toml"],
     "install": ["--group", "install"],
     "step": ["pyproject.toml", "--extra", "step"],
+    "plot": ["pyproject.toml", "--extra", "plot"],
     "test": ["--group", "test"],
     "lint": ["--group", "lint"],
     "bench": ["--group", "bench"],
@@ -70,7 +71,7 @@ def sections(folder: Path) -> dict[str, list[str]]:
         known = [package for packages in made.values() for package in packages]
         made[name] = [package for package in resolve(*wanted, *held) if not has(known, package)]
     held = hold(folder, made["install"] + made["test"])
-    lowest = [*SECTIONS["step"], *TOOLS, "--resolution", "lowest-direct"]
+    lowest = [*SECTIONS["step"], "--extra", "plot", *TOOLS, "--resolution", "lowest-direct"]
     return made | {"lowest": resolve(*lowest, *held)}
 
 

@@ -39,7 +39,8 @@ from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Prob
 
 if TYPE_CHECKING:
     from gearcam.commands import Command
-    from gearcam.result import Progress, Result, Written
+    from gearcam.result import Progress, Result
+from gearcam.written import Written
 
 GOOD: Final = 0
 FINDINGS: Final = 1

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearcam.designs.design import Design
-from gearcam.result import Progress, Written
+from gearcam.result import Progress
+from gearcam.written import Written
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,39 +16,20 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
+from gearcam.facts import lined_up
 from gearcam.numerals import decimal, shown
 
 if TYPE_CHECKING:
     from gearcam.advice import Remedies
     from gearcam.designs.listing import Listed
     from gearcam.errors import InfeasibleError
-    from gearcam.facts import Facts
     from gearcam.findings import Finding
-    from gearcam.result import Written
+    from gearcam.written import Written
 
 DEBUG: Final = "GEARCAM_DEBUG"
 """The variable that asks for tracebacks."""
 
 _WIDTH: Final = 96
-
-
-def fact_lines(facts: Facts) -> Iterator[str]:
-    """Yield what is known: the headline, then the quantities that are always shown, lined up."""
-    if facts.headline:
-        yield ", ".join(facts.headline)
-    rows = [
-        (one.meaning, one.text, f"({one.limit})" if one.limit else "", one.place)
-        for one in facts.shown()
-    ]
-    yield from ("  " + row for row in lined_up(rows))
-
-
-def lined_up(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
-    """Yield the rows of a table with their columns lined up; empty columns are left out."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True) if width)
-        yield "  ".join(cells).rstrip()
 
 
 def law_lines(law: Listed) -> Iterator[str]:
@@ -86,7 +67,7 @@ def _limit(finding: Finding) -> str:
 
 def all_lines(written: Written) -> Iterator[str]:
     """Yield all that is said of what was `written`: sizes, study, findings, files."""
-    yield from fact_lines(written.facts)
+    yield from written.facts.lines()
     yield from finding_lines(written.findings)
     yield from written_lines(written)
 

@@ -23,6 +23,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
@@ -63,7 +64,7 @@ CROSS_SIZE: Final = 0.04
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Path:
+class Path(Brief):
     """A chain of straight pieces: points (n, 2), mm; if closed, the first is not repeated."""
 
     points: Array
@@ -71,7 +72,7 @@ class Path:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Cross:
+class Cross(Brief):
     """An upright cross: its `center` (2,), mm, and its whole `size`, mm."""
 
     center: Array
@@ -87,7 +88,7 @@ UNMOVED: Final[Placement] = (0.0, (0.0, 0.0))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Feature:
+class Feature(Brief):
     """A shape on a layer."""
 
     layer: str
@@ -100,7 +101,7 @@ class Feature:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Drawing:
+class Drawing(Brief):
     """A `name` and its `features`, in drawing order."""
 
     name: str

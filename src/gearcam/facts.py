@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
 
+from gearcam.display import line
 from gearcam.numerals import shown
 
 _UNITS: Final = {
@@ -139,6 +140,27 @@ class Facts(Mapping[str, Any]):
         """Return the facts with a `group` of that `name` more, or as they are where it is empty."""
         return Facts({**self._tree, name: group}, self._headline, self._title) if group else self
 
+    def __repr__(self) -> str:
+        return line(type(self).__name__, [*self.headline, f"{len(self)} facts"])
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines())
+
+    def _repr_html_(self) -> str:
+        from gearcam.markup import page
+
+        return page("", self)
+
+    def lines(self) -> Iterator[str]:
+        """Yield the headline, then the quantities that are always shown, lined up."""
+        if self.headline:
+            yield ", ".join(self.headline)
+        rows = [
+            (one.meaning, one.text, f"({one.limit})" if one.limit else "", one.place)
+            for one in self.shown()
+        ]
+        yield from ("  " + row for row in lined_up(rows))
+
     @cached_property
     def headline(self) -> tuple[str, ...]:
         """The machine in a few phrases: ``("module 2 mm", "teeth 20 : 20")``."""
@@ -214,6 +236,14 @@ def _bare(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_bare(item) for item in value]
     return value
+
+
+def lined_up(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
+    """Yield the rows of a table with their columns lined up; empty columns are left out."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True) if width)
+        yield "  ".join(cells).rstrip()
 
 
 def extent(low: float, high: float, factor: float = 1) -> dict[str, float]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import wraps
 from typing import Any, Final, Literal, NamedTuple
 
+from gearcam.display import Brief
 from gearcam.numerals import settled
 from gearcam.quantities import NUMBER, Param
 
@@ -21,7 +22,7 @@ Severity = Literal["note", "warning", "error"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class Finding(Brief):
     """One thing a person should know about a built design.
 
     Parameters

@@ -7,65 +7,44 @@ readers nor files: what facts and files are made from it the folder of its kind 
 
 from __future__ import annotations
 
-import platform
 import sys
 import time
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from gearcam.designs.design import Design, hash_of, summary_of
+from gearcam.designs.design import hash_of, summary_of
 from gearcam.designs.kind import KINDS
-from gearcam.errors import DesignError, Problem
+from gearcam.display import Displayed, cut
+from gearcam.errors import GearcamError
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.numerals import tree
+from gearcam.numeric.arguments import one_of
 from gearcam.tolerances import DEFAULT, Tolerances
-from gearcam.version import __version__
+from gearcam.written import Written, demand_formats, versions
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from trimesh import Trimesh
+
+    from gearcam.charts import Chart
+    from gearcam.parts.body import Part
 
 FORMAT: Final = 3
 """Version of the summary's layout."""
+
+PICTURE: Final = "svg"
+"""The kind of file that is a picture."""
 
 Progress = Callable[[str, int, int], None]
 """Called with a stage's name, the stages done and their number."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Written:
-    """What a command has written.
-
-    Parameters
-    ----------
-    directory : Path
-        The folder.
-    files : tuple of str
-        The files written, in order.
-    removed : tuple of str
-        Files of the previous build that this one does not write.
-    summary : dict
-        The content of ``summary.json``.
-    facts : Facts
-        What the summary is told from.
-    findings : tuple of Finding
-        What the checks found.
-    complete : bool
-        Whether nothing was interrupted.
-    """
-
-    directory: Path
-    files: tuple[str, ...]
-    removed: tuple[str, ...]
-    summary: dict[str, Any]
-    facts: Facts
-    findings: tuple[Finding, ...]
-    complete: bool = True
-
-
-class Result(ABC):
+class Result(Displayed):
     """What comes of a design, computed on demand.
 
     Parameters
@@ -89,7 +68,7 @@ class Result(ABC):
 
     def __repr__(self) -> str:
         done = ", ".join(self.timings) or "nothing"
-        return f'<{type(self).__name__} of "{self.design.name}", computed: {done}>'
+        return cut(f'<{type(self).__name__} of "{self.design.name}", computed: {done}>')
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -104,6 +83,46 @@ class Result(ABC):
         """What the checks found: errors first."""
 
     @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """What is made, as parts with all that is ordered; none where a kind has none."""
+        return ()
+
+    @cached_property
+    def solids(self) -> dict[str, Trimesh]:
+        """The parts as closed meshes of trimesh by name, mm, each in its own frame.
+
+        From z = 0 to the width, hubs beyond; what cannot be made raises `InfeasibleError`.
+        """
+        from gearcam.export.mesh import trimeshes
+        from gearcam.export.shared import meshes
+
+        return trimeshes(meshes(self.parts, {}))
+
+    def picture(self) -> str:
+        """Return the picture of the file kind ``svg``, or a refusal in words; none without it."""
+        if PICTURE not in KINDS[self.design.kind].formats:
+            return ""
+        try:
+            (data,) = self.files(PICTURE).values()
+        except GearcamError as error:
+            from gearcam.markup import refusal_picture
+
+            return refusal_picture(self.design.name, error)
+        return data.decode()
+
+    def _repr_html_(self) -> str:
+        try:
+            facts, findings = self.facts, self.findings
+        except GearcamError as error:
+            from gearcam.markup import refusal
+
+            return refusal(self.design.name, error)
+        from gearcam.markup import page
+
+        told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
+        return page(self.picture(), facts, told)
+
+    @cached_property
     def design_hash(self) -> str:
         """The hash of the design; its CSV files count as they were when they were first read."""
         return hash_of(self.design)
@@ -111,14 +130,57 @@ class Result(ABC):
     @cached_property
     def facts(self) -> Facts:
         """What is known of the result, under the names that docs/conventions.md explains."""
-        return self._facts({})
+        return self.facts_with({})
 
-    def _facts(self, measured: Mapping[str, Any]) -> Facts:
+    def facts_with(self, measured: Mapping[str, Any]) -> Facts:
+        """Return the facts with what was `measured` on files or by studies, by group."""
         made = KINDS[self.design.kind].room("facts").facts(self, measured)
         columns = sys.modules.get("gearcam.laws.columns")  # not loaded where no design read a file
         tables = columns.tables_in(self.design) if columns else ()
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         return made.with_group("tables", [{"note": one} for one in notes if one.value])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what ``summary.json`` holds, but for the files: facts, findings, design, versions.
+
+        Plain numbers, texts, lists and dictionaries, in the units that the names say. What cannot
+        be made raises `InfeasibleError`.
+        """
+        return self.document(self.facts, self.findings)
+
+    def document(
+        self, facts: Facts, findings: Sequence[Finding], files: Mapping[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """Return a summary.
+
+        Parameters
+        ----------
+        facts : Facts
+            What is known.
+        findings : sequence of Finding
+            What checks found.
+        files : mapping, optional
+            What it says of files.
+
+        Returns
+        -------
+        dict
+            As JSON holds it.
+        """
+        return tree(
+            {
+                "format": FORMAT,
+                "name": self.design.name,
+                "kind": self.design.kind,
+                **facts.document,
+                "hash": self.design_hash,
+                **(files or {}),
+                "findings": [finding.as_dict() for finding in findings],
+                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
+                "versions": versions(),
+                "design": summary_of(self.design),
+            }
+        )
 
     def files(self, kind: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:
         """Return the files of one kind.
@@ -142,9 +204,59 @@ class Result(ABC):
         InfeasibleError
             If they cannot be made.
         """
-        _demand_formats(self.design, (kind,))
+        demand_formats(self.design, (kind,))
         makers = KINDS[self.design.kind].room("files").FILES
         return makers[kind](self, {} if measured is None else measured)
+
+    @property
+    def charts(self) -> tuple[str, ...]:
+        """The names of the charts of designs of this kind."""
+        return tuple(KINDS[self.design.kind].room("charts").CHARTS)
+
+    def chart(self, name: str) -> Chart:
+        """Return a chart as data: lines and limits, with the labels of the axes.
+
+        Parameters
+        ----------
+        name : str
+            One of `charts`.
+
+        Returns
+        -------
+        Chart
+
+        Raises
+        ------
+        DesignError
+            If there is no such chart.
+        InfeasibleError
+            If what it tells of cannot be made.
+        """
+        make = KINDS[self.design.kind].room("charts").CHARTS[one_of("name", name, self.charts)]
+        return make(self)
+
+    def plot(self, name: str, ax: Axes | None = None) -> Axes:
+        """Draw a chart with matplotlib and return its axes.
+
+        Parameters
+        ----------
+        name : str
+            One of `charts`.
+        ax : Axes, optional
+            Where; a new figure where left out.
+
+        Returns
+        -------
+        Axes
+
+        Raises
+        ------
+        DesignError, InfeasibleError
+            As `chart` does.
+        MissingExtraError
+            If matplotlib is not installed.
+        """
+        return self.chart(name).draw(ax)
 
     def check(self, directory: str | Path = "output") -> Written:
         """Run the checks and write the summary only; files of an earlier build stay.
@@ -195,7 +307,7 @@ class Result(ABC):
             If the disk refuses.
         """
         kinds = tuple(self.design.output.files if files is None else files)
-        _demand_formats(self.design, kinds)
+        demand_formats(self.design, kinds)
         steps = [*self.stages, *kinds, "writing"]
 
         def tell(step: str) -> None:
@@ -262,25 +374,12 @@ class Result(ABC):
 
         from gearcam.export.write import SUMMARY, write_all
 
-        facts = self._facts(measured) if measured else self.facts
+        facts = self.facts_with(measured) if measured else self.facts
         made = self.design_hash
         hashes = {name: made if name in contents else old for name, old in there.items()}
         stale = {name: old for name, old in hashes.items() if old != made}
-        summary = tree(
-            {
-                "format": FORMAT,
-                "name": self.design.name,
-                "kind": self.design.kind,
-                **facts.document,
-                "hash": made,
-                "files": {name: made for name in hashes if name not in stale},
-                **({"stale": stale} if stale else {}),
-                "findings": [finding.as_dict() for finding in findings],
-                "timings_s": {name: round(value, 6) for name, value in self.timings.items()},
-                "versions": _versions(),
-                "design": summary_of(self.design),
-            }
-        )
+        about = {"files": {name: made for name in hashes if name not in stale}}
+        summary = self.document(facts, findings, {**about, **({"stale": stale} if stale else {})})
         text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
         everything = {**contents, SUMMARY: (text + "\n").encode()}
         folder = Path(directory) / self.design.name
@@ -293,30 +392,3 @@ class Result(ABC):
             facts=facts,
             findings=tuple(findings),
         )
-
-
-def _demand_formats(design: Design, kinds: Sequence[str]) -> None:
-    known = KINDS[design.kind].formats
-    problems = [
-        Problem(
-            f"{kind} is no file of designs of kind {design.kind}",
-            file=design.source,
-            key="output.files",
-            value=kind,
-            allowed=", ".join(known),
-        )
-        for kind in kinds
-        if kind not in known
-    ]
-    if problems:
-        raise DesignError(problems)
-
-
-def _versions() -> dict[str, str]:
-    """Return versions of what made the numbers: the program, Python, libraries loaded so far."""
-    found = {"gearcam": __version__, "python": platform.python_version()}
-    for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
-        module = sys.modules.get(name)
-        if module is not None and hasattr(module, "__version__"):
-            found[name] = str(module.__version__)
-    return found

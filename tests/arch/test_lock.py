@@ -19,7 +19,7 @@ MAKEFILE = (rules.ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT: dict[str, Any] = tomllib.loads((rules.ROOT / "pyproject.toml").read_text("utf-8"))
 WANTED: dict[str, list[str]] = {
     "run": PROJECT["project"]["dependencies"],
-    "step": PROJECT["project"]["optional-dependencies"]["step"],
+    **PROJECT["project"]["optional-dependencies"],
     **PROJECT["dependency-groups"],
 }
 """What is asked for, by the section that holds it."""
@@ -90,7 +90,7 @@ def test_what_builds_gearcam_is_locked() -> None:
 
 def test_the_lowest_versions_are_the_bounds() -> None:
     locked = {one.pin.name: one.version for one in SECTIONS["lowest"]}
-    asked = [Requirement(line) for line in WANTED["run"] + WANTED["step"]]
+    asked = [Requirement(line) for line in WANTED["run"] + WANTED["step"] + WANTED["plot"]]
     for requirement in asked:
         (bound,) = [one.version for one in requirement.specifier if one.operator == ">="]
         assert locked[requirement.name] == Version(bound), requirement
@@ -114,7 +114,7 @@ def test_each_package_has_one_version_on_every_machine() -> None:
 
 def test_each_target_takes_its_sections_and_no_other() -> None:
     assert taken("run") == ["run", "install"]
-    assert taken("test") == ["run", "install", "step", "test"]
+    assert taken("test") == ["run", "install", "step", "plot", "test"]
     assert taken("lint") == [*taken("test"), "lint"]
     assert taken("bench") == [*taken("test"), "bench"]
     assert taken("lock") == ["lock"]

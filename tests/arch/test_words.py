@@ -26,7 +26,15 @@ BANNED = {
 """Words that have gone, and what is said instead."""
 
 ELSEWHERE = {
-    "strokes?": ("lettering.py", "nest.py", "svg.py", "cut_svg.py", "sheet_svg.py", "slider.py"),
+    "strokes?": (
+        "lettering.py",
+        "nest.py",
+        "svg.py",
+        "cut_svg.py",
+        "sheet_svg.py",
+        "slider.py",
+        "markup.py",
+    ),
     "feeds?": ("simple.py",),
     "idle": ("numerals.py", "paper.py"),
     "halves": ("lost.py", "chords.py", "sampling.py", "openings.py"),

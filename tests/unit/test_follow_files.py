@@ -36,10 +36,9 @@ def test_a_cam_s_own_files_move_its_follower_as_asked(
     result = made(name)
     written = result.write(tmp_path, files=["csv", "dxf"])
     told: list[tuple[str, int, int]] = []
-    found = result.follow(
-        written.directory / file, tmp_path, progress=lambda *step: told.append(step)
-    )
-    assert told == [("profile", 0, 2), ("writing", 1, 2)]
+    study = result.follow(written.directory / file, progress=lambda *step: told.append(step))
+    assert told == [("profile", 0, 2), ("follow", 1, 2)]
+    found = study.write(tmp_path)
     assert "followed.csv" in found.files
     summary = found.summary["followed"]
     rows = columns(found.directory / "followed.csv")
@@ -62,6 +61,6 @@ def test_a_file_that_holds_no_profile_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "nothing.dxf"
     path.write_text("nothing\n", encoding="ascii")
     with pytest.raises(DesignError, match="is no profile"):
-        made("eccentric_cam").follow(path, tmp_path)
+        made("eccentric_cam").follow(path)
     with pytest.raises(DesignError, match="is no profile"):
-        made("eccentric_cam").follow(tmp_path / "missing.csv", tmp_path)
+        made("eccentric_cam").follow(tmp_path / "missing.csv")

@@ -154,10 +154,16 @@ def test_a_corner_is_refused_with_its_angle_and_a_remedy_that_works() -> None:
     phi1 = np.linspace(0.0, TURN, 361)
     law = gc.laws.TableLaw(phi1=tuple(phi1), r1=tuple(bent(phi1)))
     assert gc.build(pair(law)).law.closure_error < 1e-9
-    with pytest.raises(InfeasibleError, match=r"S is not smooth \(motion.formula, x = 0.5\)"):
-        FormulaRise(formula=lambda x: np.where(x < 0.5, 2 * x**2, 1 - 2 * (1 - x) ** 2)).build(
-            DEFAULT
-        )
+
+    def parabolas(x: Any) -> Any:
+        return np.where(x < 0.5, 2 * x**2, 1 - 2 * (1 - x) ** 2)
+
+    with pytest.raises(InfeasibleError, match=r"S is not smooth \(motion.formula, x = 0.5\)") as no:
+        FormulaRise(formula=parabolas).build(DEFAULT)
+    assert 'law "table"' in no.value.nearest
+    x = np.linspace(0.0, 1.0, 41)
+    rows = gc.rises.TableRise(x=tuple(x), y=tuple(parabolas(x)))
+    assert abs(rows.build(DEFAULT).function(0.3) - 0.18) < 1e-6
     with pytest.raises(InfeasibleError, match=r"must give 1 at x = 1 .*value 2.*divide by 2"):
         FormulaRise(formula=lambda x: 2 * x**3).build(DEFAULT)
 

@@ -214,5 +214,5 @@ def test_a_study_without_a_beginning_begins_at_zero() -> None:
 def test_progress_is_told(design: str) -> None:
     calls: list[tuple[str, int, int]] = []
     job = gear_pair.GearPairResult(gearcam.load(design))
-    job.mesh(Path(design).parent / "out", progress=lambda *call: calls.append(call))
+    job.mesh(progress=lambda *call: calls.append(call))
     assert calls[0] == ("meshing", 0, 12)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import pickle
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import fields, replace
@@ -136,14 +137,27 @@ def test_a_result_travels_as_its_design_and_is_computed_again() -> None:
     assert (back.gear1.outline == outline).all()
 
 
-def _outline(design: Any) -> bytes:
-    return gc.build(design).gear1.outline.tobytes()
+def _built(design: Any) -> tuple[bytes, ...]:
+    """What comes of a design, to the last bit; the times that it took and what was loaded apart."""
+    result = gc.build(design)
+    told = result.to_dict()
+    del told["timings_s"], told["versions"]
+    wheels = result.gears if told["kind"] == "gear-pair" else (result.cam,)
+    arrays = [wheel.outline for wheel in wheels] + list(result.motion([0.1, 1.0]).values())
+    return json.dumps(told).encode(), *(array.tobytes() for array in arrays)
 
 
-def test_a_pool_of_two_builds_the_same_to_the_last_bit() -> None:
-    designs = [gc.design(PAIR).with_({"law.eccentricity": e}) for e in np.linspace(0.01, 0.4, 12)]
+@pytest.mark.parametrize("count", [10, pytest.param(100, marks=pytest.mark.slow)])
+def test_a_pool_of_two_builds_the_same_to_the_last_bit(count: int) -> None:
+    pair = gc.design({**PAIR, "output": {"chord_tolerance_mm": 0.01}})
+    cam = gc.load("profiles/eccentric_cam.toml").with_({"output.files": ["csv"]})
+    half = count // 2
+    designs = [pair.with_({"law.eccentricity": e}) for e in np.linspace(0.01, 0.4, half)]
+    designs += [cam.with_({"output.chord_tolerance_mm": t}) for t in np.linspace(1e-3, 0.02, half)]
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        assert list(pool.map(_outline, designs)) == [_outline(design) for design in designs]
+        found = list(pool.map(_built, designs, chunksize=half // 5))
+    assert found == [_built(design) for design in designs]
+    assert len(set(found)) == count
 
 
 def test_names_at_the_top_are_shown_and_brought_in_when_asked_for() -> None:

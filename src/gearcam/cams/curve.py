@@ -22,6 +22,7 @@ import numpy as np
 
 from gearcam.cams.contact import Contact, contact
 from gearcam.cams.mechanism import Mechanism
+from gearcam.display import Brief
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.jets import Jet
@@ -35,7 +36,7 @@ def unit(angle: Array) -> Plane:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class CamCurve:
+class CamCurve(Brief):
     """A cam's curve as its lift draws it.
 
     Parameters
@@ -135,7 +136,7 @@ class CamCurve:
 
 
 @dataclass(frozen=True, eq=False)
-class ProfileSegments:
+class ProfileSegments(Brief):
     """Sweeps and jumps in order; fulfils `gearcam.numeric.sampling.Curves`.
 
     Parameters

@@ -10,10 +10,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
 
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
+from gearcam.display import Displayed
 from gearcam.errors import InfeasibleError
+from gearcam.facts import Fact, Facts
 from gearcam.laws.program import Program
 
 _STANDSTILL = 1e-9
@@ -21,13 +26,41 @@ _STANDSTILL = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class DiscCam(Wall):
+class DiscCam(Wall, Displayed):
     """A disc cam, which is its own only wall (see `gearcam.cams.wall.PitchMotion`)."""
 
     @property
     def walls(self) -> tuple[Wall, ...]:
         """What can be cut: for a disc cam one profile."""
         return (self,)
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What the cam knows of itself; the facts of its result tell more."""
+        low, high = self.program.range
+        swings = self.mechanism.oscillating
+        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+        convex, concave = self.profile_radius
+        tree = {
+            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "prime_radius_mm": self.mechanism.least,
+            "base_radius_mm": self.mechanism.least - self.mechanism.radius,
+            "perimeter_mm": self.size.perimeter,
+            "area_mm2": self.size.area,
+            "profile_convex_min_mm": convex if convex < math.inf else None,
+            "profile_concave_min_mm": concave if concave < math.inf else None,
+            "vertices": len(self.outline),
+            "chord_error_mm": self.contour.chord_error,
+        }
+        return Facts(tree, ("total_lift",), "disc cam")
+
+    def picture(self) -> str:
+        """Return a picture of profile and pitch curve, SVG, in the cam's frame."""
+        from gearcam.markup import outlines
+
+        pitch = self.pitch_contour.vertices
+        dashed = [] if self.pitch_contour is self.contour else [np.vstack([pitch, pitch[:1]])]
+        return outlines(self.facts.headline, [self.outline], dashed)
 
 
 def make_cam(

@@ -16,6 +16,7 @@ import numpy as np
 
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes, extremes_among
@@ -43,7 +44,7 @@ class Extreme:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Range:
+class Range(Brief):
     """The smallest value of something, `low`, and the largest, `high`."""
 
     low: Extreme
@@ -179,7 +180,7 @@ def over_the_end(stretches: Sequence[tuple[float, float]]) -> list[list[tuple[fl
 
 
 @dataclass(frozen=True, kw_only=True)
-class Size:
+class Size(Brief):
     """The size of a profile.
 
     Parameters

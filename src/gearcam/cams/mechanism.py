@@ -23,12 +23,13 @@ import math
 from dataclasses import dataclass
 
 from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mechanism:
+class Mechanism(Brief):
     """A follower and the cam's axis, turning counter-clockwise.
 
     Parameters

@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.display import Brief
 from gearcam.numerals import shown
 from gearcam.quantities import LENGTH, TEXT, param
 
@@ -43,7 +44,7 @@ def _aside(*, doc: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FollowerSpec:
+class FollowerSpec(Brief):
     """A follower: what touches the cam, and how it is guided."""
 
     type: str = param(

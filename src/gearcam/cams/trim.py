@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.cams.curve import ProfileSegments
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
@@ -45,7 +46,7 @@ _MISS = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
-class Corner:
+class Corner(Brief):
     """A corner where trimming has cut.
 
     Parameters

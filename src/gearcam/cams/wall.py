@@ -25,6 +25,7 @@ from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, star_shaped, trimmed
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
@@ -43,7 +44,7 @@ _OVERSAMPLING = 8
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PitchMotion:
+class PitchMotion(Brief):
     """A follower that a lift moves against a cam.
 
     Parameters
@@ -262,6 +263,11 @@ class Wall(PitchMotion):
                 nearest="no piece of it has a place in the order of the others",
             )
         return made
+
+    @property
+    def outline(self) -> Array:
+        """Vertices of the profile before clearance, (n, 2), mm, counter-clockwise."""
+        return self.contour.vertices
 
     @cached_property
     def pitch_contour(self) -> Contour:

@@ -22,6 +22,7 @@ from gearcam.designs.functions import Function, function_name, functions_in, nev
 from gearcam.designs.kind import KINDS
 from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.table import settled
+from gearcam.display import cut
 from gearcam.errors import DesignError, InfeasibleError, Problem
 
 HASH_DIGITS: Final = 16
@@ -86,7 +87,18 @@ class Design:
         return hash(self._value[0])
 
     def __repr__(self) -> str:
-        return f'<{type(self).__name__} "{self.name}">'
+        return cut(f'<{type(self).__name__} "{self.name}">')
+
+    def _repr_svg_(self) -> str | None:
+        return self._built._repr_svg_()
+
+    def _repr_html_(self) -> str:
+        return self._built._repr_html_()
+
+    @property
+    def _built(self) -> Any:
+        """Its result: a picture of a design is one of what comes of it."""
+        return KINDS[self.kind].room("build").build(self)
 
     def __copy__(self) -> Design:
         return self

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.designs.faults import Fault, show
+from gearcam.display import Brief
 from gearcam.quantities import ANGLE, LENGTH, TEXT, param
 
 FORMATS: Final = (
@@ -29,7 +30,7 @@ def pose_param(word: str, doc: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutputSpec:
+class OutputSpec(Brief):
     """Which files are wanted, and how exact; each kind adds what its own files need.
 
     Parameters

@@ -21,7 +21,8 @@ import numpy as np
 
 from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, box
 from gearcam.export.dxf import CURVE_PART
-from gearcam.export.svg import arc_data, svg_document
+from gearcam.export.svg import arc_data
+from gearcam.markup import svg_document
 from gearcam.numerals import decimal, shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array

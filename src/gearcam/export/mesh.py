@@ -24,7 +24,7 @@ import numpy as np
 from gearcam.solids import Mesh, SolidError
 
 if TYPE_CHECKING:
-    from trimesh import Scene
+    from trimesh import Scene, Trimesh
 
 HEADER_LENGTH: Final = 80
 """Bytes of an STL header."""
@@ -87,17 +87,28 @@ def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     return bytes(export_glb(scene, include_normals=False))
 
 
-def _scene(bodies: Mapping[str, Mesh], *, single: bool = True) -> Scene:
-    """Return closed bodies, in single precision or as they are."""
-    from trimesh import Scene, Trimesh
+def trimeshes(bodies: Mapping[str, Mesh]) -> dict[str, Trimesh]:
+    """Return closed bodies as meshes of trimesh, mm, by name (see `stl_bytes`)."""
+    from trimesh import Trimesh
 
-    scene = Scene()
     for name, mesh in bodies.items():
         _require(mesh, name)
-        kept = _single(mesh, name) if single else mesh
-        body = Trimesh(
-            vertices=kept.vertices, faces=kept.triangles, process=False, metadata={"name": name}
+    return {
+        name: Trimesh(
+            vertices=mesh.vertices, faces=mesh.triangles, process=False, metadata={"name": name}
         )
+        for name, mesh in bodies.items()
+    }
+
+
+def _scene(bodies: Mapping[str, Mesh], *, single: bool = True) -> Scene:
+    """Return closed bodies, in single precision or as they are."""
+    from trimesh import Scene
+
+    if single:
+        bodies = {name: _single(mesh, name) for name, mesh in bodies.items()}
+    scene = Scene()
+    for name, body in trimeshes(bodies).items():
         scene.add_geometry(body, node_name=name, geom_name=name)
     return scene
 

@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from gearcam.drawings import CENTRODE, Circle, Feature, chains
-from gearcam.export.svg import svg_document
+from gearcam.markup import svg_document
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.sheets.sheet import CENTERLINE, HEAVY, HIDDEN, THICK, THIN, Sheet, Text

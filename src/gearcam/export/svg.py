@@ -10,35 +10,22 @@ Depends on drawings; shapely only inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final
-from xml.sax.saxutils import escape, quoteattr
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from gearcam import drawings
 from gearcam.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
+from gearcam.markup import CENTRODE_INK, FILLS, GROUND, INKS, TEXT_INK, picture
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import bulge_pieces, divided
 
 THINNING: Final = 0.005
 """Largest distance, mm, by which thinning may move a line of the picture."""
-
-PIXELS: Final = 960
-"""Width of the picture where the page does not say otherwise."""
-
-MARGIN: Final = 0.04
-"""Margin, part of the drawing's width."""
-
-FILLS: Final = ("#cfe0f2", "#f8e0c6")
-INKS: Final = ("#27598c", "#a35f22")
-"""Soft fill and dark stroke of wheel 1 and wheel 2."""
-
-CENTRODE_INK: Final = "#5a5a5a"
-TEXT_INK: Final = "#222222"
-GROUND: Final = "#ffffff"
 
 DECIMALS: Final = 4
 """Of the picture's numbers."""
@@ -47,9 +34,6 @@ _number: Final = partial(decimal, decimals=DECIMALS)
 
 _ROUNDING: Final = 1e-12
 """Of an angle, rad, that is a quarter of a circle."""
-
-GLYPH: Final = 0.6
-"""Width of a letter, part of the font's size, on the safe side."""
 
 
 def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> bytes:
@@ -76,50 +60,13 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     """
     if not drawing.contours:
         raise ValueError(f"{drawing.name}: nothing to draw")
-    low, high = box(drawing.features)
-    width = float(high[0] - low[0])
-    margin, pixel = MARGIN * width, width / PIXELS
+    low, high = (corner.tolist() for corner in box(drawing.features))
+
+    def elements(pixel: float) -> Iterator[str]:
+        return (_element(feature, pixel) for feature in drawing.features)
+
     lines = [line for line in (title, ", ".join(notes)) if line]
-    size = min(20 * pixel, width / (GLYPH * max([1, *map(len, lines)])))
-    caption = size * 1.4 * len(lines)
-    left, top = float(low[0]) - margin, -float(high[1]) - margin
-    whole = width + 2 * margin
-    tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
-    view = " ".join(_number(value) for value in (left, top, whole, tall))
-    base = -float(low[1]) + margin + size
-    ground = f'x="{_number(left)}" y="{_number(top)}"'
-    ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="{GROUND}"'
-    sheet = f'viewBox="{view}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
-    elements = [
-        f"<rect {ground}/>",
-        f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
-        *(_element(feature, pixel) for feature in drawing.features),
-        "</g>",
-        *_caption(lines, float(low[0]), base, size),
-    ]
-    return svg_document(f'{sheet} role="img"', title, elements)
-
-
-def svg_document(attributes: str, title: str, elements: Iterable[str]) -> bytes:
-    """Return an SVG file, UTF-8: `attributes` of its root, a `title`, and `elements` as lines."""
-    lines = [
-        '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>',
-        f"<title>{escape(title)}</title>",
-        *elements,
-        "</svg>",
-    ]
-    return ("\n".join(lines) + "\n").encode()
-
-
-def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
-    made = []
-    for row, line in enumerate(lines):
-        place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * row)}"'
-        font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
-        weight = ' font-weight="bold"' if row == 0 else ""
-        made.append(f"<text {place} {font}{weight}>{escape(line)}</text>")
-    return made
+    return picture(lines, (low, high), elements).encode()
 
 
 def _element(feature: Feature, pixel: float) -> str:

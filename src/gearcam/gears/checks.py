@@ -19,7 +19,9 @@ from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject, pair_c
 from gearcam.numerals import rounded_down, shown
 from gearcam.quantities import LENGTH, NUMBER, Param
 
-__all__ = ["KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges"]
+__all__ = [
+    "KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges", "undercut_curvatures",
+]  # fmt: skip
 
 _POINTED = 1e-9
 """Thickness of a tip, in modules, that is rounding: the tooth is pointed."""
@@ -53,10 +55,26 @@ def largest_module(gear: Gear) -> float:
     float
         For the same centre distance and other tooth counts.
     """
-    track, own = gear.toothing.track, gear.toothing.cutter
-    mate = gear.pair.toothings[2 - gear.wheel].cutter
-    convex = track.convex.radius / _straight_depth(own)
-    return math.sin(own.alpha) ** 2 * min(convex, track.concave.radius / _straight_depth(mate))
+    track, (convex, concave) = gear.toothing.track, undercut_curvatures(gear)
+    return gear.pair.module * min(convex * track.convex.radius, concave * track.concave.radius)
+
+
+def undercut_curvatures(gear: Gear) -> tuple[float, float]:
+    """Return up to which curvatures of its centrode a wheel has no undercut (see `largest_module`).
+
+    Parameters
+    ----------
+    gear : Gear
+        The wheel.
+
+    Returns
+    -------
+    convex, concave : float, 1/mm
+        Both positive.
+    """
+    own, mate = gear.toothing.cutter, gear.pair.toothings[2 - gear.wheel].cutter
+    factor = math.sin(own.alpha) ** 2 / gear.pair.module
+    return factor / _straight_depth(own), factor / _straight_depth(mate)
 
 
 def _straight_depth(cutter: Cutter) -> float:

@@ -12,6 +12,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from gearcam.display import Brief
 from gearcam.gears.spec import BasicRack
 from gearcam.numeric.roots import largest_fitting
 
@@ -29,7 +30,7 @@ _LAND = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cutter:
+class Cutter(Brief):
     """A cutter in mm, made by `choose_cutter`.
 
     Parameters

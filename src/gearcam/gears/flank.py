@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.display import Brief
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -37,7 +38,7 @@ class Curve(IntEnum):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Toothing:
+class Toothing(Brief):
     """A track with its cutter and tooth places.
 
     Parameters
@@ -159,7 +160,7 @@ class Toothing:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rows:
+class Rows(Brief):
     """Stretches of curve, one a row, in the order of the outline (rising s).
 
     Parameters
@@ -271,7 +272,7 @@ def _tip_center(cutter: Cutter, frames: Frames, x: Array, w: complex) -> Plane:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class WheelCurves:
+class WheelCurves(Brief):
     """The rows of a wheel, as `gearcam.numeric.sampling.Curves` over the driver angle, rad.
 
     Parameters

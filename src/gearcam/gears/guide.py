@@ -14,12 +14,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
 
 
 @dataclass(frozen=True, kw_only=True)
-class Guide(ABC):
+class Guide(Brief, ABC):
     """What guides the driven element; points are seen from there, as complex numbers in mm.
 
     Parameters

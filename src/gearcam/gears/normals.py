@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.gears.flank import Toothing
 from gearcam.gears.guide import Guide
 from gearcam.gears.track import Frames, Track, Wheel
@@ -39,7 +40,7 @@ _FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Mounting:
+class Mounting(Brief):
     """Two wheels on their shafts, and which of their flanks are looked at.
 
     Parameters
@@ -98,7 +99,7 @@ class Pose(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Normals:
+class Normals(Brief):
     """A normal of a driver's flank and one of a driven flank, n of each, in the mounted pair.
 
     Parameters

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
@@ -17,7 +18,7 @@ from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, join, regular_rows, 
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numerals import shown
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.sampling import Sampler
@@ -31,7 +32,7 @@ _AT_TIP = 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Flanks:
+class Flanks(Brief):
     """Every flank of a wheel and where it ends: sigma = +1 of all teeth formed, then sigma = -1.
 
     Parameters
@@ -60,7 +61,7 @@ class Flanks:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Outline:
+class Outline(Brief):
     """A wheel's outline.
 
     Parameters
@@ -135,24 +136,6 @@ class Outline:
         frames = self.toothing.frames(self.flanks.tips.phi)
         ends = self.toothing.flank_points(frames, self.flanks.sf, self.flanks.sigma)
         return np.abs(np.subtract(*self.toothing.of_teeth(ends)))
-
-    def flank_places(self, reach: Array) -> tuple[Plane, Plane]:
-        """Return points and outward unit normals of all flanks at some reaches.
-
-        Parameters
-        ----------
-        reach : (k, 2z) array, mm
-            Reach w of k places on each flank.
-
-        Returns
-        -------
-        points, normals : (k, 2z) complex arrays, mm and 1
-            In the wheel's frame.
-        """
-        sf, sigma = np.broadcast_arrays(self.flanks.sf, self.flanks.sigma, reach)[:2]
-        frames = self.toothing.frames(self.toothing.track.angle(sf - sigma * reach), curved=False)
-        normals = sigma * self.toothing.normals(frames, sigma)
-        return self.toothing.flank_points(frames, sf, sigma), normals
 
     @property
     def tip_height(self) -> Array:

@@ -8,11 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.display import Brief, Displayed
 from gearcam.errors import InfeasibleError, Way
+from gearcam.facts import Facts
 from gearcam.gears.bound import demand_cutters
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
+from gearcam.gears.flank_points import flank_points
+from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import RACK, Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
@@ -20,8 +24,10 @@ from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import Lobes
 from gearcam.numerals import shown
+from gearcam.numeric.arguments import whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.columns import Columns
 from gearcam.tolerances import Tolerances
 
 FINEST = 1e-9
@@ -33,12 +39,18 @@ _USUAL = 1e-3
 _PARTS = 1000.0
 """Parts of a module of which one is the default where that is finer."""
 
+PICTURED = 721
+"""Points of a centrode in a picture."""
+
+FLANK_POINTS = 17
+"""Points on each flank where nobody says how many."""
+
 COARSEST = 1.0 / 50.0
 """Coarsest tolerance of an outline, in modules: beyond it teeth are no longer teeth."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class GearPair:
+class GearPair(Brief):
     """Two centrodes with their cutters and tooth places.
 
     Parameters
@@ -113,7 +125,7 @@ class GearPair:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Gear:
+class Gear(Brief, Displayed):
     """One wheel.
 
     Parameters
@@ -144,6 +156,58 @@ class Gear:
     def outline(self) -> Array:
         """Vertices of the outline, (n, 2), mm, counter-clockwise, in the wheel's frame."""
         return self.profile.points
+
+    @cached_property
+    def flanks(self) -> Columns:
+        """Points on the flanks as made, `FLANK_POINTS` on each (see `flank_points`)."""
+        return self.flank_points(FLANK_POINTS)
+
+    def flank_points(self, count: int) -> Columns:
+        """Return points on the exact flanks of all whole teeth as made.
+
+        Parameters
+        ----------
+        count : int
+            Points on each flank, from root to tip, both ends included: 2 or more.
+
+        Returns
+        -------
+        Columns
+            ``tooth`` from 1; ``side``, +1 where s is larger, else -1; ``point`` from 1 at the root;
+            ``x_mm``, ``y_mm`` in the wheel's frame; ``nx``, ``ny``, the outward unit normal of the
+            metal; ``curvature_per_mm``, positive where the flank is convex, infinite at a cusp;
+            ``reach_mm``, the rack's roll from the pitch curve, positive towards the tip;
+            ``phi1_deg``, the driver angle at which the point touches as designed. By tooth, then
+            side (+1 first), then from root to tip. What clearance, rounding or undercut takes
+            away has no points.
+
+        Raises
+        ------
+        DesignError
+            If `count` is no whole number, or less than 2.
+        """
+        return flank_points(self.profile, whole("count", count, 2))
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What the wheel knows of itself, by the names that docs/conventions.md explains."""
+        return Facts(gear_tree(self), ("teeth",), self.name)
+
+    def picture(self) -> str:
+        """Return a picture of the outline and the centrode, SVG, in the wheel's frame."""
+        from gearcam.markup import outlines
+
+        track = self.toothing.track
+        centrode = self.centrode(
+            np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
+        )
+        return outlines(
+            self.facts.headline,
+            [self.outline],
+            [centrode],
+            wheel=self.wheel,
+            axis=not track.slides,
+        )
 
     @cached_property
     def least_radius(self) -> float:

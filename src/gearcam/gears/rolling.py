@@ -17,6 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.display import Brief
 from gearcam.gears.guide import Guide, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
@@ -34,7 +35,7 @@ _MARGIN = 2.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rolling:
+class Rolling(Brief):
     """The pair of centrodes of an external pair, or of a wheel and a rack.
 
     Parameters

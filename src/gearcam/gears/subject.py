@@ -8,6 +8,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.findings import check
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear, GearPair
@@ -29,7 +30,7 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Subject:
+class Subject(Brief):
     """A pair as built, for checks.
 
     Parameters

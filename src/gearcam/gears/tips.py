@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.gears.flank import Toothing
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -33,7 +34,7 @@ _Way = Callable[[Array, Frames], tuple[Plane, Plane]]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class TipEnds:
+class TipEnds(Brief):
     """Where flanks end at the top: one entry a flank.
 
     Parameters

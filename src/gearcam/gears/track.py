@@ -27,6 +27,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.hermite import hermite_cubic
@@ -93,7 +94,7 @@ class LeastRadius(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ArcLength:
+class ArcLength(Brief):
     """Arc length over a parameter, and its inverse.
 
     Parameters
@@ -170,7 +171,7 @@ class ArcLength:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Track(ABC):
+class Track(Brief, ABC):
     """A curve that teeth are set along (see above).
 
     Parameters

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.gears.flank import Toothing
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.roots import bracketed_root
@@ -33,7 +34,7 @@ _ANGLE = 1e-14
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Undercut:
+class Undercut(Brief):
     """Where flanks turn back on themselves: one entry a flank.
 
     Parameters

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array
 
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
@@ -24,7 +25,7 @@ class ColumnsError(ValueError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CsvRows:
+class CsvRows(Brief):
     """What a CSV file holds, without comments and empty lines.
 
     Parameters
@@ -77,7 +78,7 @@ class CsvRows:
         return np.array(found).reshape(-1, len(names)), lines
 
 
-class FromFile:
+class FromFile(Brief):
     """Parameters that may name a CSV file: it is read at the first question and never again."""
 
     file: str | None

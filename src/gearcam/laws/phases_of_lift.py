@@ -20,6 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
+from gearcam.display import Brief
 from gearcam.numerals import shown
 from gearcam.quantities import (
     ANGLE,
@@ -56,7 +57,7 @@ class DwellPhase:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RisePhase:
+class RisePhase(Brief):
     """The follower rises by a law.
 
     Parameters
@@ -90,7 +91,7 @@ def _rate(length: Quantity, angle: Quantity, word: str, sign: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SegmentPhase:
+class SegmentPhase(Brief):
     """The follower goes to a lift and has a velocity and an acceleration there.
 
     They are in mm, mm/rad and mm/rad^2, or, where the follower oscillates, in rad, rad/rad and

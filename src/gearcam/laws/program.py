@@ -16,6 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import JUMP, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
@@ -69,7 +70,7 @@ class Deviation:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Survey:
+class Survey(Brief):
     """A lift and its derivatives to the fourth, all at once: most questions need no more.
 
     Parameters
@@ -89,7 +90,7 @@ class Survey:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Program(Displacement):
+class Program(Brief, Displacement):
     """The lift over a turn, repeated.
 
     Parameters
@@ -292,7 +293,7 @@ def make_program(
 
 
 @dataclass(frozen=True)
-class _Placed:
+class _Placed(Brief):
     """A law's function in a place, ``base + scale*S((theta - origin)/width)``; phases share it."""
 
     law: Callable[..., Jet]

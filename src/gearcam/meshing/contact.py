@@ -121,3 +121,29 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
         curvature=curvature,
         lever=lever,
     )
+
+
+def contact_columns(found: Contacts, distance: float) -> dict[str, Array]:
+    """Return what tables tell of points of contact.
+
+    Parameters
+    ----------
+    found : Contacts
+        The points.
+    distance : float, mm
+        Of the shafts; 0 of a rack.
+
+    Returns
+    -------
+    dict of str to (n,) array
+        Columns; what is not finite does not exist.
+    """
+    return {
+        "contact_radius1_mm": np.abs(found.point),
+        "contact_radius2_mm": np.abs(found.point - distance),
+        "pressure_angle_deg": np.degrees(found.pressure_angle),
+        "sliding_mm_per_rad": found.sliding,
+        "specific_sliding1": found.specific[0],
+        "specific_sliding2": found.specific[1],
+        "relative_curvature_per_mm": found.curvature,
+    }

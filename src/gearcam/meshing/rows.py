@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.meshing.contact import Contacts
+from gearcam.meshing.contact import Contacts, contact_columns
 from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.patches import Patches
 from gearcam.numeric.arrays import Array, Mask
@@ -136,13 +136,10 @@ def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
         "length_mm": column(0, found.length),
         "patch_from_mm": column(0, found.radius[0]),
         "patch_to_mm": column(0, found.radius[1]),
-        "contact_radius1_mm": column(1, np.abs(exact.point)),
-        "contact_radius2_mm": column(1, np.abs(exact.point - turning.distance)),
-        "pressure_angle_deg": column(1, np.degrees(exact.pressure_angle)),
-        "sliding_mm_per_rad": column(1, exact.sliding),
-        "specific_sliding1": column(1, exact.specific[0]),
-        "specific_sliding2": column(1, exact.specific[1]),
-        "relative_curvature_per_mm": column(1, exact.curvature),
+        **{
+            name: column(1, values)
+            for name, values in contact_columns(exact, turning.distance).items()
+        },
         f"lag_{turning.rolling.guide.unit}": np.ma.masked_invalid(-block.lead[step]),
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back_gap[step],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gearcam.display import Brief
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 
 KIND = "meshing"
@@ -12,7 +13,7 @@ KIND = "meshing"
 
 
 @dataclass(frozen=True, kw_only=True)
-class MeshingSpec:
+class MeshingSpec(Brief):
     """Phases of the driver, its overclosure, and how the wheels are mounted.
 
     The phases divide the stretch from `start` to `end` into `steps` equal parts, its end left out;

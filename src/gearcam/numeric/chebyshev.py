@@ -15,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.display import Brief
 from gearcam.errors import GearcamError
 from gearcam.numeric.arrays import Array
 
@@ -47,7 +48,7 @@ class NotSmoothError(GearcamError, ValueError):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Expansion:
+class Expansion(Brief):
     """A function given by Chebyshev coefficients on consecutive intervals.
 
     Parameters

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.moments import Moments, curve_moments
 
@@ -25,7 +26,7 @@ Fitted = TypeVar("Fitted")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Run:
+class Run(Brief):
     """A smooth piece of a curve between two corners.
 
     Parameters
@@ -63,7 +64,7 @@ class Run:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Contour:
+class Contour(Brief):
     """A closed, counter-clockwise curve.
 
     Parameters

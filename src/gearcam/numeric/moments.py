@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, bulge_pieces, on_arcs
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
@@ -26,7 +27,7 @@ _ON_CUBIC: Final = 3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Moments:
+class Moments(Brief):
     """Integrals over a region, about the origin; regions add and subtract.
 
     Parameters

@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import Expansion, expand
 from gearcam.numeric.jets import Jet
@@ -34,7 +35,7 @@ _FLAT = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class Piece(Brief):
     """A smooth piece, with its integral where that has a closed form.
 
     Parameters
@@ -58,7 +59,7 @@ class Piece:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Piecewise:
+class Piecewise(Brief):
     """A function of one variable made of pieces that are written for jets, smooth between knots.
 
     Parameters

@@ -15,6 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
@@ -37,7 +38,7 @@ _UNEVEN = 0.05
 _MARGIN = 0.97
 """Share of the tolerance that a measured error may take: between its places it may be larger."""
 
-_FEW = 0.08
+_FEW = 0.12
 """Share of chords that may be halved; with more of them the vertices are spread anew."""
 
 _GRAIN = 1e-3
@@ -82,7 +83,7 @@ class Curves(Protocol):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sampler:
+class Sampler(Brief):
     """Curves with the density of points that a tolerance asks for.
 
     Parameters

@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
 from typing import Any, Final, get_type_hints
 
+from gearcam.display import Brief
 from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, param, params_of
 
@@ -48,7 +49,7 @@ def _count(*, doc: str, le: int) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WheelBlank:
+class WheelBlank(Brief):
     """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none."""
 
     bore_diameter: float | None = param(
@@ -175,7 +176,7 @@ _BothWheels: Any = make_dataclass(
 )
 
 
-class Blank(_BothWheels):
+class Blank(Brief, _BothWheels):
     """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first."""
 
     def wheel(self, number: int) -> WheelBlank:

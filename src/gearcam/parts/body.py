@@ -23,6 +23,8 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
+from gearcam.display import Brief, Displayed
+from gearcam.facts import Fact, Facts
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments
@@ -54,7 +56,7 @@ class Body(Protocol):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Opening:
+class Opening(Brief):
     """Something that goes right through a part.
 
     Parameters
@@ -80,7 +82,7 @@ class Opening:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Layer:
+class Layer(Brief):
     """A prism: what lies within an `edge` less `openings`, from z = `low` to `high`, mm."""
 
     edge: Edge
@@ -110,7 +112,7 @@ class Hub:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Mark:
+class Mark(Brief):
     """A round dimple in the upper face.
 
     Parameters
@@ -135,7 +137,7 @@ class Mark:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Part:
+class Part(Brief, Displayed):
     """A body of layers: a plate, stepped or not, with a hub.
 
     Parameters
@@ -182,6 +184,37 @@ class Part:
     def contour(self) -> Contour:
         """The outline, of a stepped part the lowest."""
         return self.contours[0]
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What the part knows of itself; the facts of its result tell more."""
+        tree = {
+            "width_mm": self.width,
+            "thickness_mm": Fact(self.thickness, "from face to face"),
+            "volume_mm3": self.volume,
+            "steps": len(self.contours) if len(self.contours) > 1 else None,
+            "openings": [opening.as_dict() for opening in self.openings] or None,
+            "outline": {
+                "vertices": len(self.outline),
+                "length_mm": self.contour.length,
+                "area_mm2": self.contour.area,
+                "chord_error_mm": self.contour.chord_error,
+            },
+        }
+        return Facts(tree, ("width_mm",), self.name)
+
+    def picture(self) -> str:
+        """Return a picture of the (lowest) outline with its openings, SVG, in the part's frame."""
+        from gearcam.markup import outlines
+
+        loops = [opening.shape.points(self.tolerance) for opening in self.steps[0].openings]
+        marks = [pocket.edge.points(self.tolerance) for pocket in self.pockets]
+        return outlines(self.facts.headline, [self.outline, *loops, *marks])
+
+    @property
+    def outline(self) -> Array:
+        """Vertices of that outline as made, (n, 2), mm, counter-clockwise, in the part's frame."""
+        return self.contour.vertices
 
     @property
     def tolerance(self) -> float:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+from gearcam.display import Brief
 from gearcam.findings import Remark, check
 from gearcam.numerals import decimal, shown
 from gearcam.parts.blank import KIND
@@ -19,7 +20,7 @@ from gearcam.quantities import LENGTH, Param
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PartsSubject:
+class PartsSubject(Brief):
     """The parts of a pair, or a cam, for checks.
 
     Parameters

@@ -16,6 +16,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import (
     arc_centers,
@@ -36,7 +37,7 @@ _DENSE: Final = 1 / 40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Circle:
+class Circle(Brief):
     """A full circle.
 
     Parameters
@@ -88,7 +89,7 @@ class Circle:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Loop:
+class Loop(Brief):
     """A closed chain of straight pieces and arcs, counter-clockwise.
 
     Parameters

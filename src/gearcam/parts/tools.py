@@ -20,6 +20,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
@@ -54,7 +55,7 @@ _FINER: Final = np.linspace(-1.5, 1.5, 121)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ToolLimits:
+class ToolLimits(Brief):
     """What limits a round tool.
 
     Parameters

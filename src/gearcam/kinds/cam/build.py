@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gearcam.cams.checks import KIND
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
@@ -16,16 +17,19 @@ from gearcam.cams.mechanism import Mechanism, make_mechanism
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.kinds.cam.design import STEM, CamDesign
 from gearcam.laws.program import Program, make_program
+from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank
-from gearcam.result import Progress, Result, Written
+from gearcam.result import Progress, Result
 from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
+    from gearcam.study import Study
 
 FOLLOWED: Final = "followed.csv"
 """The motion that a given profile makes."""
@@ -91,6 +95,51 @@ class CamResult(Result):
         step = self.design.output.motion_step
         return step * np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1.0)
 
+    def motion(self, theta: ArrayLike | None = None) -> Columns:
+        """Return the follower's motion and the curvature of what it touches, exactly.
+
+        Parameters
+        ----------
+        theta : float or (n,) array, rad, optional
+            Cam angles, any number of turns; a turn in steps of the design's
+            ``output.motion_step_deg``, both ends, where left out: the table of ``motion.csv``.
+
+        Returns
+        -------
+        Columns
+            ``theta_deg``; ``lift_mm`` and its derivatives by theta ``velocity_mm_per_rad``,
+            ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3`` (of an oscillating follower
+            ``lift_deg``, ``velocity_deg_per_rad`` and so on); ``pressure_angle_deg``, signed;
+            ``rho_pitch_mm`` and ``rho_profile_mm``, radii of curvature of pitch curve and profile
+            before trimming: positive where convex, infinite where straight, that of the profile
+            negative on a convex pitch curve where it is undercut. At a knot the values after it
+            count.
+
+        Raises
+        ------
+        DesignError
+            If `theta` is no row of finite numbers.
+        InfeasibleError
+            If the cam cannot be made.
+        """
+        theta = self.angles if theta is None else angles("theta", theta)
+        found = self.cam.motion(theta)
+        oscillating = self.design.follower.oscillating
+        unit, scale = ("deg", math.degrees(1.0)) if oscillating else ("mm", 1.0)
+        names = ("lift_{}", "velocity_{}_per_rad", "acceleration_{}_per_rad2", "jerk_{}_per_rad3")
+        return Columns(
+            {
+                "theta_deg": np.degrees(theta),
+                **{
+                    name.format(unit): scale * found[short]
+                    for name, short in zip(names, ("s", "ds", "d2s", "d3s"), strict=True)
+                },
+                "pressure_angle_deg": np.degrees(found["pressure"]),
+                "rho_pitch_mm": found["rho_pitch"],
+                "rho_profile_mm": found["rho_profile"],
+            }
+        )
+
     @property
     def ordered(self) -> bool:
         """Whether the design orders a part: a blank, or files that are made from parts."""
@@ -109,6 +158,11 @@ class CamResult(Result):
             place = Workpiece(name=STEM, module=_RIM_PART * thickness / RIM)
             blank = self.design.blank
             return make_part(STEM, [finished(profile, blank, place)], thickness, blank, place)
+
+    @cached_property
+    def parts(self) -> tuple[Part]:
+        """The cam as the only part."""
+        return (self.part,)
 
     @property
     def contour(self) -> Contour:
@@ -135,46 +189,46 @@ class CamResult(Result):
                 found += run_checks(PARTS_KIND, subject, self.design.limits)
         return in_order(found)
 
-    def follow(
-        self,
-        profile: str | Path,
-        directory: str | Path = "output",
-        progress: Progress | None = None,
-    ) -> Written:
-        """Run the design's follower on a given profile and write the motion it makes.
+    def follow(self, profile: str | Path | ArrayLike, progress: Progress | None = None) -> Study:
+        """Put the design's follower on a given profile: what motion it makes.
 
         Parameters
         ----------
-        profile : path
-            A DXF file with one closed outline, or a CSV file with the columns x_mm and y_mm.
-        directory : path
-            Parent folder.
+        profile : path or (n, 2) array, mm
+            A DXF file with one closed outline, a CSV file with the columns x_mm and y_mm, or such
+            points: a closed outline in the cam's frame.
         progress : callable, optional
             Called with a stage's name, the stages done and their number.
 
         Returns
         -------
-        Written
-            With ``followed.csv``; files of a build stay.
+        Study
+            Its columns are those of ``followed.csv`` (see docs/cams.md).
 
         Raises
         ------
         InfeasibleError
             If the follower cannot rest on the profile.
         DesignError
-            If the file cannot be read.
+            If it is no profile, or the file cannot be read.
         """
-        from gearcam.export.table import table_bytes
         from gearcam.kinds.cam.follow import followed, read_profile
+        from gearcam.study import Study
 
         if progress is not None:
             progress("profile", 0, 2)
         vertices, bulges = read_profile(profile)
+        if progress is not None:
+            progress("follow", 1, 2)
         with self.stage("follow"):
             columns, facts = followed(self.cam, vertices, bulges, self.angles)
-        if progress is not None:
-            progress("writing", 1, 2)
-        return self.keep({FOLLOWED: table_bytes(columns)}, directory, {"followed": facts})
+        return Study(
+            result=self,
+            file=FOLLOWED,
+            table=columns,
+            measured={"followed": facts},
+            findings=self.findings,
+        )
 
 
 def build(design: CamDesign, tolerances: Tolerances = DEFAULT) -> CamResult:

@@ -9,7 +9,8 @@ from typing import Any, Final
 from gearcam.commands import Command
 from gearcam.designs.design import Design, demand_kind
 from gearcam.kinds.cam.design import NAME
-from gearcam.result import Progress, Written
+from gearcam.result import Progress
+from gearcam.written import Written
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +25,7 @@ def _adapt(design: Design, _: Mapping[str, Any]) -> Design:
 def _run(
     result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
 ) -> Written:
-    return result.follow(options["profile"], output, progress=progress)
+    return result.follow(options["profile"], progress).write(output)
 
 
 COMMANDS: Final = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -41,6 +40,9 @@ _ROWS: Final = (
 )  # fmt: skip
 """Facts that stand in the table of the drawing."""
 
+_SHORT: Final = {"lift": "s", "velocity": "ds", "acceleration": "d2s", "jerk": "d3s"}
+"""What the file calls the lift and its derivatives, by the first words of their columns."""
+
 _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 """Points of a turn whose three-point curvature is held against the exact one."""
 
@@ -60,15 +62,8 @@ def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
 def _tables(result: CamResult, _: Measured) -> Files:
     from gearcam.export.table import outline_bytes, table_bytes
 
-    theta = result.angles
-    found = result.cam.motion(theta)
-    scale = math.degrees(1.0) if result.design.follower.oscillating else 1.0
-    columns = {"theta_deg": np.degrees(theta)}
-    columns |= {name: scale * found[name] for name in ("s", "ds", "d2s", "d3s")}
-    columns |= {
-        "pressure_angle_deg": np.degrees(found["pressure"]),
-        "rho_pitch_mm": found["rho_pitch"],
-        "rho_profile_mm": found["rho_profile"],
+    columns = {
+        _SHORT.get(name.partition("_")[0], name): values for name, values in result.motion().items()
     }
     return {
         "profile.csv": outline_bytes(result.contour.vertices),

@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gearcam.cams.disc import DiscCam
 from gearcam.cams.follow import follow
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Fact
 from gearcam.numerals import shown
+from gearcam.numeric.arguments import points
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import flatten_bulges
 
@@ -23,14 +25,14 @@ _SAGITTA = 0.01
 _COLUMNS = ("x_mm", "y_mm")
 
 
-def read_profile(file: str | Path) -> tuple[Array, Array]:
+def read_profile(file: str | Path | ArrayLike) -> tuple[Array, Array]:
     """Read a closed profile.
 
     Parameters
     ----------
-    file : path
+    file : path or (n, 2) array, mm
         A DXF file with one closed outline (or one on the layer PROFILE or OUTLINE), or a CSV file
-        with the columns x_mm and y_mm.
+        with the columns x_mm and y_mm; or the points themselves.
 
     Returns
     -------
@@ -44,6 +46,9 @@ def read_profile(file: str | Path) -> tuple[Array, Array]:
     DesignError
         If the file cannot be read, or holds no such profile.
     """
+    if not isinstance(file, str | os.PathLike):
+        vertices = _open(points("profile", file))
+        return vertices, np.zeros(len(vertices))
     name = os.fspath(file)
     try:
         if name.lower().endswith(".dxf"):
@@ -57,9 +62,13 @@ def read_profile(file: str | Path) -> tuple[Array, Array]:
         reason = getattr(error, "strerror", None) or str(error)
         rule = "a DXF file with one closed outline, or a CSV file with the columns x_mm, y_mm"
         raise DesignError([Problem(f"is no profile: {reason}", file=name, allowed=rule)]) from error
-    if len(vertices) > 1 and np.array_equal(vertices[0], vertices[-1]):
-        vertices = vertices[:-1]
+    vertices = _open(vertices)
     return vertices, np.zeros(len(vertices))
+
+
+def _open(vertices: Array) -> Array:
+    """Return vertices without a last one that repeats the first."""
+    return vertices[:-1] if np.array_equal(vertices[0], vertices[-1]) else vertices
 
 
 def followed(
@@ -90,9 +99,9 @@ def followed(
     InfeasibleError
         If the follower cannot rest on the profile.
     """
-    points = flatten_bulges(vertices, bulges, _SAGITTA * cam.tolerance)
+    outline = flatten_bulges(vertices, bulges, _SAGITTA * cam.tolerance)
     side = np.array([-1.0 if cam.clockwise else 1.0, 1.0])
-    found = follow(points * side, cam.mechanism, theta)
+    found = follow(outline * side, cam.mechanism, theta)
     scale, unit = (math.degrees(1.0), "deg") if cam.mechanism.oscillating else (1.0, "mm")
     asked = cam.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
@@ -107,7 +116,7 @@ def followed(
     }
     worst = int(np.abs(difference).argmax())
     facts = {
-        "points": len(points),
+        "points": len(outline),
         "unit": unit,
         "largest_difference": Fact(
             float(difference[worst]),

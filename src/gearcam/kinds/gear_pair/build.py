@@ -1,51 +1,45 @@
-"""From the design of a gear pair to its law, centrodes, wheels, checks and parts."""
+"""The result of a gear pair: its stages, and what is asked of them at driver angles."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
+from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, get_args
 
-import numpy as np
+from numpy.typing import ArrayLike
 
-from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import Finding, in_order, run_checks
-from gearcam.gears.checks import KIND, Subject
-from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
-from gearcam.gears.spec import Finish
-from gearcam.gears.steps import leads, stepped
-from gearcam.gears.track import Wheel
+from gearcam.findings import in_order, run_checks
+from gearcam.kinds.gear_pair.columns import (
+    centrode_columns,
+    contact_ratio_columns,
+    contacts_at,
+    motion_columns,
+)
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.laws.ratio.base import RatioLaw
-from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
+from gearcam.kinds.gear_pair.stages import PairStages
+from gearcam.numeric.arguments import angles, one_of, whole
 from gearcam.numeric.arrays import Array
-from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.parts.blank import Blank
-from gearcam.result import Progress, Result, Written
+from gearcam.numeric.columns import Columns
+from gearcam.result import Progress
 from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing
-    from gearcam.parts.body import Part
-    from gearcam.parts.checks import PartsSubject
+    from gearcam.study import Study
 
 MESHING = "meshing.csv"
 """The rows of a meshing study."""
 
-_OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank")
-"""Checks that can find something else in each step of stepped wheels."""
+Side = Literal["drive", "coast"]
+"""Flanks of the driver: those that drive, and those that hold back."""
+
+ROUNDING = 1e-12
+"""Part of the travel by which an angle may lie beyond it: angles told in degrees are rounded."""
 
 _AS_MOUNTED = ("contact-ratio",)
 """Checks of a pair as designed that a study repeats for the pair as mounted."""
 
-CENTRODE_POINTS = 720
-"""Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
 
-
-class GearPairResult(Result):
+class GearPairResult(PairStages):
     """What comes of the design of a gear pair, computed on demand.
 
     Parameters
@@ -56,207 +50,179 @@ class GearPairResult(Result):
         Inner accuracy.
     """
 
-    design: GearPairDesign
-    stages = MappingProxyType(
-        {
-            "law": "law",
-            "centrodes": "pair",
-            "gear 1": "gear1",
-            "gear 2": "gear2",
-            "checks": "findings",
-        }
-    )
-
-    @cached_property
-    def law(self) -> RatioLaw:
-        """The ratio law."""
-        with self.stage("law"):
-            return self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
-
-    @cached_property
-    def pair(self) -> GearPair:
-        """The centrodes with their cutters."""
-        law = self.law
-        with self.stage("centrodes"):
-            return make_pair(law, self.design.pair, self.design.rack, self.tolerances, self._finish)
-
-    @property
-    def _finish(self) -> tuple[Finish, Finish]:
-        """What is taken off the edges of both wheels' teeth."""
-        blanks = (self.design.blank.wheel(number) for number in (1, 2))
-        first, second = (
-            Finish(clearance=blank.clearance, tip_rounding=blank.tip_rounding) for blank in blanks
-        )
-        return first, second
-
-    @cached_property
-    def gear1(self) -> Gear:
-        """The driver."""
-        return self._gear(1, self.pair)
-
-    @cached_property
-    def gear2(self) -> Gear:
-        """The driven wheel."""
-        return self._gear(2, self.pair)
-
-    @cached_property
-    def steps(self) -> tuple[tuple[Gear, Gear], ...]:
-        """Both wheels of each step, from below; one step where the wheels are not stepped."""
-        pairs = [stepped(self.pair, moved) for moved in self.leads]
-        return self.gears, *((self._gear(1, pair), self._gear(2, pair)) for pair in pairs[1:])
-
-    @property
-    def leads(self) -> tuple[float, ...]:
-        """How far the teeth of each step are moved, mm along the pitch curves."""
-        return leads(self.pair, self.design.steps)
-
-    def _gear(self, wheel: Wheel, pair: GearPair) -> Gear:
-        with self.stage(f"gear{wheel}"):
-            tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
-            gear = make_gear(pair, wheel, tolerance, self.tolerances)
-            bore = self.bores[wheel - 1]
-            if bore is not None and 0.5 * bore >= gear.least_radius:
-                largest, key = 2.0 * gear.least_radius, f"blank.bore_diameter_mm[{wheel - 1}]"
-                raise InfeasibleError(
-                    "the bore reaches the root of the teeth",
-                    where=f"wheel {wheel}, {key}",
-                    value=bore,
-                    limit=largest,
-                    unit="mm",
-                    nearest="the limit holds for the circle around bore and keyway",
-                    ways=(
-                        Way(
-                            near={key: largest - bore + self.design.blank.wheel(wheel).bore},
-                            far={key: 0.1 * largest},
-                        ),
-                    ),
-                )
-            return gear
-
-    @property
-    def gears(self) -> tuple[Gear, Gear]:
-        """Both wheels, driver first."""
-        return self.gear1, self.gear2
-
-    @property
-    def bores(self) -> tuple[float | None, float | None]:
-        """Bore diameters, mm, of circles that hold their keyways; a rack has none."""
-        blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
-        first, second = (2.0 * blank.bore_reach for blank in blanks)
-        return first or None, None if self.pair.on_rack else second or None
-
-    @cached_property
-    def findings(self) -> tuple[Finding, ...]:
-        """What the checks found: errors first."""
-        found = [*self._gear_findings(self.subject)]
-        for number, gears in enumerate(self.steps[1:], start=2):
-            found += (
-                replace(finding, where=f"step {number}, {finding.where}")
-                for finding in self._gear_findings(self._subject(gears))
-                if finding.code in _OF_TEETH
-            )
-        if self.ordered:
-            subject = self.parts_subject
-            with self.stage("checks"):
-                found += run_checks(PARTS_KIND, subject, self.design.limits)
-        return in_order(found)
-
-    @cached_property
-    def subject(self) -> Subject:
-        """What the checks of teeth look at; of stepped wheels the lowest step."""
-        return self._subject(self.gears)
-
-    def _subject(self, gears: tuple[Gear, Gear]) -> Subject:
-        return Subject(pair=gears[0].pair, gears=gears, bores=self.bores)
-
-    def _gear_findings(self, subject: Subject) -> tuple[Finding, ...]:
-        with self.stage("checks"):
-            return run_checks(KIND, subject, self.design.limits)
-
-    @cached_property
-    def parts_subject(self) -> PartsSubject:
-        """What the checks of parts look at."""
-        from gearcam.kinds.gear_pair.ordered import parts_subject
-
-        return parts_subject(self.parts, self.gears, self.design.output.kerf)
-
-    @property
-    def ordered(self) -> bool:
-        """Whether the design orders parts: a blank, or files that are made from parts."""
-        return self.design.blank != Blank() or not set(self.design.output.files) <= {"csv"}
-
-    @cached_property
-    def parts(self) -> tuple[Part, Part]:
-        """Both wheels as parts: openings, hubs, marks, moved and rounded edges."""
-        from gearcam.kinds.gear_pair.ordered import make_parts
-
-        _ = self.steps  # timed for themselves
-        with self.stage("parts"):
-            return make_parts(self.steps, self.design)
-
-    @cached_property
-    def to_cut(self) -> tuple[Drawing, ...]:
-        """What a cutter follows: both wheels, step by step, as parts or as paths with the kerf."""
-        from gearcam.drawings import cut_drawing, wheel_drawing
-
-        return tuple(
-            cut_drawing(wheel_drawing(part, step), self.design.output.kerf)
-            for part in self.parts
-            for step in range(len(part.contours))
-        )
-
-    def centrode_angles(self) -> Array:
-        """Return the driver angles, rad, of the centrodes' table: until both wheels close."""
-        lobes = self.law.lobes
-        if self.pair.on_rack:
-            end = self.pair.rolling.arc.angle(np.array(self.gear2.toothing.length))
-            return np.linspace(0.0, float(end), CENTRODE_POINTS + 1)
-        if not lobes.closed:
-            return np.linspace(0.0, lobes.period, CENTRODE_POINTS + 1)
-        turns = math.lcm(lobes.n1, lobes.n2)
-        count = CENTRODE_POINTS * max(1, round(turns / lobes.n1))
-        return np.linspace(0.0, turns * lobes.period, count + 1)
-
-    def mesh(self, directory: str | Path = "output", progress: Progress | None = None) -> Written:
-        """Turn the pair step by step and write what is found; files of a build stay.
+    def centrodes(self, n: int | None = None) -> Columns:
+        """Return both centrodes, until both wheels close, or over the travel.
 
         Parameters
         ----------
-        directory : path
-            Parent folder.
-        progress : callable, optional
-            Called with a stage's name, the stages or steps done and their number.
+        n : int, optional
+            Points, both ends included, 2 or more; one each half degree of a closed pair, or 721
+            over the travel, where left out: the table of ``centrodes.csv``.
 
         Returns
         -------
-        Written
-            With ``meshing.csv``; not complete where it was interrupted after some steps.
+        Columns
+            ``phi1_deg``, ``phi2_deg``; ``ratio`` i21; ``r1_mm`` and ``r2_mm``, distances of the
+            pitch point from both shafts; ``s_mm``, arc length of both; ``rho1_mm``, ``rho2_mm``,
+            radii of curvature, negative where concave, infinite where straight; ``x1_mm``,
+            ``y1_mm``, ``x2_mm``, ``y2_mm``, points in each wheel's own frame. Of a rack
+            ``travel_mm`` stands for phi2, ratio and r2. At a knot the values after it count.
 
         Raises
         ------
+        DesignError
+            If `n` is no whole number, or less than 2.
         InfeasibleError
-            If the design, or its study, cannot be made; nothing is written then.
-        WriteError
-            If the disk refuses.
+            If the centrodes cannot be made.
         """
-        from gearcam.export.table import table_bytes
+        count = None if n is None else whole("n", n, 2)
+        return centrode_columns(self, self.centrode_angles(count))
+
+    def motion(self, phi1: ArrayLike | None = None) -> Columns:
+        """Return how the driven element moves, exactly.
+
+        Parameters
+        ----------
+        phi1 : float or (n,) array, rad, optional
+            Driver angles, of open pairs within the travel; those of `centrodes` where left out.
+
+        Returns
+        -------
+        Columns
+            ``phi1_deg``; ``phi2_deg``, counted from phi1 = 0 over all turns; ``ratio`` i21; its
+            derivatives by phi1 ``acceleration_per_rad`` and ``jerk_per_rad2``. Of a rack
+            ``travel_mm``, ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and
+            ``jerk_mm_per_rad3``. At a knot the values after it count.
+
+        Raises
+        ------
+        DesignError
+            If `phi1` is no row of finite numbers, or beyond the travel.
+        InfeasibleError
+            If the law cannot be made.
+        """
+        return motion_columns(self, self._phases(phi1))
+
+    def contact(self, phi1: ArrayLike | None = None, side: Side = "drive") -> Columns:
+        """Return every point at which flanks touch, for the wheels as made, mounted as designed.
+
+        Parameters
+        ----------
+        phi1 : float or (n,) array, rad, optional
+            Driver angles, of open pairs within the travel; those of `centrodes` where left out.
+        side : {"drive", "coast"}
+            Which flanks of the driver: those that drive, or those that hold back.
+
+        Returns
+        -------
+        Columns
+            A row for each phase and pair of teeth that touches; none where nothing does. The rows
+            of one pair are its path of contact. ``phi1_deg`` and ``phi2_deg`` (of a rack
+            ``travel_mm``), nominal; ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth,
+            -1 drives; ``pairs``, how many touch in this phase; ``x_mm``, ``y_mm``, the point in the
+            fixed frame (driver's shaft at 0, driven one at the centre distance on x);
+            ``force_x``, ``force_y``, the unit direction in which the driver presses there;
+            ``contact_radius1_mm``, ``contact_radius2_mm`` from both shafts;
+            ``pressure_angle_deg`` of the force to the perpendicular to the line of centres;
+            ``sliding_mm_per_rad``, sliding speed along the driver's flank, tip outward, over the
+            driver's speed; ``specific_sliding1``, ``specific_sliding2``;
+            ``relative_curvature_per_mm``; ``lag_rad`` (of a rack ``lag_mm``), what the driven
+            element is behind its nominal place when this pair touches.
+
+        Raises
+        ------
+        DesignError
+            If `phi1` is no row of finite numbers, or beyond the travel, or there is no such side.
+        InfeasibleError
+            If the wheels cannot be made.
+        """
+        coast, drive = self.subject.sides
+        pairs = drive if one_of("side", side, get_args(Side)) == "drive" else coast
+        return contacts_at(self, pairs, self._phases(phi1))
+
+    @cached_property
+    def contact_ratio(self) -> float:
+        """The smallest contact ratio of any pair of flanks, either way, mounted as designed."""
+        return self.subject.contact_ratio
+
+    @cached_property
+    def contact_ratios(self) -> Columns:
+        """The contact ratio of every pair of flanks, for the wheels as made, mounted as designed.
+
+        ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth, -1 drives, which come first,
+        +1 holds back; ``contact_ratio``; ``from_deg``, ``to_deg``, the driver angles between which
+        they touch, not-a-number where they do not.
+        """
+        return contact_ratio_columns(self.subject.sides)
+
+    def _phases(self, phi1: ArrayLike | None) -> Array:
+        """Return driver angles that a caller gives, or those of the centrodes."""
+        if phi1 is None:
+            return self.centrode_angles()
+        if self.law.lobes.closed:
+            return angles("phi1", phi1)
+        end = self.law.period
+        return angles("phi1", phi1, 0.0, end, ROUNDING * end)
+
+    def mesh(self, progress: Progress | None = None, **settings: object) -> Study:
+        """Turn the pair step by step: contact, interference, backlash, as made and as mounted.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called with a stage's name, the stages or steps done and their number.
+        **settings : value
+            Keys of the table ``[meshing]``, such as ``steps`` and ``center_distance_mm``, that
+            stand before those of the design, in the units of a file.
+
+        Returns
+        -------
+        Study
+            Its columns are those of ``meshing.csv`` (see docs/conventions.md); not complete where
+            it was interrupted after some steps.
+
+        Raises
+        ------
+        DesignError
+            If there is no such setting, or a value is not what a file may hold.
+        InfeasibleError
+            If the design, or its study, cannot be made.
+        KeyboardInterrupt
+            If it was interrupted before the first steps were done.
+        """
         from gearcam.meshing.checks import KIND as MESHING_KIND
         from gearcam.meshing.numbers import numbers
         from gearcam.meshing.study import study
+        from gearcam.study import Study
 
-        gears = self.steps[self.design.meshing.step - 1]
-        with self.stage("meshing"):
-            meshing = study(gears, self.design.meshing, progress)
+        result = self._mounted(settings)
+        design = result.design
+        gears = result.steps[design.meshing.step - 1]
+        with result.stage("meshing"):
+            meshing = study(gears, design.meshing, progress)
         if not meshing.blocks:
             raise KeyboardInterrupt
-        with self.stage("checks"):
-            extra = run_checks(MESHING_KIND, meshing, self.design.limits)
+        with result.stage("checks"):
+            extra = run_checks(MESHING_KIND, meshing, design.limits)
         # of what drives the study knows, as mounted
-        told = [finding for finding in self.findings if finding.code not in _AS_MOUNTED]
-        contents = {MESHING: table_bytes(meshing.columns)}
-        measured = {"meshing": numbers(meshing)}
-        written = self.keep(contents, directory, measured, in_order((*told, *extra)))
-        return replace(written, complete=meshing.complete)
+        told = [finding for finding in result.findings if finding.code not in _AS_MOUNTED]
+        return Study(
+            result=result,
+            file=MESHING,
+            table=meshing.columns,
+            measured={"meshing": numbers(meshing)},
+            findings=in_order((*told, *extra)),
+            complete=meshing.complete,
+        )
+
+    def _mounted(self, settings: Mapping[str, object]) -> GearPairResult:
+        """Return the result with other settings of its study: all that is made stays."""
+        if not settings:
+            return self
+        design = self.design.with_({f"meshing.{key}": value for key, value in settings.items()})
+        other = type(self)(design, self.tolerances)
+        vars(other).update(vars(self) | {"design": design})
+        return other
 
 
 def build(design: GearPairDesign, tolerances: Tolerances = DEFAULT) -> GearPairResult:

@@ -12,7 +12,8 @@ from gearcam.designs.design import Design, demand_kind
 from gearcam.designs.kind import KINDS
 from gearcam.designs.table import Table
 from gearcam.kinds.gear_pair.design import NAME, GearPairDesign
-from gearcam.result import Progress, Written
+from gearcam.result import Progress
+from gearcam.written import Written
 
 _OPTIONS: Final = {"center_distance_mm": "center"}
 """Options that are not called as their keys are."""
@@ -74,7 +75,7 @@ def _run(
     result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
 ) -> Written:
     _ = options  # they are in the design
-    return result.mesh(output, progress=progress)
+    return result.mesh(progress).write(output)
 
 
 COMMANDS: Final = (

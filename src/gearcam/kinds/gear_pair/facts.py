@@ -12,6 +12,7 @@ import numpy as np
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
+from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.subject import KIND
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
@@ -224,34 +225,14 @@ def _meshing(numbers: Mapping[str, Any]) -> Tree:
 
 
 def _gear(result: GearPairResult, gear: Gear) -> Tree:
-    cutter, track = gear.toothing.cutter, gear.toothing.track
-    blank, pinion = result.design.blank.wheel(gear.wheel), cutter.kind == "pinion"
+    blank = result.design.blank.wheel(gear.wheel)
     shift = result.design.pair.x if gear.wheel == 1 else -result.design.pair.x
     return {
-        "name": gear.name,
-        "teeth": gear.toothing.teeth,
+        **gear_tree(gear),
         "profile_shift": Fact(shift, unit="modules") if shift else None,
-        "centrode": {
-            "length_mm": Fact(gear.toothing.length, "centrode length"),
-            "min_convex_radius_mm": track.convex.radius if track.convex.radius < math.inf else None,
-            "max_concave_curvature_per_mm": 1.0 / track.concave.radius,
-            "closed": gear.toothing.closed,
-        },
-        "cutter": cutter.kind,
-        "cutter_pitch_radius_mm": 1.0 / cutter.kc if pinion else None,
-        "cutter_tip_radius_mm": cutter.tip_radius,
-        "undercut_teeth": list(gear.profile.undercut_teeth),
-        "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
-        "root_radius_min_mm": gear.least_radius,
         "bore_diameter_mm": blank.bore if result.bores[gear.wheel - 1] else None,
         "clearance_mm": blank.clearance or None,
         "tip_rounding_mm": blank.tip_rounding or None,
-        "outline": {
-            "vertices": len(gear.outline),
-            "least_vertices": gear.profile.sampler.least,
-            "area_mm2": gear.profile.contour.area,
-            "chord_error_mm": gear.profile.chord_error,
-        },
         **_part(result, gear),
     }
 

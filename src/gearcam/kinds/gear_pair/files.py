@@ -19,6 +19,7 @@ from gearcam.export.shared import (
     sheet_bytes,
     sheet_rows,
 )
+from gearcam.kinds.gear_pair.columns import POINTS
 from gearcam.numerals import shown
 
 if TYPE_CHECKING:
@@ -47,26 +48,8 @@ _GEAR_ROWS: Final = (
 def _tables(result: GearPairResult, _: Measured) -> Files:
     from gearcam.export.table import outline_bytes, table_bytes
 
-    phi1 = result.centrode_angles()
-    phi2, ratio = result.law.derivatives(phi1, 1)
-    one, two = (track.frames(phi1) for track in result.pair.rolling.tracks)
-    with np.errstate(divide="ignore"):
-        rho1, rho2 = 1.0 / one.kappa, 1.0 / two.kappa
-    driven = {
-        "phi2_deg": np.degrees(phi2 - phi2[0]),
-        "ratio": ratio,
-        "r1_mm": np.abs(one.p),
-        "r2_mm": np.abs(two.p),
-    }
-    if result.pair.on_rack:
-        driven = {"travel_mm": two.p.imag, "r1_mm": np.abs(one.p)}
-    centrodes = {
-        "phi1_deg": np.degrees(phi1),
-        **driven,
-        "s_mm": one.s - one.s[0],
-        "rho1_mm": rho1,
-        "rho2_mm": rho2,
-    }
+    found = result.centrodes()
+    centrodes = {name: values for name, values in found.items() if name not in POINTS}
     files = {f"{gear.name}_outline.csv": outline_bytes(gear.outline) for gear in result.gears}
     return files | {"centrodes.csv": table_bytes(centrodes)}
 

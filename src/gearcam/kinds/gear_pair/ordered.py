@@ -9,7 +9,8 @@ import numpy as np
 
 from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.numeric.arrays import Array, Mask, Plane
+from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.columns import Columns
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
@@ -92,21 +93,12 @@ def _uncut(part: Part, gear: Gear, kerf: float) -> bool:
     """Return whether a cutter does not get to some place of a wheel's flanks as made."""
     from gearcam.parts.parallel import touches
 
-    kept, points, normals = _places(gear, _PLACES)
-    found = touches(part.contour, points[:, kept].ravel(), normals[:, kept].ravel(), 0.5 * kerf)
-    return not found.all()
+    found = gear.flank_points(_PLACES)
+    points, normals = as_complex(found.points), as_complex(found.normals)
+    return not touches(part.contour, points, normals, 0.5 * kerf).all()
 
 
-def _places(gear: Gear, count: int) -> tuple[Mask, Plane, Plane]:
-    """Return which flanks of whole teeth there are, and places on all, root to tip, normals."""
-    flanks = gear.profile.flanks
-    kept = gear.toothing.whole_flanks & (flanks.highest > flanks.lowest)
-    share = np.linspace(0.0, 1.0, count)[:, None]
-    reach = flanks.lowest + share * (flanks.highest - flanks.lowest)
-    return kept, *gear.profile.flank_places(np.where(kept, reach, 0.0))
-
-
-def inspection_rows(steps: Steps, count: int) -> dict[str, Array]:
+def inspection_rows(steps: Steps, count: int) -> Columns:
     """Return the points of an inspection, by column.
 
     Parameters
@@ -118,30 +110,19 @@ def inspection_rows(steps: Steps, count: int) -> dict[str, Array]:
 
     Returns
     -------
-    dict of str to (n,) array
+    Columns
         Both wheels, every step, every whole tooth, both sides, from root to tip: points of the
         flanks as made and the outward normals of the metal, in the wheel's frame.
     """
-    blocks: list[list[Array]] = []
-    for step, gears in enumerate(steps, start=1):
-        for gear in gears:
-            kept, points, normals = _places(gear, count)
-            points, normals = points[:, kept].T.ravel(), normals[:, kept].T.ravel()
-            tooth = np.tile(np.array(gear.toothing.numbers), 2)[kept]
-            side = gear.profile.flanks.sigma[kept]
-            order = np.lexsort((-side, tooth))
-            rows = (order[:, None] * count + np.arange(count)).ravel()
-            columns = [
-                np.full(points.size, gear.wheel),
-                np.full(points.size, step),
-                np.repeat(tooth, count),
-                np.repeat(side, count),
-                np.tile(np.arange(1, count + 1), int(kept.sum())),
-                points.real,
-                points.imag,
-                normals.real,
-                normals.imag,
-            ]
-            blocks.append([np.asarray(column, dtype=np.float64)[rows] for column in columns])
+    blocks = [
+        {"wheel": gear.wheel, "step": step, **gear.flank_points(count)}
+        for step, gears in enumerate(steps, start=1)
+        for gear in gears
+    ]
     names = ("wheel", "step", "tooth", "side", "point", "x_mm", "y_mm", "nx", "ny")
-    return {name: np.concatenate([block[k] for block in blocks]) for k, name in enumerate(names)}
+    return Columns(
+        {
+            name: np.concatenate([np.broadcast_to(one[name], one["tooth"].shape) for one in blocks])
+            for name in names
+        }
+    )

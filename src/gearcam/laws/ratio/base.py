@@ -17,6 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
@@ -30,7 +31,7 @@ from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RatioLaw(Displacement):
+class RatioLaw(Brief, Displacement):
     """A ratio over one lobe or over the travel of an open pair, and phi2, its integral.
 
     Parameters

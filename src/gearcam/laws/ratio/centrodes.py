@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
@@ -110,7 +111,7 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
 
 
 @dataclass(frozen=True, kw_only=True)
-class LogSpiral:
+class LogSpiral(Brief):
     """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k, growing the other way.
 
     With ``u = r1/A = i/(1 + i)`` at both ends, the driven wheel turns by

@@ -9,6 +9,7 @@ from itertools import zip_longest
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
@@ -24,7 +25,7 @@ from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
-class Multispeed:
+class Multispeed(Brief):
     """Constant ratios, each over an angle of the driver, joined by smooth transitions.
 
     A closed law goes back to its first ratio by a last transition; an open one (with
@@ -80,7 +81,7 @@ class Multispeed:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThreePhasePolynomial:
+class ThreePhasePolynomial(Brief):
     """A cubic down to the lowest ratio, then two parabolas up again, 003 Table 2.6.
 
     The ratio starts at b with slope zero, is `lowest` = a at the second knot with slope zero, and
@@ -146,7 +147,7 @@ class ThreePhasePolynomial:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fourier:
+class Fourier(Brief):
     """Harmonics of a lobe: ``f = 1 + sum(a_k*cos(k*n1*phi1) + b_k*sin(k*n1*phi1))``.
 
     Of the ratio: ``i21 = (n1/n2)*f``. Of phi2: ``dphi2`` over the mean ratio is ``phi1`` plus the

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import (
@@ -45,7 +46,7 @@ _PLACES_OF_LOBE = 257
 
 
 @dataclass(frozen=True, kw_only=True)
-class Formula:
+class Formula(Brief):
     """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
 
     From Python each may be a function of phi1, rad, or a tuple of a function and its first
@@ -181,7 +182,7 @@ def from_phi2(
 
 
 @dataclass(frozen=True, kw_only=True)
-class RackLaw:
+class RackLaw(Brief):
     """The driver's centrode, or the rack's travel over a turn; either at any scale.
 
     From Python either may be a function of phi1, rad, or a tuple with its first derivatives.

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.arcs import ARCS, Arc
@@ -20,7 +21,7 @@ from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
-class Phases:
+class Phases(Brief):
     """Knots over one turn (or one lobe), a ratio at each; one ratio may be left to closure.
 
     With `driven_travel` the pair is open: first and last ratio may differ, and either one ratio or

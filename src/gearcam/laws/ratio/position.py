@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import Axis, Given, formula_problems, function_of, values_of
@@ -22,7 +23,7 @@ from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
-class MotionLaw:
+class MotionLaw(Brief):
     """Either y(x) of the driven element, or the position of a slide that its crank moves.
 
     With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
@@ -32,7 +33,7 @@ _HEIGHT = 1e-16
 
 
 @dataclass(frozen=True, kw_only=True)
-class BSplineLaw:
+class BSplineLaw(Brief):
     """The radius is a closed uniform cubic B-spline over phi1 with these control values.
 
     Control value k belongs to the angle ``k/n`` of a lobe; the curve stays between its neighbours'
@@ -58,7 +59,7 @@ class BSplineLaw:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoundedPolygon:
+class RoundedPolygon(Brief):
     """A regular polygon whose corners are arcs; phi1 = 0 at the middle of a side.
 
     With the corner radius c and the distance h of a side from the shaft, both over the centre

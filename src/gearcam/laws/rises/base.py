@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
+from gearcam.display import Brief
 from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.registry import Registry
@@ -58,7 +59,7 @@ class RiseParameters(Protocol):
         ...
 
 
-class ClosedForm(ABC):
+class ClosedForm(Brief, ABC):
     """Parameters of a rise in closed form: they say its function, and need no tolerance."""
 
     mirrored: ClassVar[bool] = False

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import Axis, Given, formula_problems, function_of
@@ -24,13 +25,13 @@ _AXIS: Final = Axis(
     high=1.0,
     place=lambda x: f"{_WHERE}, x = {shown(round(x, 5))}",
     variable=_VARIABLE,
-    remedy='a law of type "table" takes such values: its curve has no corners',
+    remedy='the law "table" takes such values: its curve has no corners',
 )
 _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''")
 
 
 @dataclass(frozen=True, kw_only=True)
-class FormulaRise:
+class FormulaRise(Brief):
     """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic.
 
     From Python it may be a function, or a tuple of a function and its first derivatives.

@@ -1,0 +1,169 @@
+"""Charts: what is drawn over an angle, as data, and their drawing.
+
+A *chart* has one horizontal axis, *lines* over it and the *limits* that they are held against. The
+folder of a kind makes its charts from the arrays of a result (see `gearcam.designs.kind`); nothing
+here knows what they tell of. Drawing needs matplotlib, which the extra ``plot`` brings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.errors import MissingExtraError
+from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_FAR: Final = 1.5
+"""How far outside the lines a limit may be drawn, in their range: beyond, it would flatten them."""
+
+_MARGIN: Final = 0.06
+"""Share of the range that is left free above and below."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Line:
+    """Values over the horizontal axis.
+
+    Parameters
+    ----------
+    label : str
+        What they are.
+    x, y : (n,) arrays
+        In the units of the chart's axes; not-a-number breaks the line.
+    dots : bool
+        Whether they are single values that nothing joins.
+    """
+
+    label: str
+    x: Array
+    y: Array
+    dots: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """A level that lines are held against.
+
+    Parameters
+    ----------
+    label : str
+        Whose.
+    value : float
+        In the unit of the vertical axis.
+    """
+
+    label: str
+    value: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Chart:
+    """Lines over an angle or a number, with limits.
+
+    Parameters
+    ----------
+    title : str
+        What is told.
+    x, y : str
+        What the axes are, with their units.
+    lines : tuple of Line
+        At least one.
+    limits : tuple of Limit
+        Those that hold for the lines.
+    """
+
+    title: str
+    x: str
+    y: str
+    lines: tuple[Line, ...]
+    limits: tuple[Limit, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Chart of {self.title}: {', '.join(line.label for line in self.lines)}>"
+
+    def draw(self, ax: Axes | None = None) -> Axes:
+        """Draw the chart.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where; a new figure where left out.
+
+        Returns
+        -------
+        Axes
+            Of matplotlib, with title, labels, limits and legend.
+
+        Raises
+        ------
+        MissingExtraError
+            If matplotlib is not installed.
+        """
+        ax = _new_axes() if ax is None else ax
+        for line in self.lines:
+            style: dict[str, Any] = {"ls": "", "marker": ".", "ms": 3.0} if line.dots else {}
+            ax.plot(line.x, line.y, label=line.label, **style)
+        low, high = self._range
+        near = _FAR * (high - low)
+        for limit in self.limits:
+            seen = low - near <= limit.value <= high + near
+            text = f"{limit.label}: {shown(limit.value)}"
+            if seen:
+                low, high = min(low, limit.value), max(high, limit.value)
+                ax.axhline(limit.value, color="0.35", ls="--", lw=1.0, label=text)
+            else:
+                ax.plot([], [], color="0.35", ls=" ", label=f"{text}, beyond this chart")
+        free = _MARGIN * (high - low)
+        ax.set(title=self.title, xlabel=self.x, ylabel=self.y, ylim=(low - free, high + free))
+        ax.margins(x=0.0)
+        ax.grid(visible=True, alpha=0.3)
+        if self.limits or len(self.lines) > 1:
+            ax.legend(fontsize="small")
+        return ax
+
+    @property
+    def _range(self) -> tuple[float, float]:
+        """Smallest and largest value of all lines; of a level one some room about it."""
+        values = np.concatenate([line.y[np.isfinite(line.y)] for line in self.lines])
+        low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
+        room = 0.0 if high - low > 1e-9 * max(abs(low), abs(high)) else 0.05 * abs(high) or 1.0
+        return low - room, high + room
+
+
+Charts = Mapping[str, Callable[[Any], Chart]]
+"""What makes each chart of a kind from its result, by name."""
+
+
+def _new_axes() -> Axes:
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise MissingExtraError("charts", "plot") from error
+    _, ax = plt.subplots(layout="constrained")
+    return ax
+
+
+def with_both_sides(places: Array, knots: Array) -> Array:
+    """Return places on an axis with both sides of knots among them.
+
+    Parameters
+    ----------
+    places : (n,) array
+        Rising.
+    knots : (m,) array
+        Where what is drawn may jump; those outside the places are left out.
+
+    Returns
+    -------
+    (k,) array
+        Rising: of a knot the last number before it, and itself.
+    """
+    inside = knots[(knots > places[0]) & (knots < places[-1])]
+    return np.union1d(places, np.concatenate([inside, np.nextafter(inside, -np.inf)]))

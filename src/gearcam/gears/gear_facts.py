@@ -1,0 +1,39 @@
+"""What a wheel knows of itself, as facts."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from gearcam.facts import Fact
+
+if TYPE_CHECKING:
+    from gearcam.gears.pair import Gear
+
+
+def gear_tree(gear: Gear) -> dict[str, Any]:
+    """Return what is known of a wheel, as a tree of facts (see `gearcam.facts.Facts`)."""
+    cutter, track = gear.toothing.cutter, gear.toothing.track
+    pinion = cutter.kind == "pinion"
+    return {
+        "name": gear.name,
+        "teeth": gear.toothing.teeth,
+        "centrode": {
+            "length_mm": Fact(gear.toothing.length, "centrode length"),
+            "min_convex_radius_mm": track.convex.radius if track.convex.radius < math.inf else None,
+            "max_concave_curvature_per_mm": 1.0 / track.concave.radius,
+            "closed": gear.toothing.closed,
+        },
+        "cutter": cutter.kind,
+        "cutter_pitch_radius_mm": 1.0 / cutter.kc if pinion else None,
+        "cutter_tip_radius_mm": cutter.tip_radius,
+        "undercut_teeth": list(gear.profile.undercut_teeth),
+        "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
+        "root_radius_min_mm": gear.least_radius,
+        "outline": {
+            "vertices": len(gear.outline),
+            "least_vertices": gear.profile.sampler.least,
+            "area_mm2": gear.profile.contour.area,
+            "chord_error_mm": gear.profile.chord_error,
+        },
+    }

@@ -1,0 +1,89 @@
+"""The charts of a disc cam, over the cam angle."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.cams.checks import KIND, PRESSURE
+from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
+from gearcam.findings import limit_of
+from gearcam.numeric.columns import Columns
+from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
+from gearcam.parts.blank import KIND as PARTS_KIND
+
+if TYPE_CHECKING:
+    from gearcam.kinds.cam.build import CamResult
+
+_ANGLE: Final = "cam angle theta, deg"
+
+_TIMES: Final = 10.0
+"""Curvature of the roller, or of the pitch curve where that is more, beyond which the profile's is
+not drawn: where it is undercut its curvature grows without limit."""
+
+
+def _table(result: CamResult) -> Columns:
+    """Return the motion over a turn, at both sides of all knots."""
+    turn = result.angles
+    turn = np.append(turn[turn < 2.0 * math.pi], np.nextafter(2.0 * math.pi, 0.0))
+    return result.motion(with_both_sides(turn, result.program.knots))
+
+
+def _of_lift(name: str, result: CamResult) -> Chart:
+    table = _table(result)
+    column = next(column for column in table if column.startswith(name))
+    unit = column.removeprefix(f"{name}_").replace("_per_rad", "/rad")
+    line = Line(label=name, x=table["theta_deg"], y=table[column])
+    return Chart(title=f"Follower's {name}", x=_ANGLE, y=f"{name}, {unit}", lines=(line,))
+
+
+def _pressure_angle(result: CamResult) -> Chart:
+    table = _table(result)
+    limit = limit_of(KIND, "pressure-angle", result.design.limits)
+    limit = math.degrees(PRESSURE[result.mechanism.oscillating] if math.isnan(limit) else limit)
+    return Chart(
+        title="Pressure angle",
+        x=_ANGLE,
+        y="pressure angle, deg",
+        lines=(Line(label="pressure angle", x=table["theta_deg"], y=table["pressure_angle_deg"]),),
+        limits=(Limit(label="limit", value=limit), Limit(label="limit", value=-limit)),
+    )
+
+
+def _curvature(result: CamResult) -> Chart:
+    table, radius = _table(result), result.mechanism.radius
+    with np.errstate(divide="ignore"):
+        pitch, profile = (1.0 / table[f"rho_{name}_mm"] for name in ("pitch", "profile"))
+    largest = _TIMES * max(1.0 / radius if radius else 0.0, float(np.abs(pitch).max()))
+    tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
+    limits = [Limit(label="tool at hand, concave profile", value=-2.0 / tool)] if tool else []
+    if radius > 0.0:
+        limits.append(Limit(label="roller, convex pitch curve", value=1.0 / radius))
+    lines = {"pitch curve": pitch, "profile before trimming": profile}
+    if result.mechanism.flat:
+        del lines["pitch curve"]
+    return Chart(
+        title="Curvature, positive where convex",
+        x=_ANGLE,
+        y="curvature, 1/mm",
+        lines=tuple(
+            Line(
+                label=label,
+                x=table["theta_deg"],
+                y=np.where(np.abs(values) <= largest, values, np.nan),
+            )
+            for label, values in lines.items()
+        ),
+        limits=tuple(limits),
+    )
+
+
+CHARTS: Final[Charts] = {
+    **{name: partial(_of_lift, name) for name in ("lift", "velocity", "acceleration", "jerk")},
+    "pressure_angle": _pressure_angle,
+    "curvature": _curvature,
+}
+"""What makes each chart."""

@@ -1,0 +1,106 @@
+"""What is computed of a gear pair at driver angles, as columns: for files and as data.
+
+What the columns are is told where they are given out (`gearcam.kinds.gear_pair.build`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.gears.contact import COAST, FlankPairs
+from gearcam.meshing.contact import contact_columns, contacts
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.columns import Columns
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.stages import PairStages
+
+POINTS: Final = ("x1_mm", "y1_mm", "x2_mm", "y2_mm")
+"""Points of the centrodes, which the file of the centrodes leaves out."""
+
+
+def centrode_columns(result: PairStages, phi1: Array) -> Columns:
+    """Return both centrodes of a `result` at driver angles `phi1`, rad."""
+    phi2, ratio = result.law.derivatives(phi1, 1)
+    one, two = (track.frames(phi1) for track in result.pair.rolling.tracks)
+    driven = {
+        "phi2_deg": np.degrees(phi2 - phi2[0]),
+        "ratio": ratio,
+        "r1_mm": np.abs(one.p),
+        "r2_mm": np.abs(two.p),
+    }
+    if result.pair.on_rack:
+        driven = {"travel_mm": two.p.imag, "r1_mm": np.abs(one.p)}
+    return Columns(
+        {
+            "phi1_deg": np.degrees(phi1),
+            **driven,
+            "s_mm": one.s - one.s[0],
+            "rho1_mm": _radii(one.kappa),
+            "rho2_mm": _radii(two.kappa),
+            **dict(zip(POINTS, (one.p.real, one.p.imag, two.p.real, two.p.imag), strict=True)),
+        }
+    )
+
+
+def _radii(curvature: Array) -> Array:
+    """Return radii of curvature, infinite where straight, which has no side."""
+    with np.errstate(divide="ignore"):
+        return np.where(curvature == 0.0, np.inf, 1.0 / curvature)
+
+
+def motion_columns(result: PairStages, phi1: Array) -> Columns:
+    """Return how the driven element of a `result` moves at driver angles `phi1`, rad."""
+    place, *slopes = result.law.derivatives(phi1, 3)
+    names = ("ratio", "acceleration_per_rad", "jerk_per_rad2")
+    first = {"phi2_deg": np.degrees(place)}
+    if result.pair.on_rack:
+        names = ("velocity_mm_per_rad", "acceleration_mm_per_rad2", "jerk_mm_per_rad3")
+        size = result.pair.center_distance
+        first, slopes = {"travel_mm": size * place}, [size * slope for slope in slopes]
+    columns = {"phi1_deg": np.degrees(phi1), **first, **dict(zip(names, slopes, strict=True))}
+    return Columns(columns)
+
+
+def contacts_at(result: PairStages, pairs: FlankPairs, phi1: Array) -> Columns:
+    """Return where the flanks `pairs` of a `result` touch at driver angles `phi1`, rad."""
+    found = contacts(pairs, phi1)
+    guide = result.pair.rolling.guide
+    moved = np.degrees(guide.nominal(phi1)) if guide.turns else guide.nominal(phi1)
+    return Columns(
+        {
+            "phi1_deg": np.degrees(phi1)[found.step],
+            "phi2_deg" if guide.turns else "travel_mm": moved[found.step],
+            "tooth1": pairs.tooth(1, found.pair),
+            "tooth2": pairs.tooth(2, found.pair),
+            "side": np.full(found.pair.shape, pairs.side),
+            "pairs": np.bincount(found.step, minlength=len(phi1))[found.step],
+            "x_mm": found.point.real,
+            "y_mm": found.point.imag,
+            "force_x": found.force.real,
+            "force_y": found.force.imag,
+            **contact_columns(found, pairs.distance),
+            f"lag_{guide.unit}": -found.lead,
+        }
+    )
+
+
+def contact_ratio_columns(sides: tuple[FlankPairs, ...]) -> Columns:
+    """Return the contact ratio of every pair of flanks of both `sides`, those that drive first."""
+    blocks = []
+    for pairs in sorted(sides, key=lambda pairs: pairs.side == COAST):
+        start, end = pairs.arcs
+        touching = start < end
+        blocks.append(
+            {
+                "tooth1": pairs.tooth(1, pairs.numbers),
+                "tooth2": pairs.tooth(2, pairs.numbers),
+                "side": np.full(pairs.numbers.shape, pairs.side),
+                "contact_ratio": pairs.contact_ratios,
+                "from_deg": np.degrees(np.where(touching, start, np.nan)),
+                "to_deg": np.degrees(np.where(touching, end, np.nan)),
+            }
+        )
+    return Columns({name: np.concatenate([one[name] for one in blocks]) for name in blocks[0]})

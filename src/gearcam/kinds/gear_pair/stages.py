@@ -1,0 +1,217 @@
+"""From the design of a gear pair to its law, centrodes, wheels, checks and parts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError, Way
+from gearcam.findings import Finding, in_order, run_checks
+from gearcam.gears.checks import KIND, Subject
+from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
+from gearcam.gears.spec import Finish
+from gearcam.gears.steps import leads, stepped
+from gearcam.gears.track import Wheel
+from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.laws.ratio.base import RatioLaw
+from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
+from gearcam.numeric.arrays import Array
+from gearcam.parts.blank import KIND as PARTS_KIND
+from gearcam.parts.blank import Blank
+from gearcam.result import Result
+
+if TYPE_CHECKING:
+    from gearcam.drawings import Drawing
+    from gearcam.parts.body import Part
+    from gearcam.parts.checks import PartsSubject
+
+_OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank")
+"""Checks that can find something else in each step of stepped wheels."""
+
+CENTRODE_POINTS = 720
+"""Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
+
+
+class PairStages(Result):
+    """The stages of a gear pair, computed on demand.
+
+    Parameters
+    ----------
+    design : GearPairDesign
+        What is asked for.
+    tolerances : Tolerances
+        Inner accuracy.
+    """
+
+    design: GearPairDesign
+    stages = MappingProxyType(
+        {
+            "law": "law",
+            "centrodes": "pair",
+            "gear 1": "gear1",
+            "gear 2": "gear2",
+            "checks": "findings",
+        }
+    )
+
+    @cached_property
+    def law(self) -> RatioLaw:
+        """The ratio law."""
+        with self.stage("law"):
+            return self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
+
+    @cached_property
+    def pair(self) -> GearPair:
+        """The centrodes with their cutters."""
+        law = self.law
+        with self.stage("centrodes"):
+            return make_pair(law, self.design.pair, self.design.rack, self.tolerances, self._finish)
+
+    @property
+    def _finish(self) -> tuple[Finish, Finish]:
+        """What is taken off the edges of both wheels' teeth."""
+        blanks = (self.design.blank.wheel(number) for number in (1, 2))
+        first, second = (
+            Finish(clearance=blank.clearance, tip_rounding=blank.tip_rounding) for blank in blanks
+        )
+        return first, second
+
+    @cached_property
+    def gear1(self) -> Gear:
+        """The driver."""
+        return self._gear(1, self.pair)
+
+    @cached_property
+    def gear2(self) -> Gear:
+        """The driven wheel."""
+        return self._gear(2, self.pair)
+
+    @cached_property
+    def steps(self) -> tuple[tuple[Gear, Gear], ...]:
+        """Both wheels of each step, from below; one step where the wheels are not stepped."""
+        pairs = [stepped(self.pair, moved) for moved in self.leads]
+        return self.gears, *((self._gear(1, pair), self._gear(2, pair)) for pair in pairs[1:])
+
+    @property
+    def leads(self) -> tuple[float, ...]:
+        """How far the teeth of each step are moved, mm along the pitch curves."""
+        return leads(self.pair, self.design.steps)
+
+    def _gear(self, wheel: Wheel, pair: GearPair) -> Gear:
+        with self.stage(f"gear{wheel}"):
+            tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
+            gear = make_gear(pair, wheel, tolerance, self.tolerances)
+            bore = self.bores[wheel - 1]
+            if bore is not None and 0.5 * bore >= gear.least_radius:
+                largest, key = 2.0 * gear.least_radius, f"blank.bore_diameter_mm[{wheel - 1}]"
+                raise InfeasibleError(
+                    "the bore reaches the root of the teeth",
+                    where=f"wheel {wheel}, {key}",
+                    value=bore,
+                    limit=largest,
+                    unit="mm",
+                    nearest="the limit holds for the circle around bore and keyway",
+                    ways=(
+                        Way(
+                            near={key: largest - bore + self.design.blank.wheel(wheel).bore},
+                            far={key: 0.1 * largest},
+                        ),
+                    ),
+                )
+            return gear
+
+    @property
+    def gears(self) -> tuple[Gear, Gear]:
+        """Both wheels, driver first."""
+        return self.gear1, self.gear2
+
+    @property
+    def bores(self) -> tuple[float | None, float | None]:
+        """Bore diameters, mm, of circles that hold their keyways; a rack has none."""
+        blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
+        first, second = (2.0 * blank.bore_reach for blank in blanks)
+        return first or None, None if self.pair.on_rack else second or None
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the checks found: errors first."""
+        found = [*self._gear_findings(self.subject)]
+        for number, gears in enumerate(self.steps[1:], start=2):
+            found += (
+                replace(finding, where=f"step {number}, {finding.where}")
+                for finding in self._gear_findings(self._subject(gears))
+                if finding.code in _OF_TEETH
+            )
+        if self.ordered:
+            subject = self.parts_subject
+            with self.stage("checks"):
+                found += run_checks(PARTS_KIND, subject, self.design.limits)
+        return in_order(found)
+
+    @cached_property
+    def subject(self) -> Subject:
+        """What the checks of teeth look at; of stepped wheels the lowest step."""
+        return self._subject(self.gears)
+
+    def _subject(self, gears: tuple[Gear, Gear]) -> Subject:
+        return Subject(pair=gears[0].pair, gears=gears, bores=self.bores)
+
+    def _gear_findings(self, subject: Subject) -> tuple[Finding, ...]:
+        with self.stage("checks"):
+            return run_checks(KIND, subject, self.design.limits)
+
+    @cached_property
+    def parts_subject(self) -> PartsSubject:
+        """What the checks of parts look at."""
+        from gearcam.kinds.gear_pair.ordered import parts_subject
+
+        return parts_subject(self.parts, self.gears, self.design.output.kerf)
+
+    @property
+    def ordered(self) -> bool:
+        """Whether the design orders parts: a blank, or files that are made from parts."""
+        return self.design.blank != Blank() or not set(self.design.output.files) <= {"csv"}
+
+    @cached_property
+    def parts(self) -> tuple[Part, Part]:
+        """Both wheels as parts: openings, hubs, marks, moved and rounded edges."""
+        from gearcam.kinds.gear_pair.ordered import make_parts
+
+        _ = self.steps  # timed for themselves
+        with self.stage("parts"):
+            return make_parts(self.steps, self.design)
+
+    @cached_property
+    def to_cut(self) -> tuple[Drawing, ...]:
+        """What a cutter follows: both wheels, step by step, as parts or as paths with the kerf."""
+        from gearcam.drawings import cut_drawing, wheel_drawing
+
+        return tuple(
+            cut_drawing(wheel_drawing(part, step), self.design.output.kerf)
+            for part in self.parts
+            for step in range(len(part.contours))
+        )
+
+    def centrode_angles(self, count: int | None = None) -> Array:
+        """Return driver angles, rad, until both wheels close, or over the travel, both ends.
+
+        Parameters
+        ----------
+        count : int, optional
+            How many; one each half degree of a closed pair where left out.
+        """
+        lobes, turns = self.law.lobes, 1
+        if self.pair.on_rack:
+            end = float(self.pair.rolling.arc.angle(np.array(self.gear2.toothing.length)))
+        elif not lobes.closed:
+            end = lobes.period
+        else:
+            whole_turns = math.lcm(lobes.n1, lobes.n2)
+            turns = max(1, round(whole_turns / lobes.n1))
+            end = whole_turns * lobes.period
+        return np.linspace(0.0, end, CENTRODE_POINTS * turns + 1 if count is None else count)

@@ -1,0 +1,228 @@
+"""Pictures and tables as text: SVG and HTML.
+
+The paper of a picture: millimetres in the view box, y downwards, strokes scaled to the picture,
+white ground, a caption below. What is drawn on it comes from elsewhere: drawings from
+`gearcam.export.svg`, plain outlines from `outlines`.
+
+Depends on numerals.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+from xml.sax.saxutils import escape
+
+from gearcam.numerals import decimal
+
+if TYPE_CHECKING:
+    from gearcam.facts import Facts, NamedFact
+
+PIXELS: Final = 960
+"""Width of a picture where the page does not say otherwise."""
+
+SHOWN: Final = 560
+"""Greatest height of a picture above a table, pixels."""
+
+MARGIN: Final = 0.04
+"""Margin, part of the drawing's width."""
+
+FILLS: Final = ("#cfe0f2", "#f8e0c6")
+INKS: Final = ("#27598c", "#a35f22")
+"""Soft fill and dark stroke of wheel 1 and wheel 2."""
+
+CENTRODE_INK: Final = "#5a5a5a"
+TEXT_INK: Final = "#222222"
+GROUND: Final = "#ffffff"
+
+GLYPH: Final = 0.6
+"""Width of a letter, part of the font's size, on the safe side."""
+
+_number: Final = partial(decimal, decimals=4)
+
+Corners = tuple[Sequence[float], Sequence[float]]
+"""Lower left and upper right corner, mm."""
+
+
+def svg_document(attributes: str, title: str, elements: Iterable[str]) -> bytes:
+    """Return an SVG file, UTF-8: `attributes` of its root, a `title`, and `elements` as lines."""
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>',
+        f"<title>{escape(title)}</title>",
+        *elements,
+        "</svg>",
+    ]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def picture(
+    lines: Sequence[str], corners: Corners, elements: Callable[[float], Iterable[str]]
+) -> str:
+    """Return a picture with its caption.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Of the caption; the first, in bold, is the title.
+    corners : (low, high)
+        Of what is drawn, mm, y upwards.
+    elements : callable
+        ``elements(pixel)`` returns what is drawn; `pixel` is the width of one, mm.
+
+    Returns
+    -------
+    str
+        SVG.
+    """
+    low, high = corners
+    width = float(high[0] - low[0])
+    margin, pixel = MARGIN * width, width / PIXELS
+    size = min(20 * pixel, width / (GLYPH * max([1, *map(len, lines)])))
+    caption = size * 1.4 * len(lines)
+    left, top = float(low[0]) - margin, -float(high[1]) - margin
+    whole = width + 2 * margin
+    tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
+    view = " ".join(_number(value) for value in (left, top, whole, tall))
+    base = -float(low[1]) + margin + size
+    ground = f'x="{_number(left)}" y="{_number(top)}"'
+    ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="{GROUND}"'
+    sheet = f'viewBox="{view}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
+    drawn = [
+        f"<rect {ground}/>",
+        f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
+        *elements(pixel),
+        "</g>",
+        *_caption(lines, float(low[0]), base, size),
+    ]
+    return svg_document(f'{sheet} role="img"', lines[0], drawn).decode()
+
+
+def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
+    made = []
+    for row, line in enumerate(lines):
+        place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * row)}"'
+        font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
+        weight = ' font-weight="bold"' if row == 0 else ""
+        made.append(f"<text {place} {font}{weight}>{escape(line)}</text>")
+    return made
+
+
+def outlines(
+    lines: Sequence[str],
+    closed: Sequence[Any],
+    dashed: Sequence[Any] = (),
+    *,
+    wheel: int = 1,
+    axis: bool = True,
+) -> str:
+    """Return a picture of the area inside outlines.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Of the caption; the first, in bold, is the title.
+    closed : sequence of (n, 2) array, mm
+        The outline, and openings in it.
+    dashed : sequence of (n, 2) array, mm
+        Curves that are drawn dashed, open.
+    wheel : {1, 2}
+        Whose colours it has.
+    axis : bool
+        Whether the origin is its axis, and drawn as a cross.
+
+    Returns
+    -------
+    str
+        SVG.
+    """
+    points = [point for chain in (*closed, *dashed) for point in chain.tolist()]
+    x, y = zip(*points, *[(0.0, 0.0)] * axis, strict=True)
+    low, high = (min(x), min(y)), (max(x), max(y))
+    ink, fill = INKS[wheel - 1], FILLS[wheel - 1]
+
+    def elements(pixel: float) -> Iterable[str]:
+        area = "".join(f"M{_steps(chain)}Z" for chain in closed)
+        yield f'<path fill="{fill}" fill-rule="evenodd" stroke="{ink}" d="{area}"/>'
+        line = f'fill="none" stroke="{CENTRODE_INK}"'
+        dash = f'stroke-dasharray="{_number(7 * pixel)} {_number(4 * pixel)}"'
+        yield from (f'<path {line} {dash} d="M{_steps(chain)}"/>' for chain in dashed)
+        if axis:
+            arm = _number(12 * pixel)
+            cross = f"M-{arm} 0 {arm} 0M0 -{arm} 0 {arm}"
+            yield f'<path fill="none" stroke="{TEXT_INK}" d="{cross}"/>'
+
+    return picture(lines, (low, high), elements)
+
+
+def _steps(chain: Any) -> str:
+    return " ".join(f"{_number(x)} {_number(-y)}" for x, y in chain.tolist())
+
+
+def page(drawn: str, facts: Facts, remarks: Sequence[str] = ()) -> str:
+    """Return a picture, SVG, and facts as HTML: those that are always shown, or all of few.
+
+    Parameters
+    ----------
+    drawn : str
+        May be empty.
+    facts : Facts
+        What is known.
+    remarks : sequence of str
+        What stands below as a list.
+
+    Returns
+    -------
+    str
+        The rest of the facts is folded below.
+    """
+    first, every = list(facts.shown()), list(facts.quantities())
+    parts = [_image(drawn)] if drawn else []
+    if facts.headline:
+        parts.append(f"<p><b>{escape(', '.join(facts.headline))}</b></p>")
+    parts.append(_table(first or every))
+    if remarks:
+        parts.append(f"<ul>{''.join(f'<li>{escape(one)}</li>' for one in remarks)}</ul>")
+    if first and len(every) > len(first):
+        more = f"<summary>all {len(every)} facts, by name</summary>{_table(every, named=True)}"
+        parts.append(f"<details>{more}</details>")
+    return f"<div>{''.join(parts)}</div>"
+
+
+def refusal(title: str, error: Exception) -> str:
+    """Return as HTML that what is called `title` cannot be made, and why: the `error`."""
+    why = escape(str(error).replace("; ", "\n"))
+    return f"<div><p><b>{escape(title)} cannot be made</b></p><pre>{why}</pre></div>"
+
+
+def refusal_picture(title: str, error: Exception) -> str:
+    """Return the same as a picture (see `refusal`)."""
+    lines = [f"{title} cannot be made", *str(error).replace("; ", "\n").splitlines()]
+    return picture(lines, ((0.0, 0.0), (PIXELS, 0.0)), lambda _: ())
+
+
+def _image(drawn: str) -> str:
+    """Return a picture as an image, which no style or name of the page gets into."""
+    data = base64.b64encode(drawn.encode()).decode()
+    style = f"max-width:100%;max-height:{SHOWN}px"
+    return f'<img alt="" style="{style}" src="data:image/svg+xml;base64,{data}"/>'
+
+
+def _table(rows: Sequence[NamedFact], *, named: bool = False) -> str:
+    cells = [
+        (one.name if named else one.meaning, one.text, one.limit, one.place)
+        for one in rows
+        if one.text
+    ]
+    used = [any(column) for column in zip(*cells, strict=True)]
+    lines = (
+        "".join(
+            f'<td style="text-align:left">{escape(cell)}</td>'
+            for cell, there in zip(row, used, strict=True)
+            if there
+        )
+        for row in cells
+    )
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"

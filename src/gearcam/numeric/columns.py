@@ -1,0 +1,55 @@
+"""Columns: tables of results, as data frames take them.
+
+A table is a dictionary of arrays of one length whose names end in their units. It is the same
+table that a CSV file of it holds, as whole columns of numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gearcam.display import line
+from gearcam.numeric.arrays import Array
+
+
+class Columns(dict[str, NDArray[Any]]):
+    """Arrays (n,) by name; ``pandas.DataFrame(columns)`` and ``polars.DataFrame(columns)`` work.
+
+    A name ends in its unit, as the keys of design files do (``x_mm``, ``phi1_deg``); without one
+    it is a plain number. What does not exist in a row is not-a-number there.
+
+    Parameters
+    ----------
+    columns : mapping of str to (n,) array
+        In order; whole numbers stay whole, what masked arrays mask becomes not-a-number.
+    """
+
+    def __init__(self, columns: Mapping[str, ArrayLike]) -> None:
+        super().__init__({name: _plain(values) for name, values in columns.items()})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (dict(self),)
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self.values()), ()))
+        return line(type(self).__name__, [f"{rows} rows", *self])
+
+    @property
+    def points(self) -> Array:
+        """The columns x_mm and y_mm side by side, (n, 2), mm, in the frame of the table."""
+        return np.column_stack([self["x_mm"], self["y_mm"]])
+
+    @property
+    def normals(self) -> Array:
+        """The columns nx and ny side by side, (n, 2): unit normals, in the frame of the table."""
+        return np.column_stack([self["nx"], self["ny"]])
+
+
+def _plain(values: ArrayLike) -> NDArray[Any]:
+    if np.any(getattr(values, "mask", False)):
+        return np.where(values.mask, np.nan, values.data)  # pyright: ignore
+    return np.asarray(values)

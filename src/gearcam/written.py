@@ -1,0 +1,90 @@
+"""What a command has written, and what may be."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from gearcam.designs.design import Design
+from gearcam.designs.kind import KINDS
+from gearcam.display import Brief
+from gearcam.errors import DesignError, Problem
+from gearcam.facts import Facts
+from gearcam.findings import Finding
+from gearcam.version import __version__
+
+
+@dataclass(frozen=True, kw_only=True)
+class Written(Brief):
+    """What a command has written.
+
+    Parameters
+    ----------
+    directory : Path
+        The folder.
+    files : tuple of str
+        The files written, in order.
+    removed : tuple of str
+        Files of the previous build that this one does not write.
+    summary : dict
+        The content of ``summary.json``.
+    facts : Facts
+        What the summary is told from.
+    findings : tuple of Finding
+        What the checks found.
+    complete : bool
+        Whether nothing was interrupted.
+    """
+
+    directory: Path
+    files: tuple[str, ...]
+    removed: tuple[str, ...]
+    summary: dict[str, Any]
+    facts: Facts
+    findings: tuple[Finding, ...]
+    complete: bool = True
+
+
+def demand_formats(design: Design, kinds: Sequence[str]) -> None:
+    """Refuse kinds of files that designs of this kind do not have.
+
+    Parameters
+    ----------
+    design : Design
+        Of any kind.
+    kinds : sequence of str
+        Kinds of files that are wanted.
+
+    Raises
+    ------
+    DesignError
+        With those that there are.
+    """
+    known = KINDS[design.kind].formats
+    problems = [
+        Problem(
+            f"{kind} is no file of designs of kind {design.kind}",
+            file=design.source,
+            key="output.files",
+            value=kind,
+            allowed=", ".join(known),
+        )
+        for kind in kinds
+        if kind not in known
+    ]
+    if problems:
+        raise DesignError(problems)
+
+
+def versions() -> dict[str, str]:
+    """Return versions of what made the numbers: the program, Python, libraries loaded so far."""
+    found = {"gearcam": __version__, "python": platform.python_version()}
+    for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
+        module = sys.modules.get(name)
+        if module is not None and hasattr(module, "__version__"):
+            found[name] = str(module.__version__)
+    return found
