@@ -1,4 +1,4 @@
-"""Random cams: every rise, every follower, segments, both directions of turning, blanks.
+"""Random cams: every rise, every follower, segments, whole turns, both directions, blanks.
 
 Lifts and sizes are drawn in radii of the cam, so that the radius may be anything.
 """
@@ -117,6 +117,24 @@ def _program(d: Draw, law: str, lift: float, unit: str) -> list[dict[str, Any]]:
     return phases
 
 
+def _turn(d: Draw, lift: float, unit: str) -> dict[str, Any]:
+    """Return a motion of the whole turn: a power of half a wave, by rows or by a formula."""
+    power = d.whole(1, 3)
+    if d.chance(0.3):
+        height = math.radians(lift) if unit == "deg" else lift
+        return {"lift": f"{height!r}*((1 - cos(theta))/2)**{power}"}
+    count = d.whole(12, 72)
+    theta = [short(360 * k / count) for k in range(count)]
+    waves = [(0.5 - 0.5 * math.cos(math.radians(angle))) ** power for angle in theta]
+    motion: dict[str, Any] = {
+        "theta_deg": theta,
+        f"lift_{unit}": [short(lift * wave) for wave in waves],
+    }
+    if d.chance(0.4):
+        motion[f"smoothing_tolerance_{unit}"] = short(lift * d.log(1e-5, 1e-2))
+    return motion
+
+
 def _segment(d: Draw, to: float, unit: str) -> dict[str, Any]:
     segment = {"type": "segment", f"to_{unit}": to}
     if d.chance(0.5):
@@ -184,4 +202,9 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         output["theta_deg"] = d.even(-400, 400)
     if kind in ("flat", "knife-edge", "point") or d.chance(0.3):
         output["tool_radius_mm"] = short(size * d.log(0.02, 0.3))
+    unit = "deg" if swings else "mm"
+    if d.chance(0.1):
+        design["motion"] = _turn(d, lift, unit)
+    elif d.chance(0.1):
+        d.pick(phases)["angle_deg"] = "rest"
     return design | {"output": output}

@@ -171,15 +171,21 @@ def _limits(d: Draw, document: dict[str, Any]) -> dict[str, Any]:
     return limits
 
 
+_COLUMNS: Final = (
+    *("phi1_deg", "ratio", "phi2_deg", "r1", "x", "y"), "theta_deg", "lift_mm", "lift_deg"
+)  # fmt: skip
+"""Keys that may be columns of a file."""
+
+
 def _tables_as_files(d: Draw, document: dict[str, Any], name: str) -> dict[str, str]:
     """Put the columns of a table into a file of their own, in half of the designs that have one."""
     files = {}
     tables = [document[title] for title in ("law", "motion") if title in document]
     rows = [row for table in tables for row in (table if isinstance(table, list) else [table])]
     for number, table in enumerate(rows):
-        columns = [key for key in ("phi1_deg", "ratio", "phi2_deg", "r1", "x", "y") if key in table]
+        columns = [key for key in _COLUMNS if isinstance(table.get(key), list)]
         given = [table[key] for key in columns]
-        is_table = "table" in (table["type"], table.get("law"))
+        is_table = "table" in (table.get("type"), table.get("law")) or "theta_deg" in columns
         if is_table and d.chance(0.5):
             file = f"{name}-{number}.csv"
             table |= {"file": file}

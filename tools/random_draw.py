@@ -82,6 +82,8 @@ def places(document: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str, M
     """
     for title, node in known_keys(schema(), document).items():
         tables = document.get(title)
+        if isinstance(tables, dict) and "items" in node:
+            continue  # one table in place of a list is another thing
         for table in tables if isinstance(tables, list) else [tables]:
             if isinstance(table, dict):
                 inner = node.get("items", node)

@@ -57,7 +57,13 @@ def test_every_law_and_rise_and_follower_is_drawn() -> None:
     assert {law["type"] for law in laws} == choices("gear-pair", "law", "type")
     opened = {law["type"] for law in laws if "driven_travel_deg" in law}
     assert opened >= {"phases", "multispeed", "log-spiral", "formula", "table", "motion"}
-    moves = [phase for one in cams for phase in one["motion"]]
+    motions = [one["motion"] for one in cams]
+    moves = [phase for motion in motions if isinstance(motion, list) for phase in motion]
+    turns = [key for motion in motions if isinstance(motion, dict) for key in motion]
+    assert {key.rpartition("_")[0] or key for key in turns} == {
+        *("file", "theta", "lift", "smoothing_tolerance")
+    }
+    assert "rest" in {phase["angle_deg"] for phase in moves}
     assert {phase["type"] for phase in moves} == choices("cam", "motion", "type")
     for kind in ("rise", "return"):
         drawn = {phase["law"] for phase in moves if phase["type"] == kind}

@@ -201,7 +201,7 @@ def test_the_made_profile_gives_back_the_rows(tmp_path: Path) -> None:
     assert 0.0059 < abs(told) <= 0.006
     written = result.write(tmp_path, files=["csv", "dxf"])
     for name in ("profile.csv", "cam.dxf"):
-        found = result.follow(written.directory / name, tmp_path)
+        found = result.follow(written.directory / name).write(tmp_path)
         followed = columns((found.directory / "followed.csv").read_bytes())
         # 1 um along the normal is less than 1.04 um of lift at 15.1 deg of pressure angle
         assert np.abs(followed["s"][:360] - measured["lift_mm"]).max() < 0.006 + 0.00104

@@ -44,8 +44,9 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
     made |= {_ROWS: _rows_schema(), _FORMULA: _formula_schema()}
     main = {
         "description": "the lift over a turn of the cam, phase by phase, by rows or by a formula",
+        "minItems": 1,
+        "items": {"type": "object", **phases},
         "if": {"type": "array"},
-        "then": {"minItems": 1, "items": {"type": "object", **phases}},
         "else": {
             "if": {"required": ["lift"]},
             "then": {"$ref": f"#/$defs/{_FORMULA}"},
