@@ -49,7 +49,7 @@ def accuracy(
         Of facts, with ``how`` for each.
     """
     rows = {**rows, "chord_mm": (chord, CHORD_HOW)}
-    made: dict[str, Any] = {name: value for name, (value, _) in rows.items()}
+    made: dict[str, Any] = {name: float(value) for name, (value, _) in rows.items()}
     how = {name: words for name, (_, words) in rows.items()}
     dxf = measured.get("dxf")
     if dxf is not None:
