@@ -286,7 +286,11 @@ class Wall(PitchMotion):
             chord_error=error,
         )
 
-    def places(self, theta: Array) -> tuple[Array, Plane, Plane]:
+    def places(self, count: int) -> tuple[Array, Plane, Plane]:
+        """Return points of the profile at `count` even cam angles of a turn (see `places_at`)."""
+        return self.places_at(2.0 * math.pi * np.arange(count) / count)
+
+    def places_at(self, theta: Array) -> tuple[Array, Plane, Plane]:
         """Return points of the profile at cam angles, where they are left by trimming.
 
         Parameters

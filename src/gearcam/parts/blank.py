@@ -171,12 +171,13 @@ _BothWheels: Any = make_dataclass(
         _both(one.name, get_type_hints(WheelBlank)[one.name], one.default)
         for one in fields(WheelBlank)
     ],
+    bases=(Brief,),
     frozen=True,
     kw_only=True,
 )
 
 
-class Blank(Brief, _BothWheels):
+class Blank(_BothWheels):
     """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first."""
 
     def wheel(self, number: int) -> WheelBlank:

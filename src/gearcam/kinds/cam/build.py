@@ -184,7 +184,7 @@ class CamResult(Result):
             If the cam cannot be made.
         """
         asked = self.angles if theta is None else angles("theta", theta)
-        left, points, normals = self.cam.places(asked)
+        left, points, normals = self.cam.places_at(asked)
         fixed = points * np.exp((-1j if self.design.cam.clockwise else 1j) * left)
         return Columns(
             {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -158,8 +157,7 @@ def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
 def _inspection(result: CamResult, _: Measured) -> Files:
     from gearcam.export.table import table_bytes
 
-    count = result.design.output.inspection_points
-    theta, points, normals = result.cam.places(2.0 * math.pi * np.arange(count) / count)
+    theta, points, normals = result.cam.places(result.design.output.inspection_points)
     clearance = result.design.blank.clearance
     if clearance:
         from gearcam.parts.parallel import touches
