@@ -19,6 +19,7 @@ from gearcam.version import __version__
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
+    from typing import ClassVar, Protocol, TypeVar
 
     from gearcam import laws
     from gearcam.advice import Remedies
@@ -30,14 +31,28 @@ if TYPE_CHECKING:
         MissingExtraError,
         WriteError,
     )
+    from gearcam.facts import Facts
     from gearcam.findings import Finding
+    from gearcam.kinds import *  # noqa: F403
     from gearcam.laws import rises
+    from gearcam.numeric.columns import Columns
     from gearcam.result import Result
+    from gearcam.study import Study
     from gearcam.tolerances import Tolerances
 
+    _R = TypeVar("_R", covariant=True)
+
+    class _Buildable(Protocol[_R]):
+        kind: ClassVar[str]
+
+        @property
+        def _built(self) -> _R: ...
+
+
 __all__ = [
-    "DesignError", "Finding", "GearcamError", "InfeasibleError", "MissingExtraError", "Tolerances",
-    "WriteError", "__version__", "build", "design", "laws", "load", "loads", "remedies", "rises",
+    "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
+    "MissingExtraError", "Result", "Study", "Tolerances", "WriteError", "__version__", "build",
+    "design", "laws", "load", "loads", "remedies", "rises",
 ]  # fmt: skip
 
 _HOMES = {
@@ -45,7 +60,12 @@ _HOMES = {
         ("DesignError", "GearcamError", "InfeasibleError", "MissingExtraError", "WriteError"),
         "gearcam.errors",
     ),
+    "Columns": "gearcam.numeric.columns",
+    "Design": "gearcam.designs",
+    "Facts": "gearcam.facts",
     "Finding": "gearcam.findings",
+    "Result": "gearcam.result",
+    "Study": "gearcam.study",
     "Tolerances": "gearcam.tolerances",
     "laws": "gearcam.laws",
     "rises": "gearcam.laws.rises",
@@ -53,7 +73,7 @@ _HOMES = {
 """Modules of names that are brought in when they are asked for; those of kinds are found."""
 
 
-def __getattr__(name: str) -> Any:
+def _brought(name: str) -> Any:
     """Return what is brought in when it is asked for: classes of designs, laws, errors."""
     from importlib import import_module
 
@@ -66,6 +86,10 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"gearcam has no {name}; dir(gearcam) tells of all")
 
 
+if not TYPE_CHECKING:  # type checkers know the names, and find misspelt ones
+    __getattr__ = _brought
+
+
 def __dir__() -> list[str]:
     return sorted({*__all__, *_of_kinds()})
 
@@ -73,7 +97,8 @@ def __dir__() -> list[str]:
 def _of_kinds() -> dict[str, type]:
     from gearcam.designs.kind import KINDS
 
-    return {one.__name__: one for kind in KINDS.values() for one in kind.room("public").PUBLIC}
+    rooms = [kind.room("public") for kind in KINDS.values()]
+    return {name: getattr(room, name) for room in rooms for name in room.__all__}
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -145,7 +170,7 @@ def design(document: Mapping[str, Any]) -> Design:
     return made(document)
 
 
-def build(design: Design) -> Any:
+def build(design: _Buildable[_R]) -> _R:
     """Return the result of a design; nothing is computed until it is asked for.
 
     Parameters

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
-from typing import Any, Final, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 
 from gearcam.display import Brief
 from gearcam.numerals import shown
@@ -165,15 +165,25 @@ def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:
     return name, hint, field(default=default, metadata={"param": made})
 
 
-_BothWheels: Any = make_dataclass(
-    "_BothWheels",
-    [
-        _both(one.name, get_type_hints(WheelBlank)[one.name], one.default)
-        for one in fields(WheelBlank)
-    ],
-    frozen=True,
-    kw_only=True,
-)
+if TYPE_CHECKING:
+
+    class _BothWheels:
+        __dataclass_fields__: ClassVar[dict[str, Any]]
+
+        def __init__(self, **sizes: tuple[float | None, float | None] | float | None) -> None: ...
+
+        def __getattr__(self, name: str) -> Any: ...
+
+else:
+    _BothWheels = make_dataclass(
+        "_BothWheels",
+        [
+            _both(one.name, get_type_hints(WheelBlank)[one.name], one.default)
+            for one in fields(WheelBlank)
+        ],
+        frozen=True,
+        kw_only=True,
+    )
 
 
 class Blank(Brief, _BothWheels):

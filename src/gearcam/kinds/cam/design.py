@@ -27,6 +27,7 @@ from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 from gearcam.registry import classes_in, name_of
 
 if TYPE_CHECKING:
+    from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.motion import Motion
 
 NAME: Final = "cam"
@@ -106,6 +107,11 @@ class CamDesign(Design):
     """
 
     kind = NAME
+
+    if TYPE_CHECKING:
+
+        @property
+        def _built(self) -> CamResult: ...
 
     motion: Motion
     follower: FollowerSpec

@@ -241,7 +241,7 @@ def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | di
             table |= {"law": law}
         known = phase_table(name).of_lifts(oscillating=oscillating)
         table |= known.document(phase)
-        if law:
+        if isinstance(phase, RisePhase) and law:
             table |= rise_table(law).document(phase.law)
         tables.append(table)
     return tables

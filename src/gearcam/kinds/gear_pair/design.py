@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Final, TypeGuard
+from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
@@ -24,6 +24,9 @@ from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 from gearcam.quantities import COUNT, param
 from gearcam.registry import classes_in, name_of
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.build import GearPairResult
 
 NAME: Final = "gear-pair"
 """As in a file."""
@@ -71,6 +74,11 @@ class GearPairDesign(Design):
     """
 
     kind = NAME
+
+    if TYPE_CHECKING:
+
+        @property
+        def _built(self) -> GearPairResult: ...
 
     law: Any
     pair: PairSpec
