@@ -19,7 +19,7 @@ from gearcam.version import __version__
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
-    from typing import ClassVar, Protocol, TypeVar
+    from typing import Protocol, TypeVar
 
     from gearcam import laws
     from gearcam.advice import Remedies
@@ -43,7 +43,8 @@ if TYPE_CHECKING:
     _R = TypeVar("_R", covariant=True)
 
     class _Buildable(Protocol[_R]):
-        kind: ClassVar[str]
+        @property
+        def kind(self) -> str: ...
 
         @property
         def _built(self) -> _R: ...

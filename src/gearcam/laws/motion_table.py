@@ -22,7 +22,7 @@ from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import program_of_rows
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
-from gearcam.quantities import ANGLE, LENGTH, TEXT, Param, param
+from gearcam.quantities import ANGLE, LENGTH, TEXT, Param, Row, param
 from gearcam.tolerances import Tolerances
 
 Problem = tuple[str, int | None, str, str]
@@ -58,10 +58,10 @@ class MotionTable(FromFile):
     file: str | None = param(
         TEXT, default=None, doc="CSV file with the columns theta_deg and lift_mm or lift_deg"
     )
-    theta: tuple[float, ...] | None = param(
+    theta: Row | None = param(
         ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="cam angles, without a file"
     )
-    lift: tuple[float, ...] | None = param(
+    lift: Row | None = param(
         LENGTH,
         default=None,
         ge=-_LONGEST,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
@@ -62,7 +63,7 @@ class CamResult(Result):
         """The lift over a turn."""
         with self.stage("program"):
             motion, swings = self.design.motion, self.design.follower.oscillating
-            make = partial(make_program, motion) if isinstance(motion, tuple) else motion.program
+            make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
             return make(self.tolerances, oscillating=swings)
 
     @cached_property

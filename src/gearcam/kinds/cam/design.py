@@ -94,7 +94,7 @@ class CamDesign(Design):
 
     Parameters
     ----------
-    motion : tuple of Phase, MotionTable or MotionFormula
+    motion : sequence of Phase, MotionTable or MotionFormula
         The lift over a turn of the cam.
     follower : FollowerSpec
         What touches the cam, and how it is guided.
@@ -126,7 +126,7 @@ class CamDesign(Design):
             object.__setattr__(self, "blank", _unmarked(self.blank, self.source))
 
     def _wanted(self) -> Iterator[Wanted]:
-        if not isinstance(self.motion, tuple):
+        if not isinstance(self.motion, Sequence):
             yield "motion", self.motion, whole_turns()
             return
         for number, phase in enumerate(self.motion):
