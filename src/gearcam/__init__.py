@@ -44,9 +44,6 @@ if TYPE_CHECKING:
 
     class _Buildable(Protocol[_R]):
         @property
-        def kind(self) -> str: ...
-
-        @property
         def _built(self) -> _R: ...
 
 
@@ -119,6 +116,12 @@ def load(path: str | os.PathLike[str]) -> Design:
     ------
     DesignError
         With every problem of the file at once.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.load("profiles/ellipse.toml").name
+    'ellipse'
     """
     from gearcam.designs import load as read
 
@@ -142,6 +145,13 @@ def loads(text: str) -> Design:
     ------
     DesignError
         With every problem of the text at once, each with its line.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> from pathlib import Path
+    >>> gc.loads(Path("profiles/ellipse.toml").read_text()).name
+    'ellipse'
     """
     from gearcam.designs import loads as read
 
@@ -165,29 +175,57 @@ def design(document: Mapping[str, Any]) -> Design:
     ------
     DesignError
         With every problem at once, each with its key.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> document = gc.load("profiles/ellipse.toml").to_dict()
+    >>> document["law"]["eccentricity"] = 0.2
+    >>> gc.design(document).name
+    'ellipse'
     """
     from gearcam.designs import design as made
 
     return made(document)
 
 
-def build(design: _Buildable[_R]) -> _R:
+def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
     """Return the result of a design; nothing is computed until it is asked for.
 
     Parameters
     ----------
     design : Design
         What is asked for.
+    tolerances : Tolerances, optional
+        Inner accuracy.
 
     Returns
     -------
     Result
         Of the design's kind: its attributes compute what they name and raise `InfeasibleError` for
         what cannot be made.
-    """
-    from gearcam.designs.kind import KINDS
 
-    return KINDS[design.kind].room("build").build(design)
+    Raises
+    ------
+    DesignError
+        If it is no design.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+    >>> round(result.contact_ratio, 3)
+    1.705
+    """
+    from gearcam.designs import KINDS, Design
+
+    if not isinstance(design, Design):
+        from gearcam.errors import DesignError, Problem
+
+        told = f"is a {type(design).__name__}"
+        raise DesignError([Problem(told, key="design", allowed="a design, as load returns it")])
+    given = () if tolerances is None else (tolerances,)
+    return KINDS[design.kind].room("build").build(design, *given)
 
 
 def remedies(
@@ -208,6 +246,14 @@ def remedies(
     -------
     Remedies
         Each was built: nothing is refused, what was an error is gone, and no other has come.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml").with_({"blank.bore_diameter_mm": 60})
+    >>> found = gc.remedies(gc.build(design), patience=60.0).found
+    >>> [list(one.changes) for one in found]
+    [['blank.bore_diameter_mm']]
     """
     from gearcam.advice import remedies as search
 

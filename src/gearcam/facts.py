@@ -127,6 +127,15 @@ class Facts(Mapping[str, Any]):
         Names of the few quantities that stand first, on one line.
     title : str
         What the machine is, before them.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> facts = gc.build(gc.load("profiles/ellipse.toml")).facts
+    >>> round(facts["pair.center_distance_mm"], 4)
+    41.9607
+    >>> facts["pair.teeth"]
+    [41, 41]
     """
 
     def __init__(

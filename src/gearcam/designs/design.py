@@ -53,6 +53,15 @@ class Design:
     ------
     DesignError
         If a value is not what a design file may hold, all problems at once.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml")
+    >>> isinstance(design, gc.Design), design.name
+    (True, 'ellipse')
+    >>> design.with_({"law.eccentricity": 0.2}) == design
+    False
     """
 
     kind: ClassVar[str]

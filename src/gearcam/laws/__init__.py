@@ -4,6 +4,12 @@ The registries `gearcam.laws.ratio.base.LAWS` and `gearcam.laws.rises.base.RISES
 it is asked for. Depends on numpy alone.
 
 The parameters of ratio laws are attributes: ``gearcam.laws.Ellipse(eccentricity=0.3)``.
+
+Examples
+--------
+>>> import gearcam as gc
+>>> gc.laws.Ellipse(eccentricity=0.3)
+Ellipse(eccentricity=0.3, lobes=None)
 """
 
 from __future__ import annotations

@@ -53,6 +53,14 @@ class MotionTable(FromFile):
 
     Lifts and their tolerance are in mm, or in rad where the follower oscillates. The last row may
     repeat the first one, a turn on, or be left out.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> import numpy as np
+    >>> theta = np.radians(np.arange(0.0, 360.0, 10.0))
+    >>> gc.MotionTable(theta=theta, lift=5.0 - 5.0 * np.cos(theta), smoothing_tolerance=0.01)
+    MotionTable(theta=array(36,), lift=array(36,), smoothing_tolerance=0.01)
     """
 
     file: str | None = param(

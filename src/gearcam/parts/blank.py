@@ -50,7 +50,15 @@ def _count(*, doc: str, le: int) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class WheelBlank(Brief):
-    """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none."""
+    """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> blank = gc.WheelBlank(bore_diameter=16.0, keyway_width=5.0, keyway_depth=2.3)
+    >>> round(blank.bore_reach, 3)
+    10.599
+    """
 
     bore_diameter: float | None = param(
         LENGTH, default=None, ge=0, le=1e6, doc="bores; none if left out"
@@ -187,7 +195,15 @@ else:
 
 
 class Blank(Brief, _BothWheels):
-    """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first."""
+    """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> blank = gc.Blank(bore_diameter=(10.0, 12.0), tip_rounding=(0.1, 0.1))
+    >>> blank.wheel(2).bore_diameter
+    12.0
+    """
 
     def wheel(self, number: int) -> WheelBlank:
         """Return what is wanted of one wheel: `number` 1 is the driver."""

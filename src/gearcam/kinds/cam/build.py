@@ -51,6 +51,14 @@ class CamResult(Result):
         What is asked for.
     tolerances : Tolerances
         Inner accuracy.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/eccentric_cam.toml"))
+    >>> x, y = result.cam.outline.T  # mm, a circle of 31 mm
+    >>> round(float(x.max() - x.min()), 2)
+    62.0
     """
 
     design: CamDesign

@@ -62,6 +62,12 @@ class CamOutputSpec(OutputSpec):
     ----------
     pose : float, rad
         Cam angle of the assembled cam.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CamOutputSpec(files=("dxf", "tool-path"), tool_radius=4.0)
+    CamOutputSpec(files=('dxf', 'tool-path'), tool_radius=4)
     """
 
     files: tuple[str, ...] = files_param(CAM_FORMATS)
@@ -104,6 +110,14 @@ class CamDesign(Design):
         Bore, hub, holes, density; a cam has no timing marks.
     output : CamOutputSpec
         Files and their tolerance.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> motion = gc.MotionFormula(lift="5*(1 - cos(theta))")
+    >>> follower, size = gc.FollowerSpec(type="flat"), gc.CamSpec(base_radius=20.0)
+    >>> gc.CamDesign(name="mine", motion=motion, follower=follower, cam=size)
+    <CamDesign "mine">
     """
 
     kind = NAME

@@ -43,6 +43,12 @@ class PairOutputSpec(OutputSpec):
     ----------
     pose : float, rad
         Driver angle of the assembled pair.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.PairOutputSpec(files=("dxf", "csv"), chord_tolerance=0.005)
+    PairOutputSpec(files=('dxf', 'csv'), chord_tolerance=0.005)
     """
 
     pose: float = pose_param("phi1", "driver angle at which the assembled pair is drawn")
@@ -71,6 +77,13 @@ class GearPairDesign(Design):
         Files and their tolerance.
     meshing : MeshingSpec
         Phases and mounting of a meshing study.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> pair = gc.PairSpec(teeth=(20, 20), module=2.0)
+    >>> gc.GearPairDesign(name="mine", law=gc.laws.Ellipse(eccentricity=0.3), pair=pair)
+    <GearPairDesign "mine">
     """
 
     kind = NAME

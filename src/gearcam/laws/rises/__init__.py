@@ -1,6 +1,12 @@
 """Rises: S over phi on the unit square, each in the registry `rises.base.RISES`.
 
 Their parameters are attributes: ``gearcam.rises.Cycloidal()``.
+
+Examples
+--------
+>>> import gearcam as gc
+>>> gc.rises.Cycloidal()
+Cycloidal()
 """
 
 from __future__ import annotations
