@@ -67,8 +67,8 @@ def manner_faults(path: Path) -> list[str]:
         for node in block.body
     }
     for node in ast.walk(tree):
-        star = isinstance(node, ast.ImportFrom) and any(name.name == "*" for name in node.names)
-        if star and id(node) not in told:
+        starred = isinstance(node, ast.ImportFrom) and node.names[0].name == "*"
+        if starred and id(node) not in told:
             faults.append(f"{path.name}:{node.lineno} star import")
         if isinstance(node, ast.Assert):
             faults.append(f"{path.name}:{node.lineno} assert")
