@@ -184,8 +184,11 @@ class Facts(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         found: Any = self.document
-        for step in name.split("."):
-            found = found[int(step) if isinstance(found, list) else step]
+        try:
+            for step in name.split("."):
+                found = found[int(step) if isinstance(found, list) else step]
+        except (LookupError, TypeError, ValueError):
+            raise KeyError(name) from None
         return found
 
     def __iter__(self) -> Iterator[str]:
@@ -231,6 +234,7 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     last = name.rpartition(".")[2]
     end = next((end for end in _UNITS if last.endswith(end)), "")
     unit = _UNITS.get(end, "") if fact.unit is None else fact.unit
+    unit = "" if isinstance(fact.value, str) else unit  # words about a number
     meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
