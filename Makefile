@@ -6,6 +6,7 @@
 # make compare BASE=COMMIT [N=50] [SEED=1] [MORE=...]   what both make of N random designs of each
 #              kind and of the gallery; MORE goes to tools/compare.py, which tells of its options
 # make matrix  the tests with every supported Python found, and with the lowest and the newest versions
+# make notebooks   run the notebooks of docs/notebooks and store what they show
 # make lock    renew requirements.lock    make clean   remove environments, caches and output
 #
 # Needs Python 3.11 or later and a network for the first call. `make PYTHON=/path/to/python demo` chooses one.
@@ -22,7 +23,7 @@ RUN    := run install
 TEST   := $(RUN) step plot test
 
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench peers compare matrix lock clean help
+.PHONY: demo test lint slow bench peers compare matrix notebooks lock clean help
 
 help:
 	@sed -n '/^$$/q; s/^# \{0,1\}//p' Makefile
@@ -53,6 +54,9 @@ compare: $(VENV)/.test
 
 matrix:
 	@MAKE="$(MAKE)" tools/matrix
+
+notebooks: $(VENV)/.test
+	$(BIN)/python tools/notebooks.py
 
 lock: $(VENV)/.lock
 	$(BIN)/python tools/lock.py

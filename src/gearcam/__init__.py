@@ -19,6 +19,7 @@ from gearcam.version import __version__
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
+    from typing import Protocol, TypeVar
 
     from gearcam import laws
     from gearcam.advice import Remedies
@@ -30,14 +31,26 @@ if TYPE_CHECKING:
         MissingExtraError,
         WriteError,
     )
+    from gearcam.facts import Facts
     from gearcam.findings import Finding
+    from gearcam.kinds import *  # noqa: F403
     from gearcam.laws import rises
+    from gearcam.numeric.columns import Columns
     from gearcam.result import Result
+    from gearcam.study import Study
     from gearcam.tolerances import Tolerances
 
+    _R = TypeVar("_R", covariant=True)
+
+    class _Buildable(Protocol[_R]):
+        @property
+        def _built(self) -> _R: ...
+
+
 __all__ = [
-    "DesignError", "Finding", "GearcamError", "InfeasibleError", "MissingExtraError", "Tolerances",
-    "WriteError", "__version__", "build", "design", "laws", "load", "loads", "remedies", "rises",
+    "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
+    "MissingExtraError", "Result", "Study", "Tolerances", "WriteError", "__version__", "build",
+    "design", "laws", "load", "loads", "remedies", "rises",
 ]  # fmt: skip
 
 _HOMES = {
@@ -45,7 +58,12 @@ _HOMES = {
         ("DesignError", "GearcamError", "InfeasibleError", "MissingExtraError", "WriteError"),
         "gearcam.errors",
     ),
+    "Columns": "gearcam.numeric.columns",
+    "Design": "gearcam.designs",
+    "Facts": "gearcam.facts",
     "Finding": "gearcam.findings",
+    "Result": "gearcam.result",
+    "Study": "gearcam.study",
     "Tolerances": "gearcam.tolerances",
     "laws": "gearcam.laws",
     "rises": "gearcam.laws.rises",
@@ -53,7 +71,7 @@ _HOMES = {
 """Modules of names that are brought in when they are asked for; those of kinds are found."""
 
 
-def __getattr__(name: str) -> Any:
+def _brought(name: str) -> Any:
     """Return what is brought in when it is asked for: classes of designs, laws, errors."""
     from importlib import import_module
 
@@ -66,6 +84,10 @@ def __getattr__(name: str) -> Any:
     raise AttributeError(f"gearcam has no {name}; dir(gearcam) tells of all")
 
 
+if not TYPE_CHECKING:  # type checkers know the names, and find misspelt ones
+    __getattr__ = _brought
+
+
 def __dir__() -> list[str]:
     return sorted({*__all__, *_of_kinds()})
 
@@ -73,7 +95,8 @@ def __dir__() -> list[str]:
 def _of_kinds() -> dict[str, type]:
     from gearcam.designs.kind import KINDS
 
-    return {one.__name__: one for kind in KINDS.values() for one in kind.room("public").PUBLIC}
+    rooms = [kind.room("public") for kind in KINDS.values()]
+    return {name: getattr(room, name) for room in rooms for name in room.__all__}
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -93,6 +116,12 @@ def load(path: str | os.PathLike[str]) -> Design:
     ------
     DesignError
         With every problem of the file at once.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.load("profiles/ellipse.toml").name
+    'ellipse'
     """
     from gearcam.designs import load as read
 
@@ -116,6 +145,13 @@ def loads(text: str) -> Design:
     ------
     DesignError
         With every problem of the text at once, each with its line.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> from pathlib import Path
+    >>> gc.loads(Path("profiles/ellipse.toml").read_text()).name
+    'ellipse'
     """
     from gearcam.designs import loads as read
 
@@ -139,29 +175,57 @@ def design(document: Mapping[str, Any]) -> Design:
     ------
     DesignError
         With every problem at once, each with its key.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> document = gc.load("profiles/ellipse.toml").to_dict()
+    >>> document["law"]["eccentricity"] = 0.2
+    >>> gc.design(document).name
+    'ellipse'
     """
     from gearcam.designs import design as made
 
     return made(document)
 
 
-def build(design: Design) -> Any:
+def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
     """Return the result of a design; nothing is computed until it is asked for.
 
     Parameters
     ----------
     design : Design
         What is asked for.
+    tolerances : Tolerances, optional
+        Inner accuracy.
 
     Returns
     -------
     Result
         Of the design's kind: its attributes compute what they name and raise `InfeasibleError` for
         what cannot be made.
-    """
-    from gearcam.designs.kind import KINDS
 
-    return KINDS[design.kind].room("build").build(design)
+    Raises
+    ------
+    DesignError
+        If it is no design.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+    >>> round(result.contact_ratio, 3)
+    1.705
+    """
+    from gearcam.designs import KINDS, Design
+
+    if not isinstance(design, Design):
+        from gearcam.errors import DesignError, Problem
+
+        told = f"is a {type(design).__name__}"
+        raise DesignError([Problem(told, key="design", allowed="a design, as load returns it")])
+    given = () if tolerances is None else (tolerances,)
+    return KINDS[design.kind].room("build").build(design, *given)
 
 
 def remedies(
@@ -182,6 +246,14 @@ def remedies(
     -------
     Remedies
         Each was built: nothing is refused, what was an error is gone, and no other has come.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml").with_({"blank.bore_diameter_mm": 60})
+    >>> found = gc.remedies(gc.build(design), patience=60.0).found
+    >>> [list(one.changes) for one in found]
+    [['blank.bore_diameter_mm']]
     """
     from gearcam.advice import remedies as search
 

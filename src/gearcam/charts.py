@@ -24,7 +24,7 @@ _FAR: Final = 1.5
 """How far outside the lines a limit may be drawn, in their range: beyond, it would flatten them."""
 
 _MARGIN: Final = 0.06
-"""Share of the range that is left free above and below."""
+"""Share of the range that is left free above and below, and beside dots."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -122,7 +122,7 @@ class Chart:
                 ax.plot([], [], color="0.35", ls=" ", label=f"{text}, beyond this chart")
         free = _MARGIN * (high - low)
         ax.set(title=self.title, xlabel=self.x, ylabel=self.y, ylim=(low - free, high + free))
-        ax.margins(x=0.0)
+        ax.margins(x=_MARGIN if any(line.dots for line in self.lines) else 0.0)
         ax.grid(visible=True, alpha=0.3)
         if self.limits or len(self.lines) > 1:
             ax.legend(fontsize="small")

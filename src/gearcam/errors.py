@@ -20,7 +20,17 @@ from gearcam.numerals import shown
 
 
 class GearcamError(Exception):
-    """Base of every error that gearcam raises on purpose."""
+    """Base of every error that gearcam raises on purpose.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> try:
+    ...     gc.load("profiles/none.toml")
+    ... except gc.GearcamError as error:
+    ...     print(error)
+    profiles/none.toml: there is no such file
+    """
 
 
 @dataclass(frozen=True)
@@ -68,6 +78,15 @@ class DesignError(GearcamError, ValueError):
     ----------
     problems : iterable of Problem
         All problems found, in the order of the file.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.load("profiles/ellipse.toml").with_({"law.eccentricity": 2})
+    Traceback (most recent call last):
+        ...
+    gearcam.errors.DesignError: profiles/ellipse.toml: law.eccentricity: 2 is out of range
+        allowed: a number from 0 to below 1
     """
 
     def __init__(self, problems: Iterable[Problem]) -> None:
@@ -116,6 +135,16 @@ class InfeasibleError(GearcamError, ValueError):
         Changes of the design that may lift the refusal.
     more_teeth : float
         How many times more teeth may lift it, or a smaller swing of the ratio; 0 where they cannot.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml").with_({"blank.bore_diameter_mm": 60})
+    >>> try:
+    ...     gc.build(design).parts
+    ... except gc.InfeasibleError as error:
+    ...     print(error.what, error.where, error.value, round(error.limit, 3))
+    the bore reaches the root of the teeth wheel 1, blank.bore_diameter_mm[0] 60.0 26.909
     """
 
     def __init__(
@@ -155,6 +184,12 @@ class MissingExtraError(GearcamError, ImportError):
         What needs it.
     extra : str
         The extra of the package that brings it.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> print(gc.MissingExtraError("charts", "plot"))
+    charts need the optional extra: pip install "gearcam[plot]"
     """
 
     def __init__(self, what: str, extra: str) -> None:
@@ -166,4 +201,15 @@ class MissingExtraError(GearcamError, ImportError):
 
 
 class WriteError(GearcamError, OSError):
-    """A file or folder could not be written."""
+    """A file or folder could not be written.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+    >>> try:
+    ...     result.write("profiles/ellipse.toml")
+    ... except gc.WriteError as error:
+    ...     print(error)
+    cannot write to profiles/ellipse.toml/ellipse: Not a directory
+    """

@@ -127,6 +127,15 @@ class Facts(Mapping[str, Any]):
         Names of the few quantities that stand first, on one line.
     title : str
         What the machine is, before them.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> facts = gc.build(gc.load("profiles/ellipse.toml")).facts
+    >>> round(facts["pair.center_distance_mm"], 4)
+    41.9607
+    >>> facts["pair.teeth"]
+    [41, 41]
     """
 
     def __init__(
@@ -178,8 +187,11 @@ class Facts(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         found: Any = self.document
-        for step in name.split("."):
-            found = found[int(step) if isinstance(found, list) else step]
+        try:
+            for step in name.split("."):
+                found = found[int(step) if isinstance(found, list) else step]
+        except (LookupError, TypeError, ValueError):
+            raise KeyError(name) from None
         return found
 
     def __iter__(self) -> Iterator[str]:
@@ -225,6 +237,7 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     last = name.rpartition(".")[2]
     end = next((end for end in _UNITS if last.endswith(end)), "")
     unit = _UNITS.get(end, "") if fact.unit is None else fact.unit
+    unit = "" if isinstance(fact.value, str) else unit  # words about a number
     meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"

@@ -40,6 +40,13 @@ class Finding(Brief):
         Unit of both.
     where : str
         Wheel, tooth, angle.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> found = gc.build(gc.load("profiles/ellipse.toml")).findings
+    >>> [(one.severity, one.code) for one in found]
+    [('note', 'no-backlash')]
     """
 
     code: str

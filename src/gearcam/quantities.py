@@ -11,10 +11,23 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
 Solve = Literal["solve"]
 """A value that closure decides."""
+
+if TYPE_CHECKING:
+    Row = Sequence[float] | NDArray[Any]
+    RowOfSome = Sequence[float | Solve]
+else:
+    Row = tuple[float, ...]
+    RowOfSome = tuple[float | Solve, ...]
+"""Numbers in a row, all known or not: given as a list, a tuple or an array, kept as a tuple."""
 
 REQUIRED: Final = dataclasses.MISSING
 """Default of a parameter that the file must give."""

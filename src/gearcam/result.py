@@ -53,6 +53,12 @@ class Result(Displayed):
         What is asked for.
     tolerances : Tolerances
         Inner accuracy.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> isinstance(gc.build(gc.load("profiles/ellipse.toml")), gc.Result)
+    True
     """
 
     stages: ClassVar[Mapping[str, str]]
@@ -355,9 +361,8 @@ class Result(Displayed):
 
         there = previous_files(Path(directory) / self.design.name)
         found = self.findings if findings is None else findings
-        return self._write_all(
-            directory, contents, there | dict.fromkeys(contents), measured, found, keep=True
-        )
+        there |= dict.fromkeys(contents)
+        return self._write_all(directory, contents, there, measured, found, keep=True)
 
     def _write_all(
         self,

@@ -36,6 +36,13 @@ class Study(Displayed):
         Those of the design that hold in the study, and its own: errors first.
     complete : bool
         Whether nothing was interrupted.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> study = gc.build(gc.load("profiles/ellipse.toml")).mesh(steps=4)
+    >>> study.columns["phi1_deg"][:3], study.complete
+    (array([ 0.,  0., 90.]), True)
     """
 
     result: Result

@@ -21,6 +21,13 @@ class Tolerances:
     oversampling : int
         Dense points per final chord of an outline; 8 makes the error of the dense polygon about
         1/64 of the chord error.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml")
+    >>> gc.build(design, gc.Tolerances(oversampling=16)).tolerances.oversampling
+    16
     """
 
     expansion: float = 1e-15

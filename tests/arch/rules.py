@@ -55,10 +55,20 @@ def _length(node: Function) -> int:
 
 
 def manner_faults(path: Path) -> list[str]:
-    """Star imports, asserts as checks of input, prints and exits outside the command line."""
-    faults = []
-    for node in ast.walk(parse(path)):
-        if isinstance(node, ast.ImportFrom) and any(name.name == "*" for name in node.names):
+    """Star imports, asserts as checks of input, prints and exits outside the command line.
+
+    A star may tell type checkers of names: they read the list ``__all__``.
+    """
+    faults, tree = [], parse(path)
+    told = {
+        id(node)
+        for block in ast.walk(tree)
+        if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+        for node in block.body
+    }
+    for node in ast.walk(tree):
+        starred = isinstance(node, ast.ImportFrom) and node.names[0].name == "*"
+        if starred and id(node) not in told:
             faults.append(f"{path.name}:{node.lineno} star import")
         if isinstance(node, ast.Assert):
             faults.append(f"{path.name}:{node.lineno} assert")

@@ -59,6 +59,12 @@ def test_bad_manners_are_caught(tmp_path: Path, code: str, fault: str) -> None:
     assert [found.split(maxsplit=1)[1] for found in rules.manner_faults(sample)] == [fault]
 
 
+def test_a_star_for_type_checkers_passes(tmp_path: Path) -> None:
+    sample = tmp_path / "sample.py"
+    sample.write_text("if TYPE_CHECKING:\n    from numpy import *\n")
+    assert rules.manner_faults(sample) == []
+
+
 def test_the_command_line_may_print(tmp_path: Path) -> None:
     sample = tmp_path / "console.py"
     sample.write_text("print('done')\n")

@@ -39,9 +39,7 @@ def rows(tolerance: float | None = None) -> Displacement:
     """A motion by rows that begin beside the turn's end, uneven and noisy, as measured."""
     theta = TURN * (np.arange(90) + 0.3 + 0.2 * np.sin(np.arange(90))) / 90
     lift = 4.0 * (1.0 - np.cos(theta)) ** 2 + 0.002 * np.sin(1e3 * np.arange(90))
-    places, lifts = tuple(theta.tolist()), tuple(lift.tolist())
-    table = MotionTable(theta=places, lift=lifts, smoothing_tolerance=tolerance)
-    return table.program(DEFAULT)
+    return MotionTable(theta=theta, lift=lift, smoothing_tolerance=tolerance).program(DEFAULT)
 
 
 MOVING = [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import gearcam
@@ -73,7 +75,18 @@ def test_a_good_design_shows_ten_lines_at_most(name: str) -> None:
 @pytest.mark.parametrize("name", ["stepped_ellipse", "plate_cam_offset_roller"])
 def test_names_say_their_units(name: str) -> None:
     facts = gearcam.build(gearcam.load(f"profiles/{name}.toml")).facts
-    assert all(one.unit for one in facts.quantities() if one.name.endswith(("_mm", "_deg")))
+    named = [one for one in facts.quantities() if one.name.endswith(("_mm", "_deg"))]
+    words = {one.name for one in named if not one.unit}
+    assert words == {one.name for one in named if isinstance(one.value, str)}
+    assert all(name.startswith("accuracy.how.") for name in words)
+
+
+@pytest.mark.parametrize("name", ["pair.none", "pair.module_mm.x", "gears.7.name", "gears.x", ""])
+def test_a_name_that_is_none_is_refused_whole(name: str) -> None:
+    facts = gearcam.build(gearcam.load("profiles/ellipse.toml")).facts
+    assert name not in facts
+    with pytest.raises(KeyError, match=re.escape(repr(name))):
+        facts[name]
 
 
 def test_an_extent_is_both_ends_in_another_unit() -> None:

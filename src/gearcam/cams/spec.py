@@ -45,7 +45,14 @@ def _aside(*, doc: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class FollowerSpec(Brief):
-    """A follower: what touches the cam, and how it is guided."""
+    """A follower: what touches the cam, and how it is guided.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.FollowerSpec(type="roller", roller_radius=8.0)
+    FollowerSpec(type='roller', roller_radius=8)
+    """
 
     type: str = param(
         TEXT,
@@ -107,7 +114,15 @@ class FollowerSpec(Brief):
 
 @dataclass(frozen=True, kw_only=True)
 class CamSpec:
-    """A cam: its form, its size, its direction of turning."""
+    """A cam: its form, its size, its direction of turning.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> cam = gc.CamSpec(prime_radius=40.0, thickness=12.0, rotation="cw")
+    >>> cam.clockwise
+    True
+    """
 
     form: str = param(TEXT, default="disc", choices=("disc",), doc="the form of the cam")
     prime_radius: float | None = _size(

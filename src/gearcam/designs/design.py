@@ -14,7 +14,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import InitVar, dataclass, field, fields
 from functools import cached_property
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, Self
 
 from gearcam.designs.examine import examine
 from gearcam.designs.faults import dotted
@@ -53,6 +53,15 @@ class Design:
     ------
     DesignError
         If a value is not what a design file may hold, all problems at once.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml")
+    >>> isinstance(design, gc.Design), design.name
+    (True, 'ellipse')
+    >>> design.with_({"law.eccentricity": 0.2}) == design
+    False
     """
 
     kind: ClassVar[str]
@@ -100,10 +109,10 @@ class Design:
         """Its result: a picture of a design is one of what comes of it."""
         return KINDS[self.kind].room("build").build(self)
 
-    def __copy__(self) -> Design:
+    def __copy__(self) -> Self:
         return self
 
-    def __deepcopy__(self, _: object) -> Design:
+    def __deepcopy__(self, _: object) -> Self:
         return self
 
     def __getstate__(self) -> dict[str, Any]:
@@ -147,7 +156,7 @@ class Design:
         _demand(never, document, self.source, "cannot be written to a file", "a formula as text")
         return document
 
-    def with_(self, changes: Mapping[str, object]) -> Any:
+    def with_(self, changes: Mapping[str, object]) -> Self:
         """Return the design with other values of some keys.
 
         Parameters

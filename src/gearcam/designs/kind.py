@@ -8,7 +8,8 @@ names it, and only that of a file is loaded. Its modules:
 - `facts`: ``facts(result, measured)`` returns what is known of it;
 - `files`: ``FILES``, what makes each kind of file;
 - `advice`: ``ways(...)`` yields changes that may help where it is refused or has errors;
-- `public`: ``PUBLIC``, the classes that people who write Python make designs of;
+- `public`: in its ``__all__`` the classes that people who write Python make designs of (the
+  package `gearcam.kinds` tells type checkers of them);
 - `describe`: what schema, template and list of laws say of its main part;
 - `commands`, where it has any: ``COMMANDS`` of the command line.
 """

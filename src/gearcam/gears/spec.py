@@ -13,6 +13,13 @@ class Rack:
 
     What is left out takes its default of `BasicRack`, or what fits to the values given (see
     `settle_rack`).
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> import math
+    >>> round(gc.Rack(pressure_angle=math.radians(25)).pressure_angle, 4)
+    0.4363
     """
 
     pressure_angle: float = param(
@@ -80,6 +87,12 @@ class StepsSpec:
     The teeth of a non-circular wheel cannot follow a helix by twisting: every place of the
     centrode bends differently. Steps of the same height, the teeth of each moved on by `offset`
     along both centrodes, take turns in the mesh as those of a helical wheel do.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.StepsSpec(count=3).count
+    3
     """
 
     count: int = param(
@@ -97,7 +110,15 @@ class StepsSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class PairSpec:
-    """Exactly one of centre distance and module is given; the other is solved."""
+    """Exactly one of centre distance and module is given; the other is solved.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> pair = gc.PairSpec(teeth=(20, 30), center_distance=100.0)
+    >>> pair.teeth, pair.face_width
+    ((20, 30), 10.0)
+    """
 
     center_distance: float | None = param(
         LENGTH, default=None, gt=0, le=1e6, doc="distance of the shafts"

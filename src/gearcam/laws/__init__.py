@@ -4,11 +4,36 @@ The registries `gearcam.laws.ratio.base.LAWS` and `gearcam.laws.rises.base.RISES
 it is asked for. Depends on numpy alone.
 
 The parameters of ratio laws are attributes: ``gearcam.laws.Ellipse(eccentricity=0.3)``.
+
+Examples
+--------
+>>> import gearcam as gc
+>>> gc.laws.Ellipse(eccentricity=0.3)
+Ellipse(eccentricity=0.3, lobes=None)
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from gearcam.registry import classes_in, lazy_classes
+
+if TYPE_CHECKING:
+    from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
+    from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
+    from gearcam.laws.ratio.constant import Constant
+    from gearcam.laws.ratio.ellipse import Ellipse
+    from gearcam.laws.ratio.formula import Formula, RackLaw
+    from gearcam.laws.ratio.phases import Phases
+    from gearcam.laws.ratio.position import MotionLaw
+    from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
+    from gearcam.laws.ratio.table import TableLaw
+
+__all__ = [
+    "BSplineLaw", "Constant", "EccentricCircle", "Ellipse", "Formula", "Fourier", "Limacon",
+    "Lobed", "LogSpiral", "MotionLaw", "Multispeed", "Phases", "RackLaw", "RoundedPolygon",
+    "TableLaw", "ThreePhasePolynomial",
+]  # fmt: skip
 
 
 def _classes() -> dict[str, type]:
@@ -17,4 +42,5 @@ def _classes() -> dict[str, type]:
     return classes_in(LAWS)
 
 
-__getattr__, __dir__ = lazy_classes("law", _classes)
+if not TYPE_CHECKING:  # which then see typing errors in names
+    __getattr__, __dir__ = lazy_classes("law", _classes)

@@ -45,6 +45,12 @@ class MotionFormula:
     """The lift over a turn as a formula in theta; derivatives are exact, by Taylor arithmetic.
 
     From Python it may be a function, or a tuple of a function and its first derivatives.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MotionFormula(lift="5*(1 - cos(theta))")
+    MotionFormula(lift='5*(1 - cos(theta))')
     """
 
     lift: Given = param(

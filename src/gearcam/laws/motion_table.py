@@ -22,7 +22,7 @@ from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import program_of_rows
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
-from gearcam.quantities import ANGLE, LENGTH, TEXT, Param, param
+from gearcam.quantities import ANGLE, LENGTH, TEXT, Param, Row, param
 from gearcam.tolerances import Tolerances
 
 Problem = tuple[str, int | None, str, str]
@@ -53,15 +53,23 @@ class MotionTable(FromFile):
 
     Lifts and their tolerance are in mm, or in rad where the follower oscillates. The last row may
     repeat the first one, a turn on, or be left out.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> import numpy as np
+    >>> theta = np.radians(np.arange(0.0, 360.0, 10.0))
+    >>> gc.MotionTable(theta=theta, lift=5.0 - 5.0 * np.cos(theta), smoothing_tolerance=0.01)
+    MotionTable(theta=array(36,), lift=array(36,), smoothing_tolerance=0.01)
     """
 
     file: str | None = param(
         TEXT, default=None, doc="CSV file with the columns theta_deg and lift_mm or lift_deg"
     )
-    theta: tuple[float, ...] | None = param(
+    theta: Row | None = param(
         ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="cam angles, without a file"
     )
-    lift: tuple[float, ...] | None = param(
+    lift: Row | None = param(
         LENGTH,
         default=None,
         ge=-_LONGEST,

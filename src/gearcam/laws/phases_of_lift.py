@@ -51,7 +51,14 @@ _ANGLE: Final = "cam angle that it takes, or what the others leave"
 
 @dataclass(frozen=True, kw_only=True)
 class DwellPhase:
-    """The follower stands still."""
+    """The follower stands still.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.DwellPhase(angle="rest")
+    DwellPhase(angle='rest')
+    """
 
     angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
 
@@ -66,6 +73,12 @@ class RisePhase(Brief):
         Parameters of a law, such as `gearcam.rises.Cycloidal`.
     lift : float or None
         In mm, or in rad where the follower oscillates.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.RisePhase(angle=2.0, law=gc.rises.Cycloidal(), lift=10.0)
+    RisePhase(angle=2, lift=10, law=Cycloidal)
     """
 
     angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
@@ -82,7 +95,14 @@ class RisePhase(Brief):
 
 @dataclass(frozen=True, kw_only=True)
 class ReturnPhase(RisePhase):
-    """The follower comes down by a law, to lift zero where no lift is given."""
+    """The follower comes down by a law, to lift zero where no lift is given.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.ReturnPhase(angle=2.0, law=gc.rises.Polynomial345())
+    ReturnPhase(angle=2, law=Polynomial345)
+    """
 
 
 def _rate(length: Quantity, angle: Quantity, word: str, sign: str) -> Any:
@@ -96,6 +116,12 @@ class SegmentPhase(Brief):
 
     They are in mm, mm/rad and mm/rad^2, or, where the follower oscillates, in rad, rad/rad and
     rad/rad^2.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.SegmentPhase(angle=1.0, to=4.0, velocity=-2.0)
+    SegmentPhase(angle=1, to=4, velocity=-2)
     """
 
     angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)

@@ -22,6 +22,13 @@ class MeshingSpec(Brief):
     The driver is turned ahead by `overclosure` at each (a negative one holds it back, so that the
     other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
     the pitch point are studied. Without `center_distance` the wheels stand as designed.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml").with_({"meshing.steps": 72})
+    >>> design.meshing == gc.MeshingSpec(steps=72)
+    True
     """
 
     steps: int = param(COUNT, default=360, ge=1, le=1000000, doc="phases studied")

@@ -26,6 +26,15 @@ class Columns(dict[str, NDArray[Any]]):
     ----------
     columns : mapping of str to (n,) array
         In order; whole numbers stay whole, what masked arrays mask becomes not-a-number.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> columns = gc.build(gc.load("profiles/eccentric_cam.toml")).motion([0.0, 1.0])
+    >>> columns["lift_mm"].round(3)
+    array([0.   , 2.758])
+    >>> list(columns)[:3]
+    ['theta_deg', 'lift_mm', 'velocity_mm_per_rad']
     """
 
     def __init__(self, columns: Mapping[str, ArrayLike]) -> None:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
-from typing import Any, Final, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 
 from gearcam.display import Brief
 from gearcam.numerals import shown
@@ -50,7 +50,15 @@ def _count(*, doc: str, le: int) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class WheelBlank(Brief):
-    """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none."""
+    """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> blank = gc.WheelBlank(bore_diameter=16.0, keyway_width=5.0, keyway_depth=2.3)
+    >>> round(blank.bore_reach, 3)
+    10.599
+    """
 
     bore_diameter: float | None = param(
         LENGTH, default=None, ge=0, le=1e6, doc="bores; none if left out"
@@ -165,20 +173,37 @@ def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:
     return name, hint, field(default=default, metadata={"param": made})
 
 
-_BothWheels: Any = make_dataclass(
-    "_BothWheels",
-    [
-        _both(one.name, get_type_hints(WheelBlank)[one.name], one.default)
-        for one in fields(WheelBlank)
-    ],
-    bases=(Brief,),
-    frozen=True,
-    kw_only=True,
-)
+if TYPE_CHECKING:
+
+    class _BothWheels:
+        __dataclass_fields__: ClassVar[dict[str, Any]]
+
+        def __init__(self, **sizes: tuple[float | None, float | None] | float | None) -> None: ...
+
+        def __getattr__(self, name: str) -> Any: ...
+
+else:
+    _BothWheels = make_dataclass(
+        "_BothWheels",
+        [
+            _both(one.name, get_type_hints(WheelBlank)[one.name], one.default)
+            for one in fields(WheelBlank)
+        ],
+        frozen=True,
+        kw_only=True,
+    )
 
 
-class Blank(_BothWheels):
-    """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first."""
+class Blank(Brief, _BothWheels):
+    """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> blank = gc.Blank(bore_diameter=(10.0, 12.0), tip_rounding=(0.1, 0.1))
+    >>> blank.wheel(2).bore_diameter
+    12.0
+    """
 
     def wheel(self, number: int) -> WheelBlank:
         """Return what is wanted of one wheel: `number` 1 is the driver."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
@@ -50,6 +51,14 @@ class CamResult(Result):
         What is asked for.
     tolerances : Tolerances
         Inner accuracy.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/eccentric_cam.toml"))
+    >>> x, y = result.cam.outline.T  # mm, a circle of 31 mm
+    >>> round(float(x.max() - x.min()), 2)
+    62.0
     """
 
     design: CamDesign
@@ -62,7 +71,7 @@ class CamResult(Result):
         """The lift over a turn."""
         with self.stage("program"):
             motion, swings = self.design.motion, self.design.follower.oscillating
-            make = partial(make_program, motion) if isinstance(motion, tuple) else motion.program
+            make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
             return make(self.tolerances, oscillating=swings)
 
     @cached_property

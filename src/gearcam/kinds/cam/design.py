@@ -27,6 +27,7 @@ from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 from gearcam.registry import classes_in, name_of
 
 if TYPE_CHECKING:
+    from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.motion import Motion
 
 NAME: Final = "cam"
@@ -61,6 +62,12 @@ class CamOutputSpec(OutputSpec):
     ----------
     pose : float, rad
         Cam angle of the assembled cam.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CamOutputSpec(files=("dxf", "tool-path"), tool_radius=4.0)
+    CamOutputSpec(files=('dxf', 'tool-path'), tool_radius=4)
     """
 
     files: tuple[str, ...] = files_param(CAM_FORMATS)
@@ -93,7 +100,7 @@ class CamDesign(Design):
 
     Parameters
     ----------
-    motion : tuple of Phase, MotionTable or MotionFormula
+    motion : sequence of Phase, MotionTable or MotionFormula
         The lift over a turn of the cam.
     follower : FollowerSpec
         What touches the cam, and how it is guided.
@@ -103,9 +110,22 @@ class CamDesign(Design):
         Bore, hub, holes, density; a cam has no timing marks.
     output : CamOutputSpec
         Files and their tolerance.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> motion = gc.MotionFormula(lift="5*(1 - cos(theta))")
+    >>> follower, size = gc.FollowerSpec(type="flat"), gc.CamSpec(base_radius=20.0)
+    >>> gc.CamDesign(name="mine", motion=motion, follower=follower, cam=size)
+    <CamDesign "mine">
     """
 
     kind = NAME
+
+    if TYPE_CHECKING:
+
+        @property
+        def _built(self) -> CamResult: ...
 
     motion: Motion
     follower: FollowerSpec
@@ -120,7 +140,7 @@ class CamDesign(Design):
             object.__setattr__(self, "blank", _unmarked(self.blank, self.source))
 
     def _wanted(self) -> Iterator[Wanted]:
-        if not isinstance(self.motion, tuple):
+        if not isinstance(self.motion, Sequence):
             yield "motion", self.motion, (tuple, *whole_turns())
             return
         for number, phase in enumerate(self.motion):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from gearcam.laws.motion_formula import MotionFormula
     from gearcam.laws.motion_table import MotionTable
 
-    Motion = tuple[Phase, ...] | MotionTable | MotionFormula
+    Motion = Sequence[Phase] | MotionTable | MotionFormula
 
 TITLE: Final = "motion"
 
@@ -241,7 +241,7 @@ def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | di
     -------
     list of dict, or dict
     """
-    if not isinstance(motion, tuple):
+    if not isinstance(motion, Sequence):
         return table_of(TITLE, type(motion)).of_lifts(oscillating=oscillating).document(motion)
     names = {owner: name for name, owner in PHASES.items()}
     tables = []

@@ -48,6 +48,14 @@ class GearPairResult(PairStages):
         What is asked for.
     tolerances : Tolerances
         Inner accuracy.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+    >>> x, y = result.gear1.outline.T  # mm
+    >>> result.motion([0.0, 6.283185307179586])["phi2_deg"].round(6)
+    array([  0., 360.])
     """
 
     def centrodes(self, n: int | None = None) -> Columns:

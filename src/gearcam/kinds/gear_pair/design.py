@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Final, TypeGuard
+from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
@@ -25,6 +25,9 @@ from gearcam.parts.blank import Blank
 from gearcam.quantities import COUNT, param
 from gearcam.registry import classes_in, name_of
 
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.build import GearPairResult
+
 NAME: Final = "gear-pair"
 """As in a file."""
 
@@ -40,6 +43,12 @@ class PairOutputSpec(OutputSpec):
     ----------
     pose : float, rad
         Driver angle of the assembled pair.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.PairOutputSpec(files=("dxf", "csv"), chord_tolerance=0.005)
+    PairOutputSpec(files=('dxf', 'csv'), chord_tolerance=0.005)
     """
 
     pose: float = pose_param("phi1", "driver angle at which the assembled pair is drawn")
@@ -68,9 +77,21 @@ class GearPairDesign(Design):
         Files and their tolerance.
     meshing : MeshingSpec
         Phases and mounting of a meshing study.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> pair = gc.PairSpec(teeth=(20, 20), module=2.0)
+    >>> gc.GearPairDesign(name="mine", law=gc.laws.Ellipse(eccentricity=0.3), pair=pair)
+    <GearPairDesign "mine">
     """
 
     kind = NAME
+
+    if TYPE_CHECKING:
+
+        @property
+        def _built(self) -> GearPairResult: ...
 
     law: Any
     pair: PairSpec

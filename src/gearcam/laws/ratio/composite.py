@@ -20,7 +20,7 @@ from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equa
 from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
-from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
+from gearcam.quantities import ANGLE, NUMBER, TEXT, Row, RowOfSome, Solve, param
 from gearcam.tolerances import Tolerances
 
 
@@ -32,10 +32,10 @@ class Multispeed(Brief):
     `driven_travel`) ends with its last constant ratio.
     """
 
-    ratios: tuple[float | Solve, ...] = param(
+    ratios: RowOfSome = param(
         NUMBER, gt=0, min_length=2, doc='the constant ratios in turn; one may be "solve"'
     )
-    angles: tuple[float, ...] = param(
+    angles: Row = param(
         ANGLE, ge=0, le=360, min_length=2, doc="driver angle over which each of them holds"
     )
     transition: float = param(ANGLE, gt=0, le=360, doc="driver angle of each transition")
@@ -157,10 +157,10 @@ class Fourier(Brief):
     of: str = param(
         TEXT, default="ratio", choices=("ratio", "phi2"), doc="what the coefficients are of"
     )
-    cosines: tuple[float, ...] = param(
+    cosines: Row = param(
         NUMBER, default=(), doc="a_1, a_2, ...: shares of the mean ratio, or degrees of phi2"
     )
-    sines: tuple[float, ...] = param(NUMBER, default=(), doc="b_1, b_2, ..., likewise")
+    sines: Row = param(NUMBER, default=(), doc="b_1, b_2, ..., likewise")
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

@@ -16,7 +16,7 @@ from gearcam.laws.ratio.arcs import ARCS, Arc
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, NUMBER, TEXT, Solve, param
+from gearcam.quantities import ANGLE, NUMBER, TEXT, RowOfSome, Solve, param
 from gearcam.tolerances import Tolerances
 
 
@@ -29,14 +29,14 @@ class Phases(Brief):
     """
 
     shape: str = param(TEXT, default="cosine", choices=tuple(ARCS), doc="arc between the knots")
-    knots: tuple[float | Solve, ...] = param(
+    knots: RowOfSome = param(
         ANGLE,
         ge=0,
         le=360,
         min_length=2,
         doc='driver angles, from 0 to 360 or one lobe; of an open pair one may be "solve"',
     )
-    ratios: tuple[float | Solve, ...] = param(
+    ratios: RowOfSome = param(
         NUMBER, gt=0, min_length=2, doc='i21 at the knots; one may be "solve"'
     )
     driven_travel: float | None = open_travel("driven wheel")

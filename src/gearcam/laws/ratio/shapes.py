@@ -16,7 +16,7 @@ from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root
-from gearcam.quantities import COUNT, NUMBER, param
+from gearcam.quantities import COUNT, NUMBER, Row, param
 from gearcam.tolerances import Tolerances
 
 _BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
@@ -40,7 +40,7 @@ class BSplineLaw(Brief):
     values, and moving one moves the centrode only near it.
     """
 
-    radii: tuple[float, ...] = param(
+    radii: Row = param(
         NUMBER, gt=0, min_length=4, doc="control radii at equal angles over a lobe, at any scale"
     )
 

@@ -20,7 +20,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
-from gearcam.quantities import ANGLE, NUMBER, TEXT, param
+from gearcam.quantities import ANGLE, NUMBER, TEXT, Row, param
 from gearcam.tolerances import Tolerances
 
 _ANGLE: Final = "phi1_deg"
@@ -44,16 +44,16 @@ class TableLaw(FromFile):
     file: str | None = param(
         TEXT, default=None, doc="CSV file: phi1_deg and one of ratio, phi2_deg, r1"
     )
-    phi1: tuple[float, ...] | None = param(
+    phi1: Row | None = param(
         ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="driver angles, without a file"
     )
-    ratio: tuple[float, ...] | None = param(
+    ratio: Row | None = param(
         NUMBER, default=None, gt=0, min_length=_FEWEST, doc="i21 at phi1, scaled so that it closes"
     )
-    phi2: tuple[float, ...] | None = param(
+    phi2: Row | None = param(
         ANGLE, default=None, min_length=_FEWEST, doc="driven angles at phi1; must close"
     )
-    r1: tuple[float, ...] | None = param(
+    r1: Row | None = param(
         NUMBER, default=None, gt=0, min_length=_FEWEST, doc="driver's radii at phi1, at any scale"
     )
     driven_travel: float | None = open_travel("driven wheel")

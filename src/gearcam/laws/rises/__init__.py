@@ -1,11 +1,48 @@
 """Rises: S over phi on the unit square, each in the registry `rises.base.RISES`.
 
 Their parameters are attributes: ``gearcam.rises.Cycloidal()``.
+
+Examples
+--------
+>>> import gearcam as gc
+>>> gc.rises.Cycloidal()
+Cycloidal()
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from gearcam.registry import classes_in, lazy_classes
+
+if TYPE_CHECKING:
+    from gearcam.laws.rises.formula import FormulaRise
+    from gearcam.laws.rises.points import BSplineRise, TableRise
+    from gearcam.laws.rises.polynomials import (
+        Polynomial,
+        Polynomial23,
+        Polynomial345,
+        Polynomial3456,
+        Polynomial4567,
+        Polynomial56789,
+    )
+    from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
+    from gearcam.laws.rises.simple import (
+        ConstantAcceleration,
+        ConstantVelocity,
+        Cycloidal,
+        Harmonic,
+        SineTrapezoidalVelocity,
+        TrapezoidalAcceleration,
+        TrapezoidalVelocity,
+    )
+
+__all__ = [
+    "BSplineRise", "ConstantAcceleration", "ConstantVelocity", "Cycloidal", "FormulaRise",
+    "Harmonic", "ModifiedSine", "ModifiedTrapezoid", "Polynomial", "Polynomial23",
+    "Polynomial345", "Polynomial3456", "Polynomial4567", "Polynomial56789", "Scca",
+    "SineTrapezoidalVelocity", "TableRise", "TrapezoidalAcceleration", "TrapezoidalVelocity",
+]  # fmt: skip
 
 
 def _classes() -> dict[str, type]:
@@ -14,4 +51,5 @@ def _classes() -> dict[str, type]:
     return classes_in(RISES)
 
 
-__getattr__, __dir__ = lazy_classes("rise", _classes)
+if not TYPE_CHECKING:  # which then see typing errors in names
+    __getattr__, __dir__ = lazy_classes("rise", _classes)

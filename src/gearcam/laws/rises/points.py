@@ -19,7 +19,7 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import chain_slopes, coefficients
 from gearcam.numeric.piecewise import Piecewise
-from gearcam.quantities import COUNT, NUMBER, TEXT, param
+from gearcam.quantities import COUNT, NUMBER, TEXT, Row, param
 from gearcam.tolerances import Tolerances
 
 Problem = tuple[str, int | None, str, str]
@@ -40,7 +40,7 @@ class BSplineRise(ClosedForm):
     are wanted make that many derivatives zero there.
     """
 
-    control: tuple[float, ...] = param(
+    control: Row = param(
         NUMBER, ge=-100, le=100, min_length=4, doc="control values of S, from 0 to 1"
     )
     degree: int = param(
@@ -101,10 +101,10 @@ class TableRise(FromFile):
     """
 
     file: str | None = param(TEXT, default=None, doc="CSV file with the columns x and y")
-    x: tuple[float, ...] | None = param(
+    x: Row | None = param(
         NUMBER, default=None, ge=0, le=1, min_length=_FEWEST, doc="phi, from 0 to 1"
     )
-    y: tuple[float, ...] | None = param(
+    y: Row | None = param(
         NUMBER, default=None, ge=-100, le=100, min_length=_FEWEST, doc="S at x, from 0 to 1"
     )
     start: tuple[float, float] = param(

@@ -18,7 +18,7 @@ from gearcam.laws.entry import LawEntry
 from gearcam.laws.rises.base import RISES, ClosedForm
 from gearcam.laws.rises.pieces import about, from_both_ends
 from gearcam.numeric.piecewise import Piecewise, piecewise
-from gearcam.quantities import NUMBER, param
+from gearcam.quantities import NUMBER, Row, param
 
 _MOST: Final = 8
 """Most derivatives at an end: degree 17, whose coefficients still add up to 1e-12."""
@@ -58,8 +58,8 @@ def of_least_degree(
 class _TwoEnded(ClosedForm):
     """The polynomial of least degree with S', S'', ... given at both ends."""
 
-    start: tuple[float, ...]
-    end: tuple[float, ...]
+    start: Row
+    end: Row
 
     def function(self) -> Piecewise:
         """S over phi, one piece of degree ``len(start) + len(end) + 1`` at most."""
@@ -71,14 +71,14 @@ class _TwoEnded(ClosedForm):
 class Polynomial(_TwoEnded):
     """The polynomial of least degree with given derivatives at both ends."""
 
-    start: tuple[float, ...] = param(
+    start: Row = param(
         NUMBER,
         default=(0.0, 0.0),
         ge=-1e6,
         le=1e6,
         doc="S', S'', S''', ... at the start, as many as are asked for",
     )
-    end: tuple[float, ...] = param(
+    end: Row = param(
         NUMBER,
         default=(0.0, 0.0),
         ge=-1e6,

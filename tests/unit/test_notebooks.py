@@ -1,0 +1,59 @@
+"""The notebooks run, print what is stored in them, and show their pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbclient.exceptions import CellExecutionError
+
+import notebooks
+
+STORED = sorted(notebooks.HOME.glob("*.ipynb"))
+LARGEST = 300_000
+"""Bytes of a notebook, so that pages show it at once."""
+
+
+def printed(notebook: Any) -> list[str]:
+    outputs = [one for cell in notebook.cells for one in cell.get("outputs", ())]
+    return [one.text for one in outputs if one.output_type == "stream"]
+
+
+def shown(notebook: Any) -> list[list[str]]:
+    """Kinds of what is shown, by cell."""
+    return [
+        sorted(kind for one in cell.get("outputs", ()) for kind in one.get("data", ()))
+        for cell in notebook.cells
+    ]
+
+
+def test_there_are_notebooks() -> None:
+    assert [path.stem for path in STORED] == ["elliptical_pair", "measured_cam"]
+
+
+@pytest.mark.parametrize("path", STORED, ids=lambda path: path.stem)
+def test_a_notebook_does_what_is_stored(path: Path, tmp_path: Path) -> None:
+    stored = nbformat.read(path, as_version=4)
+    made = notebooks.run(path, tmp_path)
+    assert printed(made) == printed(stored)
+    assert shown(made) == shown(stored)
+    kinds = [kind for cell in shown(stored) for kind in cell]
+    assert kinds.count("image/png") >= 2
+    assert "text/html" in kinds
+    assert len(printed(stored)) >= 4
+
+
+@pytest.mark.parametrize("path", STORED, ids=lambda path: path.stem)
+def test_what_is_stored_is_small_and_of_no_machine(path: Path) -> None:
+    text = path.read_text("utf-8")
+    assert len(text.encode()) < LARGEST
+    assert not [word for word in (" at 0x", "/home/", "/tmp/", "iopub", '"stderr"') if word in text]
+
+
+def test_a_failing_cell_is_seen(tmp_path: Path) -> None:
+    cell = nbformat.v4.new_code_cell("import gearcam as gc\ngc.Gearpair")
+    nbformat.write(nbformat.v4.new_notebook(cells=[cell]), tmp_path / "wrong.ipynb")
+    with pytest.raises(CellExecutionError, match="gearcam has no Gearpair"):
+        notebooks.run(tmp_path / "wrong.ipynb", tmp_path)

@@ -1,0 +1,36 @@
+"""Run the notebooks of docs/notebooks and store what they show; `make notebooks` does it.
+
+Each runs in an empty folder. What differs from run to run, times and numbers of runs, is left out.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import nbformat
+from nbclient import NotebookClient
+
+HOME = Path(__file__).resolve().parents[1] / "docs" / "notebooks"
+SECONDS = 300
+"""What a cell may take on a busy machine."""
+
+
+def run(path: Path, folder: str | Path) -> nbformat.NotebookNode:
+    """Return a notebook with the outputs of a run in a folder."""
+    notebook = nbformat.read(path, as_version=4)
+    client = NotebookClient(notebook, timeout=SECONDS, resources={"metadata": {"path": folder}})
+    made = client.execute()
+    for cell in made.cells:
+        cell.metadata.pop("execution", None)
+        for output in cell.get("outputs", ()):
+            if "text/html" in output.get("data", ()):  # which holds the picture too
+                output.data.pop("image/svg+xml", None)
+    made.metadata.language_info = {"name": "python"}
+    return made
+
+
+if __name__ == "__main__":
+    for notebook in sorted(HOME.glob("*.ipynb")):
+        with TemporaryDirectory() as folder:
+            nbformat.write(run(notebook, folder), notebook)
