@@ -267,3 +267,15 @@ def test_bad_arguments_are_refused_with_their_names(
         ANY.CamDesign(**given)
     assert key in [problem.key for problem in caught.value.problems]
     pickle.loads(pickle.dumps(caught.value))
+
+
+@pytest.mark.parametrize("given", ["pair.toml", {"kind": "cam"}, None])
+def test_what_is_no_design_is_not_built(given: Any) -> None:
+    with pytest.raises(DesignError, match=f"design: is a {type(given).__name__}"):
+        gc.build(given)
+
+
+def test_a_result_is_computed_to_given_tolerances() -> None:
+    design, tolerances = gc.design(PAIR), Tolerances(oversampling=5)
+    assert gc.build(design, tolerances).tolerances == tolerances
+    assert gc.build(design).tolerances == Tolerances()

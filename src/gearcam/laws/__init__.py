@@ -42,5 +42,5 @@ def _classes() -> dict[str, type]:
     return classes_in(LAWS)
 
 
-if not TYPE_CHECKING:  # which then see typing errors in names
+if not TYPE_CHECKING:  # type checkers then find misspelt names
     __getattr__, __dir__ = lazy_classes("law", _classes)

@@ -51,5 +51,5 @@ def _classes() -> dict[str, type]:
     return classes_in(RISES)
 
 
-if not TYPE_CHECKING:  # which then see typing errors in names
+if not TYPE_CHECKING:  # type checkers then find misspelt names
     __getattr__, __dir__ = lazy_classes("rise", _classes)
