@@ -94,9 +94,10 @@ def __dir__() -> list[str]:
 
 def _of_kinds() -> dict[str, type]:
     from gearcam.designs.kind import KINDS
+    from gearcam.quantities import described
 
     rooms = [kind.room("public") for kind in KINDS.values()]
-    return {name: getattr(room, name) for room in rooms for name in room.__all__}
+    return {name: described(getattr(room, name)) for room in rooms for name in room.__all__}
 
 
 def load(path: str | os.PathLike[str]) -> Design:
