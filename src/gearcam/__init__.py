@@ -94,9 +94,10 @@ def __dir__() -> list[str]:
 
 def _of_kinds() -> dict[str, type]:
     from gearcam.designs.kind import KINDS
+    from gearcam.quantities import described
 
     rooms = [kind.room("public") for kind in KINDS.values()]
-    return {name: getattr(room, name) for room in rooms for name in room.__all__}
+    return {name: described(getattr(room, name)) for room in rooms for name in room.__all__}
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -123,9 +124,12 @@ def load(path: str | os.PathLike[str]) -> Design:
     >>> gc.load("profiles/ellipse.toml").name
     'ellipse'
     """
-    from gearcam.designs import load as read
+    from os import PathLike
 
-    return read(path)
+    from gearcam.designs import load as read
+    from gearcam.numeric.arguments import instance
+
+    return read(instance("path", path, (str, PathLike), "a path"))
 
 
 def loads(text: str) -> Design:
@@ -154,8 +158,9 @@ def loads(text: str) -> Design:
     'ellipse'
     """
     from gearcam.designs import loads as read
+    from gearcam.numeric.arguments import instance
 
-    return read(text)
+    return read(instance("text", text, str, "the text of a design file"))
 
 
 def design(document: Mapping[str, Any]) -> Design:
@@ -184,9 +189,12 @@ def design(document: Mapping[str, Any]) -> Design:
     >>> gc.design(document).name
     'ellipse'
     """
-    from gearcam.designs import design as made
+    from collections.abc import Mapping
 
-    return made(document)
+    from gearcam.designs import design as made
+    from gearcam.numeric.arguments import instance
+
+    return made(instance("document", document, Mapping, "a mapping, as of a design file"))
 
 
 def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
@@ -218,14 +226,11 @@ def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
     1.705
     """
     from gearcam.designs import KINDS, Design
+    from gearcam.numeric.arguments import instance
 
-    if not isinstance(design, Design):
-        from gearcam.errors import DesignError, Problem
-
-        told = f"is a {type(design).__name__}"
-        raise DesignError([Problem(told, key="design", allowed="a design, as load returns it")])
+    kind = instance("design", design, Design, "a design, as load returns it").kind
     given = () if tolerances is None else (tolerances,)
-    return KINDS[design.kind].room("build").build(design, *given)
+    return KINDS[kind].room("build").build(design, *given)
 
 
 def remedies(
@@ -247,6 +252,11 @@ def remedies(
     Remedies
         Each was built: nothing is refused, what was an error is gone, and no other has come.
 
+    Raises
+    ------
+    DesignError
+        If it is no result.
+
     Examples
     --------
     >>> import gearcam as gc
@@ -256,5 +266,8 @@ def remedies(
     [['blank.bore_diameter_mm']]
     """
     from gearcam.advice import remedies as search
+    from gearcam.numeric.arguments import instance
+    from gearcam.result import Result
 
+    instance("result", result, Result, "a result, as build returns it")
     return search(result, refusal, patience=patience)

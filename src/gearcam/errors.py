@@ -64,7 +64,8 @@ class Problem:
     hint: str = ""
 
     def __str__(self) -> str:
-        place = self.file if self.line is None else f"{self.file}:{self.line}"
+        line = f"{self.file}:{self.line}" if self.file else f"line {self.line}"
+        place = self.file if self.line is None else line
         head = ": ".join(part for part in (place, self.key, self.message) if part)
         tail = [f"allowed: {self.allowed}"] if self.allowed else []
         tail += [self.hint] if self.hint else []

@@ -9,7 +9,9 @@ messages all follow from these fields, so that a new law stays one short entry.
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -110,3 +112,59 @@ def params_of(owner: type) -> dict[str, Param]:
         for field in dataclasses.fields(owner)
         if "param" in field.metadata
     }
+
+
+_ALIASES: Final = {
+    r" \| None$": "",
+    r"^RowOfSome$": 'row of float or "solve"',
+    r"^Row$": "row of float",
+    r"^Given$": "str, function, or tuple of function and derivatives",
+}
+"""What types are called in docstrings."""
+
+
+def described(owner: type) -> type:
+    """Return a class; if it is a dataclass, its docstring tells of all its parameters from now on.
+
+    Parameters
+    ----------
+    owner : type
+        A class; what its docstring tells of already stays.
+
+    Returns
+    -------
+    type
+        The same.
+    """
+    doc = inspect.cleandoc(owner.__doc__ or "")
+    told = ", ".join(re.findall(r"^(\w[\w, ]*) : ", doc, re.MULTILINE)).split(", ")
+    entries = [
+        f"{field.name} : {_type_of(field)}\n    {_sentence(field.metadata['param'].doc)}"
+        for field in (dataclasses.fields(owner) if dataclasses.is_dataclass(owner) else ())
+        if "param" in field.metadata and field.name not in told
+    ]
+    if entries:
+        head, title, examples = doc.partition("\n\nExamples\n")
+        start = "\n" if "\nParameters\n" in head else "\n\nParameters\n----------\n"
+        owner.__doc__ = head + start + "\n".join(entries) + title + examples
+    return owner
+
+
+def _type_of(field: dataclasses.Field[Any]) -> str:
+    """Return type, inner unit and default of a parameter in words."""
+    kind, made = field.type, field.metadata["param"]
+    words = [kind.__name__ if isinstance(kind, type) else str(kind)]
+    for alias, text in _ALIASES.items():
+        words = [re.sub(alias, text, word) for word in words]
+    quantities = (made.quantity, *((made.angular.quantity,) if made.angular else ()))
+    words += [" or ".join(one.unit.replace("deg", "rad") for one in quantities if one.unit)]
+    if field.default is not REQUIRED:
+        words.append("optional" if field.default is None else f"default {field.default!r}")
+    return ", ".join(word for word in words if word)
+
+
+def _sentence(doc: str) -> str:
+    """Return the meaning of a parameter as a sentence; what holds in files alone is left out."""
+    text = re.sub(r" \(translating[^)]*\)", "", doc)
+    plain = text.split()[0].rstrip(";").isalpha()  # no symbol
+    return f"{text[0].upper() if plain else text[0]}{text[1:]}."

@@ -293,8 +293,8 @@ class Result(Displayed):
         ----------
         directory : path
             Parent folder.
-        files : sequence of str, optional
-            Kinds of files, instead of those the design lists.
+        files : str or sequence of str, optional
+            Kinds of files, one or more, instead of those the design lists.
         progress : callable, optional
             Called with a stage's name, the stages done and their number.
 
@@ -312,8 +312,7 @@ class Result(Displayed):
         WriteError
             If the disk refuses.
         """
-        kinds = tuple(self.design.output.files if files is None else files)
-        demand_formats(self.design, kinds)
+        kinds = demand_formats(self.design, files)
         steps = [*self.stages, *kinds, "writing"]
 
         def tell(step: str) -> None:

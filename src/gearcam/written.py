@@ -49,15 +49,19 @@ class Written(Brief):
     complete: bool = True
 
 
-def demand_formats(design: Design, kinds: Sequence[str]) -> None:
-    """Refuse kinds of files that designs of this kind do not have.
+def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the kinds of files that are wanted; refuse those that such a design does not have.
 
     Parameters
     ----------
     design : Design
         Of any kind.
-    kinds : sequence of str
-        Kinds of files that are wanted.
+    kinds : str, sequence of str or None
+        Kinds of files that are wanted, one or more; those that the design lists if None.
+
+    Returns
+    -------
+    tuple of str
 
     Raises
     ------
@@ -65,6 +69,8 @@ def demand_formats(design: Design, kinds: Sequence[str]) -> None:
         With those that there are.
     """
     known = KINDS[design.kind].formats
+    asked = design.output.files if kinds is None else kinds
+    wanted = (asked,) if isinstance(asked, str) else tuple(asked)
     problems = [
         Problem(
             f"{kind} is no file of designs of kind {design.kind}",
@@ -73,11 +79,12 @@ def demand_formats(design: Design, kinds: Sequence[str]) -> None:
             value=kind,
             allowed=", ".join(known),
         )
-        for kind in kinds
+        for kind in wanted
         if kind not in known
     ]
     if problems:
         raise DesignError(problems)
+    return wanted
 
 
 def versions() -> dict[str, str]:

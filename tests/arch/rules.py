@@ -67,8 +67,8 @@ def manner_faults(path: Path) -> list[str]:
         for node in block.body
     }
     for node in ast.walk(tree):
-        starred = isinstance(node, ast.ImportFrom) and node.names[0].name == "*"
-        if starred and id(node) not in told:
+        read = id(node) not in told
+        if read and isinstance(node, ast.ImportFrom) and node.names[0].name == "*":
             faults.append(f"{path.name}:{node.lineno} star import")
         if isinstance(node, ast.Assert):
             faults.append(f"{path.name}:{node.lineno} assert")

@@ -45,6 +45,8 @@ def test_every_chart_of_every_design_is_drawn(path):
         values = np.concatenate([line.y for line in made.lines])
         assert low < np.nanmin(values)
         assert np.nanmax(values) < high
+        left, right = ax.get_xlim()
+        assert all(left < min(line.x) and max(line.x) < right for line in made.lines if line.dots)
         plt.close("all")
 
 

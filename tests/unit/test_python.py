@@ -267,3 +267,43 @@ def test_bad_arguments_are_refused_with_their_names(
         ANY.CamDesign(**given)
     assert key in [problem.key for problem in caught.value.problems]
     pickle.loads(pickle.dumps(caught.value))
+
+
+@pytest.mark.parametrize(
+    ("take", "name", "given"),
+    [
+        (gc.build, "design", "pair.toml"),
+        (gc.build, "design", PAIR),
+        (gc.load, "path", 3),
+        (gc.loads, "text", b"name"),
+        (gc.design, "document", [PAIR]),
+        (gc.design(PAIR).with_, "changes", "name"),
+        (gc.remedies, "result", gc.design(PAIR)),
+    ],
+)
+def test_arguments_of_other_types_are_refused_by_name(take: Any, name: str, given: Any) -> None:
+    with pytest.raises(DesignError, match=f"^{name}: is a {type(given).__name__}\\n") as caught:
+        take(given)
+    assert caught.value.problems[0].key == name
+
+
+def test_a_line_of_a_text_is_told_as_one() -> None:
+    with pytest.raises(DesignError, match=r"^line 2: an = is missing after the key"):
+        gc.loads('name = "mine"\nkind')
+
+
+def test_one_kind_of_file_is_enough(tmp_path: Path) -> None:
+    assert gc.build(gc.design(PAIR)).write(tmp_path, files="csv").files[-1] == "summary.json"
+
+
+def test_a_value_for_both_wheels_is_two() -> None:
+    design = gc.design({**PAIR, "blank": {"bore_diameter_mm": 6.0}})
+    for bore in (6.0, (6.0, 6.0)):
+        assert replace(design, blank=gc.Blank(bore_diameter=bore)) == design
+    assert replace(design, blank=gc.Blank(bore_diameter=(6.0, 5.0))) != design
+
+
+def test_a_result_is_computed_to_given_tolerances() -> None:
+    design, tolerances = gc.design(PAIR), Tolerances(oversampling=5)
+    assert gc.build(design, tolerances).tolerances == tolerances
+    assert gc.build(design).tolerances == Tolerances()

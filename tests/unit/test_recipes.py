@@ -18,7 +18,7 @@ ENVIRONMENT = {
     **os.environ,
     "MPLBACKEND": "Agg",
     "PYTHONPATH": str(rules.SOURCE.parent),
-    "PYTHONWARNINGS": "error",
+    "PYTHONWARNINGS": "error,default::DeprecationWarning",  # forks beside threads of numpy warn
 }
 
 

@@ -24,6 +24,7 @@ from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.table import settled
 from gearcam.display import cut
 from gearcam.errors import DesignError, InfeasibleError, Problem
+from gearcam.numeric.arguments import instance
 
 HASH_DIGITS: Final = 16
 """Hexadecimal digits of a design's hash: two of a thousand million million are alike by chance."""
@@ -174,8 +175,8 @@ class Design:
         DesignError
             If a design of this kind has no such key, or a value is not what the file may hold.
         """
-        document = document_of(self)
-        for key, value in changes.items():
+        document, rule = document_of(self), "a mapping of dotted keys to values"
+        for key, value in instance("changes", changes, Mapping, rule).items():
             *path, last = path_of(key)
             place: Any = document
             try:

@@ -78,6 +78,8 @@ class Key:
     def outward(self, value: Any) -> Any:
         """Turn an inner value into what a file would hold; arrays become lists."""
         value = value.tolist() if hasattr(value, "tolist") else value
+        if self.param.both and not isinstance(value, list | tuple):
+            value = (value, value)
         if isinstance(value, list | tuple):
             return [self._outward(item) for item in value]
         return self._outward(value)

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from gearcam.quantities import described
 from gearcam.registry import classes_in, lazy_classes
 
 if TYPE_CHECKING:
@@ -39,8 +40,8 @@ __all__ = [
 def _classes() -> dict[str, type]:
     from gearcam.laws.ratio.base import LAWS
 
-    return classes_in(LAWS)
+    return {name: described(one) for name, one in classes_in(LAWS).items()}
 
 
-if not TYPE_CHECKING:  # which then see typing errors in names
+if not TYPE_CHECKING:  # type checkers then find misspelt names
     __getattr__, __dir__ = lazy_classes("law", _classes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,8 @@ from gearcam.numeric.arrays import Array
 
 _SHOWN = 60
 """Letters of a wrong value that are shown."""
+
+T = TypeVar("T")
 
 
 def refused(message: str, name: str, value: object, allowed: str) -> DesignError:
@@ -35,6 +38,34 @@ def refused(message: str, name: str, value: object, allowed: str) -> DesignError
     DesignError
     """
     return DesignError([Problem(message, key=name, value=value, allowed=allowed)])
+
+
+def instance(name: str, value: object, types: type[T] | tuple[type[T], ...], allowed: str) -> T:
+    """Return an object that a caller gives.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter.
+    value : object
+        What was given.
+    types : type or tuple of type
+        Of which it may be.
+    allowed : str
+        The same in words.
+
+    Returns
+    -------
+    object
+
+    Raises
+    ------
+    DesignError
+        If it is of another type.
+    """
+    if not isinstance(value, types):
+        raise refused(f"is a {type(value).__name__}", name, value, allowed)
+    return value
 
 
 def angles(

@@ -90,7 +90,7 @@ class ThreePhasePolynomial(Brief):
     """
 
     knots: tuple[float, float, float, float] = param(
-        ANGLE, ge=0, le=360, doc="driver angles, from 0 to 360 or one lobe"
+        ANGLE, ge=0, le=360, doc="driver angles, from 0 to a turn or one lobe"
     )
     lowest: float = param(NUMBER, gt=0, doc="i21 at the second knot")
 

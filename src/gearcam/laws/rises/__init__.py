@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from gearcam.quantities import described
 from gearcam.registry import classes_in, lazy_classes
 
 if TYPE_CHECKING:
@@ -48,8 +49,8 @@ __all__ = [
 def _classes() -> dict[str, type]:
     from gearcam.laws.rises.base import RISES
 
-    return classes_in(RISES)
+    return {name: described(one) for name, one in classes_in(RISES).items()}
 
 
-if not TYPE_CHECKING:  # which then see typing errors in names
+if not TYPE_CHECKING:  # type checkers then find misspelt names
     __getattr__, __dir__ = lazy_classes("rise", _classes)
