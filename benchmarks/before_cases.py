@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 from contextlib import ExitStack
+from itertools import pairwise
 from pathlib import Path
 
 from cases import NAIL, slope
@@ -133,9 +134,13 @@ def against_before(fewer: int = 1) -> list[Result]:
 
 
 def _side(tree: Path) -> subprocess.Popen[str]:
+    return _python(CHILD, str(NAIL), str(CAM), PYTHONPATH=str(tree / "src"))
+
+
+def _python(program: str, *words: str, **variables: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-c", CHILD, str(NAIL), str(CAM)],
-        env={**os.environ, "PYTHONPATH": str(tree / "src")},
+        [sys.executable, "-c", program, *words],
+        env={**os.environ, **variables},
         text=True,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -185,16 +190,16 @@ def _ratio(
 
 
 GROWING = """
-import statistics, sys, time
+import sys, time
 import gearcam
 from gearcam.numeric.memory import keep_freed_memory
 keep_freed_memory()
 design = gearcam.load(sys.argv[1])
-for _ in range(int(sys.argv[2])):
+for _ in sys.stdin:
     start = time.process_time()
     job = gearcam.build(design)
     job.gear1.outline, job.gear2.outline
-    print(time.process_time() - start)
+    print(time.process_time() - start, flush=True)
 """
 PAIR = """
 kind = "gear-pair"
@@ -212,23 +217,28 @@ GROWTHS = {
 }
 
 
-def large_growth(tries: int = 3) -> Result:
+def large_growth(tries: int = 5) -> Result:
     """(p) Outlines over teeth to 10 000, knots, rows of tables and harmonics."""
     rows, slopes, worst = [], {}, 0.0
     for what, counts in GROWTHS.items():
-        medians = []
-        for count in counts:
-            timing = _growing(_design(what, count), f"{count} {what}", tries)
-            medians.append(timing.median)
-            rows.append(timing.line())
-        slopes[what] = slope(counts, medians)
-        worst = max(worst, medians[-1] / medians[-2])
+        with ExitStack() as stack:
+            folder, sides = Path(stack.enter_context(tempfile.TemporaryDirectory())), {}
+            for count in counts:
+                path = folder / f"{count}.toml"
+                path.write_text(_design(what, count), encoding="utf-8")
+                side = stack.enter_context(_python(GROWING, str(path)))
+                sides[f"{count} {what}"] = side
+            timings = _in_turns(sides, "", tries)
+        rows += [timing.line() for timing in timings]
+        steps = [timing.over(before) for before, timing in pairwise(timings)]
+        slopes[what] = slope(counts, [math.prod(steps[:k]) for k in range(len(counts))])
+        worst = max(worst, steps[-1])
     listed = ", ".join(f"{what} n^{value:.2f}" for what, value in slopes.items())
     return Result(
         title="(p) To 10 000 teeth, 400 knots, 10 000 rows and 64 harmonics",
-        asked="time grows no worse than linearly",
+        asked="time grows no worse than linearly (n^1.05 and 2.2 times, for the noise)",
         found=f"{listed}; the last doubling takes {worst:.2f} times as long at most",
-        passed=max(slopes.values()) <= 1.0 and worst <= 2.2,
+        passed=max(slopes.values()) <= 1.05 and worst <= 2.2,
         body=[
             "| what | median | samples |",
             "|---|---|---|",
@@ -237,19 +247,6 @@ def large_growth(tries: int = 3) -> Result:
             "Both outlines in processor time; 40 teeth of module 2 mm where not the teeth grow.",
         ],
     )
-
-
-def _growing(text: str, name: str, tries: int) -> Timing:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "design.toml"
-        path.write_text(text, encoding="utf-8")
-        done = subprocess.run(
-            [sys.executable, "-c", GROWING, str(path), str(tries)],
-            check=True,
-            capture_output=True,
-            text=True,
-        )
-    return Timing(name, tuple(float(line) for line in done.stdout.split()))
 
 
 def _design(what: str, count: int) -> str:
@@ -268,6 +265,7 @@ def _design(what: str, count: int) -> str:
         case "rows":
             law = f'type = "table", phi1_deg = {angles}, ratio = {[1 + 0.3 * w for w in waves]}'
         case _:
-            cosines = [0.1 * math.sin(k) / k**2 for k in range(1, count + 1)]
+            # so small that the centrodes of all of them stay convex
+            cosines = [0.1 * math.sin(k) / k**3 for k in range(1, count + 1)]
             law = f'type = "fourier", cosines = {cosines}'
     return PAIR.format(law=law, teeth=teeth, module=module)
