@@ -140,7 +140,7 @@ class CamDesign(Design):
             object.__setattr__(self, "blank", _unmarked(self.blank, self.source))
 
     def _wanted(self) -> Iterator[Wanted]:
-        if not isinstance(self.motion, Sequence):
+        if not isinstance(self.motion, Sequence) or isinstance(self.motion, str):
             yield "motion", self.motion, (tuple, *whole_turns())
             return
         for number, phase in enumerate(self.motion):
