@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from claims.claim import RiseClaim
 from claims.of_polynomials import POLYNOMIALS
@@ -23,53 +24,37 @@ from gearcam.laws.rises.simple import (
 def formula() -> tuple[RiseClaim, ...]:
     quarter = 0.25 - 0.5 / math.pi
     swing = math.tanh(2.0)
-    return (
-        RiseClaim(
-            parameters=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),
-            values={0.25: quarter, 0.5: 0.5, 0.75: 1.0 - quarter},
-            velocities={0.25: 1.0, 0.5: 2.0},
-            peak_velocity=2.0,
-            peak_acceleration=2 * math.pi,
-            peak_jerk=4 * math.pi**2,
-            continuity=2,
-        ),
-        RiseClaim(
-            parameters=FormulaRise(formula="x**3*(10 - 15*x + 6*x**2)"),
-            values={0.25: 53 / 512, 0.75: 459 / 512},
-            velocities={0.25: 270 / 256, 0.5: 1.875},
-            peak_velocity=1.875,
-            peak_acceleration=10 / math.sqrt(3),
-            peak_jerk=60.0,
-            continuity=2,
-        ),
-        RiseClaim(
-            parameters=FormulaRise(formula="(1 + tanh(4*x - 2)/tanh(2))/2"),
-            values={0.5: 0.5, 0.75: 0.5 + math.tanh(1.0) / (2 * swing)},
-            velocities={0.5: 2.0 / swing, 0.75: 2.0 / (swing * math.cosh(1.0) ** 2)},
-            peak_velocity=2.0 / swing,
-            peak_acceleration=math.inf,
-            peak_jerk=math.inf,
-            continuity=0,
-        ),
-        RiseClaim(
-            parameters=FormulaRise(formula=lambda x: x - math.sin(2 * math.pi * x) / (2 * math.pi)),
-            values={0.25: quarter, 0.5: 0.5, 0.75: 1.0 - quarter},
-            velocities={0.25: 1.0, 0.5: 2.0},
-            peak_velocity=2.0,
-            peak_acceleration=2 * math.pi,
-            peak_jerk=4 * math.pi**2,
-            continuity=2,
-        ),
-        RiseClaim(
-            parameters=FormulaRise(formula=lambda x: x**3 * (10 - 15 * x + 6 * x**2)),
-            values={0.25: 53 / 512, 0.75: 459 / 512},
-            velocities={0.25: 270 / 256, 0.5: 1.875},
-            peak_velocity=1.875,
-            peak_acceleration=10 / math.sqrt(3),
-            peak_jerk=60.0,
-            continuity=2,
-        ),
+    cycloidal = RiseClaim(
+        parameters=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),
+        values={0.25: quarter, 0.5: 0.5, 0.75: 1.0 - quarter},
+        velocities={0.25: 1.0, 0.5: 2.0},
+        peak_velocity=2.0,
+        peak_acceleration=2 * math.pi,
+        peak_jerk=4 * math.pi**2,
+        continuity=2,
     )
+    quintic = RiseClaim(
+        parameters=FormulaRise(formula="x**3*(10 - 15*x + 6*x**2)"),
+        values={0.25: 53 / 512, 0.75: 459 / 512},
+        velocities={0.25: 270 / 256, 0.5: 1.875},
+        peak_velocity=1.875,
+        peak_acceleration=10 / math.sqrt(3),
+        peak_jerk=60.0,
+        continuity=2,
+    )
+    rough = RiseClaim(
+        parameters=FormulaRise(formula="(1 + tanh(4*x - 2)/tanh(2))/2"),
+        values={0.5: 0.5, 0.75: 0.5 + math.tanh(1.0) / (2 * swing)},
+        velocities={0.5: 2.0 / swing, 0.75: 2.0 / (swing * math.cosh(1.0) ** 2)},
+        peak_velocity=2.0 / swing,
+        peak_acceleration=math.inf,
+        peak_jerk=math.inf,
+        continuity=0,
+    )
+    sine = FormulaRise(formula=lambda x: x - math.sin(2 * math.pi * x) / (2 * math.pi))
+    powers = FormulaRise(formula=lambda x: x**3 * (10 - 15 * x + 6 * x**2))
+    same = replace(cycloidal, parameters=sine), replace(quintic, parameters=powers)
+    return (cycloidal, quintic, rough, *same)
 
 
 def b_spline() -> tuple[RiseClaim, ...]:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from gearcam.cams.disc import DiscCam
+from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.spec import KIND
 from gearcam.findings import Remark, check
 from gearcam.numerals import shown
@@ -20,6 +21,11 @@ PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
 oscillating ones."""
 
 _TURN: Final = 2.0 * math.pi
+
+
+def pressure_limit(mechanism: Mechanism, given: float) -> float:
+    """Return the largest pressure angle of a `mechanism`, rad: as `given`, by custom where nan."""
+    return PRESSURE[mechanism.oscillating] if math.isnan(given) else given
 
 
 def _deg(theta: float) -> str:
@@ -40,8 +46,7 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Remark]:
 
     Looks at: the pressure angle: beyond its limit a translating follower jams in its guide.
     """
-    if math.isnan(limit):
-        limit = PRESSURE[cam.mechanism.oscillating]
+    limit = pressure_limit(cam.mechanism, limit)
     for kind in ("rise", "return"):
         found = cam.pressure(kind)
         if found is None or found.largest <= limit:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.cams.checks import KIND, PRESSURE
+from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
 from gearcam.findings import limit_of
 from gearcam.numeric.columns import Columns
@@ -42,8 +42,8 @@ def _of_lift(name: str, result: CamResult) -> Chart:
 
 def _pressure_angle(result: CamResult) -> Chart:
     table = _table(result)
-    limit = limit_of(KIND, "pressure-angle", result.design.limits)
-    limit = math.degrees(PRESSURE[result.mechanism.oscillating] if math.isnan(limit) else limit)
+    given = limit_of(KIND, "pressure-angle", result.design.limits)
+    limit = math.degrees(pressure_limit(result.mechanism, given))
     return Chart(
         title="Pressure angle",
         x=_ANGLE,

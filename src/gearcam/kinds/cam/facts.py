@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearcam.cams.checks import KIND, PRESSURE
+from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
@@ -144,8 +144,8 @@ def _ends(found: Range, scale: float = 1.0) -> dict[str, float]:
 
 def _pressure(result: CamResult) -> Tree:
     made: Tree = {}
-    limit = limit_of(KIND, "pressure-angle", result.design.limits)
-    limit = PRESSURE[result.mechanism.oscillating] if math.isnan(limit) else limit
+    given = limit_of(KIND, "pressure-angle", result.design.limits)
+    limit = pressure_limit(result.mechanism, given)
     for kind in ("rise", "return"):
         found = result.cam.pressure(kind)
         if found is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -11,6 +12,7 @@ import numpy as np
 from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
 from gearcam.findings import limit_of
 from gearcam.gears.checks import KIND, undercut_curvatures
+from gearcam.gears.contact import COAST, DRIVE
 from gearcam.kinds.gear_pair.columns import centrode_columns
 from gearcam.numeric.arrays import Array
 
@@ -71,9 +73,7 @@ def _curvature(result: GearPairResult) -> Chart:
         convex, concave = undercut_curvatures(gear)
         for value, what in ((convex, "convex"), (-concave, "concave")):
             found.setdefault(value, Limit(label=f"{what}, free of undercut", value=value))
-    return Chart(
-        title=chart.title, x=chart.x, y=chart.y, lines=chart.lines, limits=tuple(found.values())
-    )
+    return replace(chart, limits=tuple(found.values()))
 
 
 def _pressure_angle(result: GearPairResult) -> Chart:
@@ -97,7 +97,7 @@ def _contact_ratio(result: GearPairResult) -> Chart:
     table = result.contact_ratios
     limit = limit_of(KIND, "contact-ratio", result.design.limits)
     lines = []
-    for side, label in zip((-1, 1), _SIDES.values(), strict=True):
+    for side, label in zip((DRIVE, COAST), _SIDES.values(), strict=True):
         own = table["side"] == side
         x, y = (table[name][own].astype(float) for name in ("tooth1", "contact_ratio"))
         lines.append(Line(label=label, x=x, y=y, dots=True))
