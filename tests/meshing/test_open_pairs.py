@@ -21,6 +21,7 @@ from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.formula import RackLaw
+from gearcam.laws.ratio.span import RACK
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import touches
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
@@ -72,14 +73,14 @@ def stop(name: str) -> float:
 def lead_of(name: str, way: float) -> float:
     """The driven wheel's turn for a way of about the pitch circle, mm; of a rack the way."""
     pair = made(name).pair
-    return way if pair.law.of_rack else way / (0.5 * pair.center_distance)
+    return way if pair.law.mate == RACK else way / (0.5 * pair.center_distance)
 
 
 def seen(name: str, points: Any, phi: float, lead: float, distance: float) -> Any:
     """Points of wheel 2 in the assembled pair, by the convention of the frames."""
     law, size = made(name).law, made(name).pair.center_distance
     driven = float(law.phi2(phi))
-    if law.of_rack:
+    if law.mate == RACK:
         return points - 1j * (size * driven + lead) + distance
     return points * np.exp(1j * (driven + lead)) + distance
 
@@ -186,7 +187,7 @@ def flank(gear: Gear, place: int, sigma: int) -> NDArray[np.complex128]:
 
 def dense_touch(name: str, side: int, phi: float, distance: float) -> float:
     """First touch by dense points: of every flank near the pitch point on both wheels' blanks."""
-    gears, feeds = made(name).gears, made(name).law.of_rack
+    gears, feeds = made(name).gears, made(name).law.mate == RACK
     first, second = (gear.toothing for gear in gears)
     s = float(first.track.arc_length(phi))
     ahead = []
@@ -253,7 +254,7 @@ def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(
     exact, moved = contacts(pairs, phi), touches(broken, phi)
     normal = 0.02 * math.cos(made(name).pair.rack.pressure_angle)
     lever = exact.lever[1][exact.pair == j]
-    if made(name).law.of_rack:
+    if made(name).law.mate == RACK:
         lever = np.abs(exact.force.imag[exact.pair == j])
     assert moved.turn[moved.pair == j] == pytest.approx(-side * normal / lever, rel=5e-3)
     others = touches(pairs, phi).turn[moved.pair != j]
@@ -300,7 +301,7 @@ def test_the_command_studies_the_travel_with_both_stops(name: str, tmp_path: Pat
     whole = np.isfinite(rows["closed_mm2"])
     assert np.count_nonzero(whole) > 10
     assert rows["predicted_mm2"][whole] == pytest.approx(rows["closed_mm2"][whole], rel=0.02)
-    assert ("center_distance_mm" in found) == (not door.law.of_rack)
+    assert ("center_distance_mm" in found) == (not door.law.mate == RACK)
 
 
 def test_the_backlash_of_a_rack_is_the_way_that_it_may_move() -> None:

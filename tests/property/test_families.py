@@ -29,6 +29,7 @@ from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.position import MotionLaw
 from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
+from gearcam.laws.ratio.span import RACK
 from gearcam.laws.ratio.table import TableLaw
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
@@ -201,7 +202,7 @@ def whole_overlap(made: GearPairResult, phi: float) -> float:
     driven = float(made.law.phi2(phi))
     one = made.gear1.outline @ [1, 1j] * np.exp(-1j * phi)
     two = made.gear2.outline @ [1, 1j]
-    if made.law.of_rack:
+    if made.law.mate == RACK:
         two = two - 1j * driven * made.pair.center_distance
     else:
         two = two * np.exp(1j * driven) + made.pair.center_distance
@@ -210,7 +211,7 @@ def whole_overlap(made: GearPairResult, phi: float) -> float:
 
 def demand_free(made: GearPairResult) -> None:
     """No collision: every phase by the stepwise overlap, a few by whole outlines."""
-    end = float(made.centrode_angles()[-1]) if made.law.of_rack else made.law.lobes.period
+    end = float(made.centrode_angles()[-1]) if made.law.mate == RACK else made.law.lobes.period
     phases = end * (np.arange(12) + 0.37) / 12
     assert max(whole_overlap(made, phi) for phi in phases) <= explained(made)
     first, second = (half_teeth(gear.profile) for gear in made.gears)

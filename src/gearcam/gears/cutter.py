@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.display import Brief
+from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.spec import BasicRack
 from gearcam.numeric.roots import largest_fitting
 
@@ -120,6 +121,7 @@ def choose_cutter(
     module: float,
     concave_curvature: float,
     *,
+    kc: float | None = None,
     shift: float = 0.0,
     backlash: float = 0.0,
     clearance: float = 0.0,
@@ -134,6 +136,8 @@ def choose_cutter(
         Module.
     concave_curvature : float, 1/mm
         Largest ``-kappa`` of the centrode; not positive for a convex one.
+    kc : float, 1/mm, optional
+        Curvature of the pinion that cuts a concave one; 1.15 times its own where left out.
     shift : float
         Profile shift of this wheel, in modules.
     backlash : float, mm
@@ -146,7 +150,10 @@ def choose_cutter(
     Cutter
         The rack for a convex centrode, else a pinion; see `Cutter.fits`.
     """
-    kc = _CONCAVE_MARGIN * concave_curvature if concave_curvature * module > _FLAT else 0.0
+    if not concave_curvature * module > _FLAT:
+        kc = 0.0
+    elif kc is None:
+        kc = _CONCAVE_MARGIN * concave_curvature
     cutter = Cutter(
         alpha=rack.pressure_angle,
         addendum=(rack.addendum + shift) * module,
@@ -160,6 +167,48 @@ def choose_cutter(
     if kc > 0.0 and cutter.offset > cutter.half_space:
         cutter = _blunt(cutter)
     return widened(cutter, clearance)
+
+
+def ring_curvature(
+    concave_curvature: float, mate_curvature: float, module: float, teeth: float | None
+) -> float:
+    """Return the curvature of the pinion cutter of a ring.
+
+    Parameters
+    ----------
+    concave_curvature : float, 1/mm
+        Largest ``-kappa`` of the ring's centrode.
+    mate_curvature : float, 1/mm
+        Least curvature of the mate's centrode.
+    module : float, mm
+        Module.
+    teeth : float or None
+        Teeth of the cutter, where they are given.
+
+    Returns
+    -------
+    float, 1/mm
+        1.15 times the ring's, but at least the mate's: a cutter so large leaves fillets that the
+        mate's tips stay clear of, and gets out of the ring without cutting its tips.
+
+    Raises
+    ------
+    InfeasibleError
+        If a cutter of so many teeth does not fit into the ring.
+    """
+    if teeth is None:
+        return max(_CONCAVE_MARGIN * concave_curvature, mate_curvature)
+    most = 2.0 / (module * concave_curvature)
+    if not teeth < most:
+        raise InfeasibleError(
+            "the pinion cutter is as large as the ring where that is narrowest",
+            where="ring.cutter_teeth",
+            value=teeth,
+            limit=most,
+            nearest="the limit is the cutter that just fits",
+            ways=(Way(near={"ring.cutter_teeth": most / _CONCAVE_MARGIN}),),
+        )
+    return 2.0 / (module * teeth)
 
 
 def widened(cutter: Cutter, by: float) -> Cutter:

@@ -29,7 +29,7 @@ class Guide(Brief, ABC):
         What moves it.
     place : float, mm
         Where its frame is in that of the driver at phi1 = 0, along x: the distance of the shafts,
-        0 for a rack.
+        0 for a rack, less than 0 for a ring.
     scale : float
         What the law's motion is multiplied by to be a turn: 1, of a rack mm.
     """
@@ -40,7 +40,7 @@ class Guide(Brief, ABC):
     unit: ClassVar[str]
     """Unit of turns."""
     turns: ClassVar[float]
-    """By how much a direction turns over a turn of 1, rad: 1, of a rack 0."""
+    """By how much a direction turns over a turn of 1, rad: 1, of a rack 0, of a ring -1."""
 
     def nominal(self, phi1: Array) -> Array:
         """Return the nominal turns at driver angles, rad: rad, of a rack mm."""
@@ -91,27 +91,36 @@ class Guide(Brief, ABC):
 
 
 class Shaft(Guide):
-    """A shaft, seen as the origin; the driver is to its left."""
+    """A shaft, seen as the origin; the driver is to its left and turns the other way."""
 
     unit = "rad"
     turns = 1.0
 
     def stand(self, phi1: Array, lead: Array | float) -> tuple[Plane, Plane]:
         """Return what is promised (see `Guide`)."""
-        turn = np.exp(1j * (self.nominal(phi1) + lead))
+        turn = np.exp(1j * self.turns * (self.nominal(phi1) + lead))
         return turn, np.zeros_like(turn)
 
     def carried(self, points: Plane) -> Plane:
         """Return what is promised (see `Guide`)."""
-        return 1j * points
+        return 1j * self.turns * points
 
     def height(self, points: Plane) -> Array:
         """Return what is promised (see `Guide`)."""
-        return np.abs(points)
+        return self.turns * np.abs(points)
 
     def turn(self, points: Plane, others: Plane) -> Array:
         """Return what is promised (see `Guide`)."""
-        return np.angle(points * np.conj(others))
+        return self.turns * np.angle(points * np.conj(others))
+
+
+class RingShaft(Shaft):
+    """The shaft of a ring: the driver is to its right, within the ring, and turns as it does.
+
+    The tips of a ring point to the shaft, so that its heights are distances from it less than 0.
+    """
+
+    turns = -1.0
 
 
 class Slideway(Guide):

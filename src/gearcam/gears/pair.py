@@ -12,17 +12,17 @@ from gearcam.display import Brief, Displayed
 from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Facts
 from gearcam.gears.bound import demand_cutters
-from gearcam.gears.cutter import choose_cutter
+from gearcam.gears.cutter import choose_cutter, ring_curvature
 from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
 from gearcam.gears.flank_points import flank_points
 from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.outline import Outline, build_outline
-from gearcam.gears.rolling import RACK, Rolling, roll
+from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
 from gearcam.numerals import shown
 from gearcam.numeric.arguments import whole
 from gearcam.numeric.arrays import Array
@@ -92,6 +92,11 @@ class GearPair(Brief):
     def on_rack(self) -> bool:
         """Whether the driven element is a rack."""
         return self.rolling.mate == RACK
+
+    @property
+    def internal(self) -> bool:
+        """Whether the driven element is a ring."""
+        return self.rolling.mate == RING
 
     @property
     def closed(self) -> bool:
@@ -226,6 +231,7 @@ def make_pair(
     asked: Rack,
     tolerances: Tolerances,
     finish: tuple[Finish, Finish] = (Finish(), Finish()),
+    cutter_teeth: float | None = None,
 ) -> GearPair:
     """Put a law on two shafts.
 
@@ -241,6 +247,8 @@ def make_pair(
         Inner accuracy.
     finish : (Finish, Finish)
         What is taken off the edges of both wheels' teeth.
+    cutter_teeth : float, optional
+        Teeth of the pinion that cuts a ring.
 
     Returns
     -------
@@ -250,7 +258,8 @@ def make_pair(
     Raises
     ------
     InfeasibleError
-        If the rack cannot be made, or a concave part is too tight for the teeth.
+        If the rack cannot be made, or a concave part is too tight for the teeth, or a ring for its
+        cutter.
     """
     rolling = roll(
         law,
@@ -273,11 +282,15 @@ def make_pair(
     demand_clearance(rack, spec, module, finish)
 
     def toothing(wheel: Wheel) -> Toothing:
-        track = rolling.tracks[wheel - 1]
+        track, kc = rolling.tracks[wheel - 1], None
+        if wheel == 2 and rolling.mate == RING and track.concave.radius < math.inf:
+            least = float(rolling.curvature_extremes[0][1].min())
+            kc = ring_curvature(1.0 / track.concave.radius, least, module, cutter_teeth)
         cutter = choose_cutter(
             rack,
             module,
             1.0 / track.concave.radius,
+            kc=kc,
             shift=spec.x if wheel == 1 else -spec.x,
             backlash=spec.backlash,
             clearance=finish[wheel - 1].clearance,
@@ -325,7 +338,8 @@ def make_gear(pair: GearPair, wheel: Wheel, tolerance: float, tolerances: Tolera
     return Gear(pair=pair, wheel=wheel, profile=profile)
 
 
-def lobes_of(teeth: tuple[int, int]) -> Lobes:
-    """Return the lobes of tooth counts: ``z1 : z2`` in lowest terms."""
-    common = math.gcd(*teeth)
-    return Lobes(teeth[0] // common, teeth[1] // common)
+def lobes_of(spec: PairSpec) -> Lobes:
+    """Return the lobes of a pair's tooth counts: ``z1 : z2`` in lowest terms."""
+    common = math.gcd(*spec.teeth)
+    z1, z2 = spec.teeth
+    return Lobes(z1 // common, z2 // common, RING if spec.type == "internal" else WHEEL)

@@ -1,10 +1,11 @@
 """Two centrodes of a ratio law that roll on each other: the tracks of a wheel and its mate.
 
 Both share one parameter, the driver angle `phi` (rad, any number of turns), and one arc length
-``s(phi)``: rolling gives equal lengths. What the mate is, an external wheel or a rack, is decided
-by `roll` and is one number, `mate`: with ``w = 1`` for a wheel and ``w = 0`` for a rack, whose
-shaft is infinitely far, the driver's radius is ``r1 = A*i/(1 + w*i)`` and the curvatures obey
-``kappa1 + kappa2 = (1 + w*i)/v`` (Euler and Savary). An internal pair is ``w = -1``.
+``s(phi)``: rolling gives equal lengths. What the mate is, an external wheel, a rack or a ring, is
+told by the law's span and is one number, `mate`: with ``w = 1`` for a wheel, ``w = 0`` for a rack,
+whose shaft is infinitely far, and ``w = -1`` for a ring the driver's radius is ``r1 = A*i/(1 +
+w*i)``, the shaft of its mate stands at w*A, and the curvatures obey ``kappa1 + kappa2 = (1 +
+w*i)/v`` (Euler and Savary).
 """
 
 from __future__ import annotations
@@ -12,23 +13,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.display import Brief
-from gearcam.gears.guide import Guide, Shaft, Slideway
+from gearcam.gears.guide import Guide, RingShaft, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
+from gearcam.laws.ratio.span import RACK, RING, WHEEL
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.tolerances import Tolerances
-
-WHEEL: Final = 1
-RACK: Final = 0
-"""What the mate is: w in the formulas above."""
 
 _MARGIN = 2.0
 """Pitches beyond an open pair's end in which its last teeth are formed, fillets included."""
@@ -36,14 +33,12 @@ _MARGIN = 2.0
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Rolling(Brief):
-    """The pair of centrodes of an external pair, or of a wheel and a rack.
+    """The pair of centrodes of a wheel and its mate.
 
     Parameters
     ----------
     law : RatioLaw
         Their ratio.
-    mate : {WHEEL, RACK}
-        What the driver rolls on.
     arc : ArcLength
         Arc length over a lobe; of an open pair also beyond its ends. Its size is the distance of
         the shafts, A; of a rack, what the law's radius is multiplied by.
@@ -52,9 +47,13 @@ class Rolling(Brief):
     """
 
     law: RatioLaw
-    mate: int
     arc: ArcLength
     margin: float = 0.0
+
+    @property
+    def mate(self) -> int:
+        """What the driver rolls on: w above."""
+        return self.law.mate
 
     @property
     def center_distance(self) -> float:
@@ -74,7 +73,7 @@ class Rolling(Brief):
             closed=self.law.lobes.closed and not slides,
             slides=slides,
             turn=-1j if wheel == 1 else 1j,
-            clockwise=wheel == 2,
+            clockwise=wheel == 2 and self.mate != RING,
             rolling=self,
             wheel=wheel,
         )
@@ -85,7 +84,8 @@ class Rolling(Brief):
         size = self.center_distance
         if self.mate == RACK:
             return Slideway(law=self.law, place=0.0, scale=size)
-        return Shaft(law=self.law, place=size, scale=1.0)
+        shaft = Shaft if self.mate == WHEEL else RingShaft
+        return shaft(law=self.law, place=self.mate * size, scale=1.0)
 
     @property
     def mean_radius(self) -> float:
@@ -140,7 +140,8 @@ class Centrode(Track):
     rolling : Rolling
         The pair that it belongs to.
     wheel : {1, 2}
-        Which one: in its own coordinates wheel 1 has the polar angle phi1, wheel 2 pi - phi2.
+        Which one: in its own coordinates wheel 1 has the polar angle phi1, wheel 2 pi - phi2, a
+        ring phi2.
     """
 
     rolling: Rolling
@@ -151,8 +152,8 @@ class Centrode(Track):
 
         Notes
         -----
-        With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and ``q*exp(-1j*phi2)``, so
-        that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
+        With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and
+        ``q*exp(-1j*w*phi2)``, so that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
         law, size = self.rolling.law, self.arc.size
@@ -165,9 +166,10 @@ class Centrode(Track):
         if self.slides:
             pole, point = _complex(np.ones(r.shape), np.zeros(r.shape)), _complex(r, size * moved)
         else:
-            turned = moved if self.wheel == 1 else -moved
+            mate = self.rolling.mate
+            turned = moved if self.wheel == 1 else -mate * moved
             pole = _complex(np.cos(turned), np.sin(turned))
-            point = (r if self.wheel == 1 else r - size) * pole
+            point = (r if self.wheel == 1 else r - mate * size) * pole
         tangent = _complex(dr / speed, r / speed) * pole
         kappa = np.empty(0)
         if curved:
@@ -246,10 +248,9 @@ def roll(
     ValueError
         If not exactly one of the two sizes is given.
     """
-    mate = RACK if law.of_rack else WHEEL
 
     def unit_speed(phi: Array) -> Array:
-        _, r, dr = _radii(law.ratio.derivatives(phi, 1), mate)
+        _, r, dr = _radii(law.ratio.derivatives(phi, 1), law.mate)
         return np.sqrt(r * r + dr * dr)
 
     unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()
@@ -265,4 +266,4 @@ def roll(
     else:
         raise ValueError("give exactly one of center_distance and module")
     margin = 0.0 if lobes.closed else _MARGIN * size * length / teeth[0]
-    return Rolling(law=law, mate=mate, arc=replace(arc, size=size), margin=margin)
+    return Rolling(law=law, arc=replace(arc, size=size), margin=margin)

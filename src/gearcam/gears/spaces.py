@@ -169,6 +169,6 @@ def _chains(curves: WheelCurves, spaces: Ints) -> list[Chain]:
 
 
 def _points(curves: WheelCurves, index: Ints, phi: Array) -> Plane:
-    """Return points of rows at driver angles, mirrored where rising s runs clockwise."""
+    """Return points of rows at driver angles, mirrored where the metal is right of rising s."""
     points = curves.at(index.ravel(), phi.ravel())[0].reshape(phi.shape)
-    return np.conj(points) if curves.toothing.track.clockwise else points
+    return np.conj(points) if curves.toothing.turn.imag > 0.0 else points

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, param
+from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,6 +120,12 @@ class PairSpec:
     ((20, 30), 10.0)
     """
 
+    type: str = param(
+        TEXT,
+        default="external",
+        choices=("external", "internal"),
+        doc="whether wheel 2 is a wheel beside wheel 1, or a ring around it",
+    )
     center_distance: float | None = param(
         LENGTH, default=None, gt=0, le=1e6, doc="distance of the shafts"
     )
@@ -132,6 +138,43 @@ class PairSpec:
         LENGTH, default=0.0, ge=0, le=1e4, doc="backlash along the pitch curve, of both wheels"
     )
     face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="width of the wheels")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RingSpec:
+    """The metal around the teeth of a ring, and the pinion cutter that cuts them.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.RingSpec(outer_diameter=130.0).outer
+    'round'
+    """
+
+    outer: str = param(
+        TEXT,
+        default="round",
+        choices=("round", "follow"),
+        doc="outside of the ring: a circle, or parallel to the roots",
+    )
+    rim: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e6,
+        doc="least metal outside the roots; 2.7 modules if left out",
+    )
+    outer_diameter: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6, doc="diameter of a round outside, in place of the rim"
+    )
+    cutter_teeth: float | None = param(
+        NUMBER,
+        default=None,
+        ge=3,
+        le=10000,
+        doc="teeth of the pinion cutter, whole or not; if left out, as many as leave room for the "
+        "mate's tips",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

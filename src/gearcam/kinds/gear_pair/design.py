@@ -14,7 +14,7 @@ from gearcam.designs.kind import KINDS, DesignKind, Examined, made_of
 from gearcam.designs.outputs import FORMATS, OutputSpec, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
-from gearcam.gears.spec import PairSpec, Rack, StepsSpec
+from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH_KIND
 from gearcam.laws.ratio.base import LAWS
 from gearcam.meshing.settings import KIND as MESHING_KIND
@@ -71,6 +71,8 @@ class GearPairDesign(Design):
         The basic rack.
     blank : Blank
         Bores, hubs, holes, marks, edges, density.
+    ring : RingSpec
+        The metal around the teeth of a ring, and its cutter.
     steps : StepsSpec
         Steps of stepped wheels.
     output : PairOutputSpec
@@ -97,6 +99,7 @@ class GearPairDesign(Design):
     pair: PairSpec
     rack: Rack = field(default_factory=Rack)
     blank: Blank = field(default_factory=Blank)
+    ring: RingSpec = field(default_factory=RingSpec)
     steps: StepsSpec = field(default_factory=StepsSpec)
     output: PairOutputSpec = field(default_factory=PairOutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
@@ -237,6 +240,7 @@ KIND: Final = DesignKind(
             "pair": PairSpec,
             "rack": Rack,
             "blank": Blank,
+            "ring": RingSpec,
             "steps": StepsSpec,
             "output": PairOutputSpec,
             "meshing": MeshingSpec,

@@ -63,14 +63,21 @@ class PairStages(Result):
     def law(self) -> RatioLaw:
         """The ratio law."""
         with self.stage("law"):
-            return self.design.law.build(lobes_of(self.design.pair.teeth), self.tolerances)
+            return self.design.law.build(lobes_of(self.design.pair), self.tolerances)
 
     @cached_property
     def pair(self) -> GearPair:
         """The centrodes with their cutters."""
         law = self.law
         with self.stage("centrodes"):
-            return make_pair(law, self.design.pair, self.design.rack, self.tolerances, self._finish)
+            return make_pair(
+                law,
+                self.design.pair,
+                self.design.rack,
+                self.tolerances,
+                self._finish,
+                self.design.ring.cutter_teeth,
+            )
 
     @property
     def _finish(self) -> tuple[Finish, Finish]:

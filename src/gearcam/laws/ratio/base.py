@@ -21,7 +21,7 @@ from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.span import RackTravel, Span, angle_text, continued, demand_smooth
+from gearcam.laws.ratio.span import RING, Span, angle_text, continued, demand_smooth
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import Expansion
@@ -55,9 +55,9 @@ class RatioLaw(Brief, Displacement):
     function_error: float = 0.0
 
     @property
-    def of_rack(self) -> bool:
-        """Whether the driven element is a rack: the ratio is then r1, phi2 its travel."""
-        return isinstance(self.lobes, RackTravel)
+    def mate(self) -> int:
+        """What the driver rolls on; on a rack the ratio is r1, and phi2 the rack's travel."""
+        return self.lobes.mate
 
     @property
     def knots(self) -> Array:
@@ -215,14 +215,17 @@ def make_law(
     Raises
     ------
     InfeasibleError
-        Where the ratio is not finite, smooth, positive or periodic, or where it does not close.
+        Where the ratio is not finite, smooth, positive or periodic, of an internal pair not below
+        1, or where it does not close.
     """
     with demand_smooth("the ratio"):
         driven = integrate(knots, pieces, tolerances.expansion)
         ratio = piecewise(knots, pieces)
         _demand_positive(ratio)
+        if lobes.mate == RING:
+            _demand_below_one(ratio)
         if not lobes.closed:
-            longer, more = continued(ratio, pieces)
+            longer, more = continued(ratio, pieces, lobes.mate)
             ratio, driven = piecewise(longer, more), integrate(longer, more, tolerances.expansion)
             driven = driven.shifted(-float(driven(0.0)))
     law = RatioLaw(lobes=lobes, ratio=ratio, driven=driven, solved=dict(solved or {}))
@@ -250,6 +253,18 @@ def _demand_positive(ratio: Piecewise) -> None:
             where=angle_text(place),
             value=smallest,
             limit=0.0,
+        )
+
+
+def _demand_below_one(ratio: Piecewise) -> None:
+    _, (place, largest) = ratio.extremes
+    if not largest < 1.0:
+        raise InfeasibleError(
+            "the ratio of an internal pair must stay below 1: the wheel would be as large as its "
+            "ring",
+            where=angle_text(place),
+            value=largest,
+            limit=1.0,
         )
 
 

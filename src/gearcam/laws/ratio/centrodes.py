@@ -145,7 +145,9 @@ class LogSpiral(Brief):
 
         solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
         span = Travel(travel, self.driven_travel)
-        return make_law(span, [0.0, travel], [spiral(first, growth)], tolerances, solved)
+        return make_law(
+            span, [0.0, travel], [spiral(first, growth, lobes.mate)], tolerances, solved
+        )
 
 
 def _demand_one_lobe(lobes: Lobes, name: str) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Final
 
 import numpy as np
@@ -39,6 +39,12 @@ _ROOM = 0.9
 """Largest share of the room to either shaft that a continued centrode may use."""
 
 
+WHEEL: Final = 1
+RACK: Final = 0
+RING: Final = -1
+"""What the driver rolls on, w in ``r1 = A*i/(1 + w*i)``: an external wheel, a rack, a ring."""
+
+
 @dataclass(frozen=True)
 class Lobes:
     """How often the ratio repeats in a turn: n1 times of the driver, n2 of the driven wheel.
@@ -47,10 +53,13 @@ class Lobes:
     ----------
     n1, n2 : int
         The tooth counts' ratio in lowest terms.
+    mate : {WHEEL, RING}
+        What the driver rolls on.
     """
 
     n1: int
     n2: int
+    mate: int = WHEEL
     closed: ClassVar[bool] = True
 
     @property
@@ -72,10 +81,13 @@ class Travel:
     ----------
     period, advance : float, rad
         How far the driver and the driven wheel turn.
+    mate : {WHEEL, RING}
+        What the driver rolls on.
     """
 
     period: float
     advance: float
+    mate: int = WHEEL
     n1: ClassVar[int] = 1
     n2: ClassVar[int] = 1
     closed: ClassVar[bool] = False
@@ -91,8 +103,11 @@ class RackTravel(Travel):
         A turn of the wheel.
     advance : float
         The rack's travel in a turn, in the scale of the wheel's radius.
+    mate : {RACK}
+        Nothing else.
     """
 
+    mate: int = RACK
     closed: ClassVar[bool] = True
 
 
@@ -116,7 +131,7 @@ def demand_equal(lobes: Lobes) -> None:
     InfeasibleError
         If they are unequal.
     """
-    if lobes != ONE_LOBE:
+    if replace(lobes, mate=WHEEL) != ONE_LOBE:
         raise InfeasibleError(
             "an open pair has equal tooth counts: its centrodes are equally long",
             where="pair.teeth",
@@ -148,7 +163,7 @@ def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | No
     if driver_travel is None or driven_travel is None:
         return lobes
     demand_equal(lobes)
-    return Travel(driver_travel, driven_travel)
+    return Travel(driver_travel, driven_travel, lobes.mate)
 
 
 def travel_problems(
@@ -208,7 +223,7 @@ def angle_text(angle: float) -> str:
     return f"phi1 = {shown(round(math.degrees(angle), 6) + 0.0)} deg"
 
 
-def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[Array, list[Piece]]:
+def continued(ratio: Piecewise, pieces: list[Piece], mate: int) -> tuple[Array, list[Piece]]:
     """Continue an open ratio beyond both ends.
 
     Parameters
@@ -217,6 +232,8 @@ def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[Array, list[Piece]
         i21 over the travel, positive.
     pieces : list of Piece
         Its pieces.
+    mate : {WHEEL, RING}
+        What the driver rolls on.
 
     Returns
     -------
@@ -226,39 +243,44 @@ def continued(ratio: Piecewise, pieces: list[Piece]) -> tuple[Array, list[Piece]
         With a spiral before and behind. Each is as long as the centrode itself, or as the room
         between the shafts allows.
     """
-    length = _length(ratio)
+    length = _length(ratio, mate)
     last = len(ratio.knots) - 1
-    first, before = _end(float(ratio.knots[0]), ratio.side(0, 1, 1), -1.0, length)
-    final, behind = _end(float(ratio.knots[last]), ratio.side(last, -1, 1), 1.0, length)
+    first, before = _end(float(ratio.knots[0]), ratio.side(0, 1, 1), -1.0, length, mate)
+    final, behind = _end(float(ratio.knots[last]), ratio.side(last, -1, 1), 1.0, length, mate)
     return np.concatenate([[first], ratio.knots, [final]]), [before, *pieces, behind]
 
 
-def _length(ratio: Piecewise) -> float:
+def _length(ratio: Piecewise, mate: int) -> float:
     """Length of the centrode for unit centre distance, to a few digits."""
     nodes, weights = np.polynomial.legendre.leggauss(48)
     half = 0.5 * np.diff(ratio.knots)
     x = ratio.knots[:-1] + half * (1.0 + nodes[:, None])
     i, slope = ratio.derivatives(x, 1)
-    return float((weights @ (np.hypot(i, slope / (1.0 + i)) / (1.0 + i))) @ half)
+    turn = 1.0 + mate * i
+    return float((weights @ (np.hypot(i, slope / turn) / turn)) @ half)
 
 
-def _end(place: float, end: list[float], side: float, length: float) -> tuple[float, Piece]:
+def _end(
+    place: float, end: list[float], side: float, length: float, mate: int
+) -> tuple[float, Piece]:
     """Angle to which a spiral continues an end (ratio and slope given), and the spiral."""
     ratio, slope = end
-    radius = ratio / (1.0 + ratio)
-    growth = slope / (ratio * (1.0 + ratio))
+    radius = ratio / (1.0 + mate * ratio)
+    growth = slope / (ratio * (1.0 + mate * ratio))
     if abs(growth) < _FLAT:
         piece = Piece(lambda x: 0.0 * x + ratio, lambda x: ratio * x)
         return place + side * length / radius, piece
     outward, stretch = side * growth, math.hypot(1.0, growth)
-    room = (1.0 - radius) if outward > 0.0 else radius
+    room = radius
+    if outward > 0.0:  # a ring goes on around any wheel
+        room = 1.0 - radius if mate == WHEEL else math.inf
     rise = math.copysign(min(length * abs(outward) / stretch, _ROOM * room), outward)
 
     reach = side * math.log1p(rise / radius) / outward
-    return place + reach, spiral(radius, growth, place)
+    return place + reach, spiral(radius, growth, mate, place)
 
 
-def spiral(radius: float, growth: float, place: float = 0.0) -> Piece:
+def spiral(radius: float, growth: float, mate: int, place: float = 0.0) -> Piece:
     """Return the ratio of a logarithmic spiral, ``r1/A = radius*exp(growth*(phi1 - place))``.
 
     Parameters
@@ -267,6 +289,8 @@ def spiral(radius: float, growth: float, place: float = 0.0) -> Piece:
         At the place, over the centre distance A.
     growth : float, 1/rad
         Of the radius in a radian, in the radius.
+    mate : {WHEEL, RING}
+        What the driver rolls on.
     place : float, rad
         Driver angle.
 
@@ -280,8 +304,8 @@ def spiral(radius: float, growth: float, place: float = 0.0) -> Piece:
         return radius * exp(growth * (x - place))
 
     def driven(x: Jet) -> Jet:
-        return (-1.0 / growth) * log(1.0 - share(x))
+        return (-mate / growth) * log(1.0 - mate * share(x))
 
     return Piece(
-        lambda x: share(x) / (1.0 - share(x)), driven if abs(growth) > _CLOSED_FORM else None
+        lambda x: share(x) / (1.0 - mate * share(x)), driven if abs(growth) > _CLOSED_FORM else None
     )
