@@ -188,9 +188,19 @@ class RingSpec:
             yield "outer_diameter", None, "rim_mm is given too", "one of both"
 
     def least_rim(self, roots: float, module: float) -> float:
-        """Return the least metal outside roots that lie within a radius `roots`, mm.
+        """Return the least metal outside the roots.
 
-        It is not positive where the outside would reach them; `module` in mm.
+        Parameters
+        ----------
+        roots : float, mm
+            Largest distance of the roots from the axis.
+        module : float, mm
+            Module.
+
+        Returns
+        -------
+        float, mm
+            Not positive where a round outside would reach the roots.
         """
         if self.outer_diameter is not None:
             return 0.5 * self.outer_diameter - roots

@@ -127,7 +127,22 @@ def _bolts(blank: WheelBlank) -> Iterator[Opening]:
 
 
 def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> Polygon:
-    """Return what all steps of a wheel, or of a ring with `inner` edges, have in common."""
+    """Return what all steps of a wheel or a ring have in common.
+
+    Parameters
+    ----------
+    edges : sequence of Contour or Circle
+        Their outlines.
+    inner : sequence of Contour
+        Of a ring: their inner edges.
+    work : Workpiece
+        Which wheel.
+
+    Returns
+    -------
+    Polygon
+        Without openings.
+    """
     from shapely import Polygon, intersection_all
 
     regions = [

@@ -64,6 +64,7 @@ def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float
         ways.append(Way(near={diameter: _SHARE * (room - taken)}))
     elif most > 0.0:
         ways.append(Way(near={circle: best, diameter: min(blank.bolt_diameter, _SHARE * most)}))
+    ways.append(Way(near={work.key("bolts"): 0}))
     roomiest = f"no bolt circle keeps walls of {shown(wall)} mm: a larger rim of [ring] may"
     if most > 0.0:
         roomiest = f"a bolt circle of {shown(best)} mm takes up to {rounded_down(most, 4)} mm"
