@@ -19,6 +19,9 @@ from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
 
+_FINE = 0.01
+"""Sagitta of the chords of round outsides, from which walls are measured, in tolerances."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PartsSubject(Brief):
@@ -74,7 +77,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
         for opening in part.openings
     ]
     edges: list[tuple[Any, str]] = [
-        (LinearRing(edge.points(part.tolerance)), what)
+        (LinearRing(edge.points(_FINE * part.tolerance)), what)
         for what, ones in (("outline", part.contours), ("roots", part.inner))
         for edge in ones
     ]

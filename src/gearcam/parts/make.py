@@ -5,6 +5,7 @@ Refused: what openings and marks refuse.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -69,7 +70,7 @@ def make_part(
         hub=hub,
         marks=marks,
     )
-    _demand_marks(part, work)
+    _demand_marks(part, blank, work)
     return part
 
 
@@ -127,7 +128,7 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
         )
 
 
-def _demand_marks(part: Part, work: Workpiece) -> None:
+def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
     """Refuse a mark that meets an opening, the hub or the outline."""
     from shapely import Point
 
@@ -144,7 +145,16 @@ def _demand_marks(part: Part, work: Workpiece) -> None:
                 limit=max(0.0, 2.0 * room),
                 nearest="the limit is the room around its middle",
                 ways=(
+                    Way(near=_between_bolts(blank, work)),
                     Way(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
                     Way(near={"blank.timing_marks": False}),
                 ),
             )
+
+
+def _between_bolts(blank: WheelBlank, work: Workpiece) -> dict[str, object]:
+    """Return the change that turns a bolt circle by half a step, if there are bolts."""
+    if not blank.bolts:
+        return {}
+    angle = math.degrees(blank.bolt_angle) + 180.0 / blank.bolts
+    return {work.key("bolt_angle_deg"): angle if angle <= 360.0 else angle - 360.0}

@@ -51,7 +51,7 @@ def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float
     if not blank.bolts:
         return
     wide, taken = blank.bolt_diameter + blank.widening, 2.0 * wall + blank.widening
-    (room,) = _rooms(blank, solid, np.array([blank.bolt_circle]))
+    room = float(_rooms(blank, solid, np.array([blank.bolt_circle]))[0])
     if wide < room:
         return
     far = float(np.hypot(*np.array(solid.exterior.coords).T).max())

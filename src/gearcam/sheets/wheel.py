@@ -23,7 +23,6 @@ from gearcam.drawings import BORE, HOLE, INNER, SLOT, part_features, placed, rea
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
-from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
