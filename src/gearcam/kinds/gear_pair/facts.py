@@ -239,11 +239,10 @@ def _part(result: GearPairResult, gear: Gear) -> Tree:
     if not result.ordered:
         return {}
     number = gear.wheel - 1
-    return part_facts(
-        result.parts[number],
-        result.parts_subject.tools[number],
-        result.design.blank.wheel(gear.wheel).density,
-    )
+    part, tools = result.parts[number], result.parts_subject.tools[number]
+    density = result.design.blank.wheel(gear.wheel).density
+    area = {"part": {"area_mm2": part.steps[0].moments.area}}
+    return area | part_facts(part, tools, density)
 
 
 def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
