@@ -210,9 +210,13 @@ def test_bolts_lie_in_the_rim() -> None:
     made = ring_job(Constant(), {"teeth": (30, 60)}, blank=bolted(4, 130.4, 3.3))
     assert [one.name for one in made.parts[1].openings] == [f"bolt hole {k}" for k in (1, 2, 3, 4)]
     assert "thin-wall" not in codes(made)
-    assert "thin-wall" in codes(
-        ring_job(Constant(), {"teeth": (30, 60)}, blank=bolted(4, 130.4, 3.6))
-    )
+    # a root of the ring lies in the direction of 42 degrees
+    for circle, what, wall in ((131.4, "outline", 67.9 - 65.7), (130.0, "roots", 65.0 - 62.5)):
+        blank = bolted(1, circle, 3.3, bolt_angle=(0.0, math.radians(42.0)))
+        other = ring_job(Constant(), {"teeth": (30, 60)}, blank=blank)
+        (found,) = [one for one in other.findings if one.code == "thin-wall"]
+        assert what in found.message
+        assert found.value == pytest.approx(wall - 0.5 * 3.3, abs=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -241,6 +245,17 @@ def test_bolts_outside_the_rim_are_refused(circle: float, diameter: float, wall:
         limit = 2.0 * (min(away.min(), outside - 65.2) - wall) - 0.1
         assert refused.value.limit == pytest.approx(limit, abs=5e-3)
         assert f"walls of {wall:g} mm" in str(refused.value)
+
+
+def test_a_bolt_hole_at_the_mark_is_turned_away() -> None:
+    design = ring_design(
+        Constant(), {"teeth": (30, 60)}, blank=bolted(4, 130.4, 3.3, bolt_angle=(0.0, 0.0))
+    )
+    with pytest.raises(InfeasibleError, match="timing mark meets") as refused:
+        _ = gearcam.build(design).parts
+    made = nearest(refused.value, design)
+    assert made.design.blank.bolt_angle == pytest.approx((0.0, math.pi / 4))
+    assert len(made.parts[1].openings) == 4
 
 
 def test_no_room_for_bolts_names_the_ring() -> None:
