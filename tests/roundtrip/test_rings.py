@@ -24,7 +24,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import FILES
 from gearcam.parts.blank import Blank
-from helpers_rings import WAIST, ring_job, turned
+from helpers_ring_parts import WAIST, ring_job, turned
 
 BOLTS: dict[str, Any] = {
     "bolts": (0, 5), "bolt_diameter": (0, 3), "bolt_circle": (0, 120), "bolt_angle": (0.0, 0.3),

@@ -16,10 +16,12 @@ from gearcam.gears.spec import RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.formula import Formula
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank
 from gearcam.parts.shapes import Circle
-from helpers_rings import UNEVEN, WAIST, centrode, plain, ring_design, ring_job
+from helpers_pairs import job
+from helpers_ring_parts import UNEVEN, WAIST, centrode, plain, ring_design, ring_job
 
 FOLLOW = RingSpec(outer="follow", rim=6.0)
 
@@ -85,10 +87,13 @@ def test_the_steps_of_a_ring_share_their_outside() -> None:
         hole = shapely.Polygon(gears[1].outline)
         assert outer.contains(hole)
         assert outer.boundary.distance(hole.boundary) >= 6.0 - 3e-3
-    wide = ring_job(steps=StepsSpec(count=3)).parts[1].contours[0]
-    assert isinstance(wide, Circle)
-    reach = max(np.hypot(*gears[1].outline.T).max() for gears in made.steps)
-    assert 0.5 * wide.diameter == pytest.approx(reach + 5.4, rel=1e-12)
+    # the first step has no space where the ring is widest
+    wide = ring_job(replace(UNEVEN, ratios=(0.4, 0.6, 0.4)), steps=StepsSpec(count=3, offset=-0.5))
+    (outside, *_) = wide.parts[1].contours
+    assert isinstance(outside, Circle)
+    reach = [np.hypot(*gears[1].outline.T).max() for gears in wide.steps]
+    assert reach[0] < max(reach)
+    assert 0.5 * outside.diameter == pytest.approx(max(reach) + 5.4, rel=1e-12)
 
 
 @pytest.mark.parametrize("ring", [RingSpec(), FOLLOW, RingSpec(outer_diameter=140.0)])
@@ -281,6 +286,13 @@ def test_the_cutter_of_a_ring_is_noted_where_it_is_small() -> None:
         assert ("cutter-small" in codes(made)) == expected
         assert not codes(made) & {"concave", "concave-teeth"}
         assert made.facts.document["gears"][1]["cutter_teeth"] == pytest.approx(teeth, rel=1e-14)
+
+
+def test_a_small_cutter_of_a_wheel_is_no_cutter_of_a_ring() -> None:
+    law = Formula(r1="1 + 0.25*cos(2*phi1)")
+    found = codes(job(law, (40, 40), limits={"cutter_teeth": 90.0}))
+    assert "concave-teeth" in found
+    assert "cutter-small" not in found
 
 
 def test_the_largest_tool_of_a_ring_is_that_of_its_hole() -> None:
