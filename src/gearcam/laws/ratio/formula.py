@@ -27,6 +27,7 @@ from gearcam.laws.ratio.span import (
     RackTravel,
     Span,
     angle_text,
+    demand_outside,
     demand_smooth,
     open_travel,
     span_of,
@@ -95,9 +96,12 @@ class Formula(Brief):
         _demand_repeats(function, name, span)
         if self.ratio is None:
             law = law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
-            # di = (1 + i)^2/c*dr, from i = r/(c - r)
+            # di = (1 + w*i)^2/c*dr, from i = r/(c - w*r)
             ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
-            rate = float(((1.0 + ratio) ** 2).mean()) / law.solved["center_distance_over_scale"]
+            rate = (
+                float(((1.0 + law.mate * ratio) ** 2).mean())
+                / law.solved["center_distance_over_scale"]
+            )
             return replace(law, function_error=rate * error * span.period)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
@@ -206,14 +210,15 @@ class RackLaw(Brief):
         name = "r1" if self.travel is None else "travel"
         yield from formula_problems(name, getattr(self, name))
 
-    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:  # noqa: ARG002
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law to `tolerances`; the rack may have any number of teeth.
 
         Raises
         ------
         InfeasibleError
-            Where the radius is not finite, smooth, positive or periodic.
+            Where the radius is not finite, smooth, positive or periodic, or for a ring.
         """
+        demand_outside(lobes, "a rack has no inside")
         turn = 2.0 * math.pi
         name = "r1" if self.travel is None else "travel"
         axis = Axis(name=name, high=turn, place=angle_text)

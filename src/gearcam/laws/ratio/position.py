@@ -16,7 +16,14 @@ from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
-from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of, travel_problems
+from gearcam.laws.ratio.span import (
+    Lobes,
+    Span,
+    demand_outside,
+    open_travel,
+    span_of,
+    travel_problems,
+)
 from gearcam.numerals import shown
 from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
@@ -109,6 +116,7 @@ class MotionLaw(Brief):
         return replace(law, function_error=abs(scale) * error)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
+        demand_outside(lobes, "a crank turns once for each motion of its slide, a ring less")
         if lobes.n2 != 1:
             raise InfeasibleError(
                 "a crank turns once for each motion of its slide",
