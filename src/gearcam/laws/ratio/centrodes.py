@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import LOBES, demand_lobes, law_of_centrode
@@ -95,8 +95,8 @@ class Lobed:
 def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
     """``i = r/(c - w*r)`` with closed forms for centre distance and driven angle.
 
-    With ``b = c - w`` and ``f = w*e`` the ratio is ``w*(c/(b - f*cos(n*phi1)) - 1)``, whose integral
-    over a lobe gives ``c = k*sqrt(b^2 - e^2)``, k = 1 + w*n1/n2, and so ``b``.
+    With ``b = c - w`` and ``f = w*e`` the ratio is ``w*(c/(b - f*cos(n*phi1)) - 1)``, whose
+    integral over a lobe gives ``c = k*sqrt(b^2 - e^2)``, k = 1 + w*n1/n2, and so ``b``.
     """
     w = lobes.mate
     k, f = 1.0 + w * lobes.n1 / lobes.n2, w * e
@@ -150,7 +150,9 @@ class LogSpiral(Brief):
             )
         w = lobes.mate
         if w == RING:
-            demand_below_one(max(self.ratios), f"law.ratios[{int(end > start)}]")
+            key = f"law.ratios[{int(end > start)}]"
+            ways = (Way(near={key: 1.0}, far={key: min(start, end)}),)
+            demand_below_one(max(start, end), key, ways=ways)
         first, turn = start / (1.0 + w * start), (1.0 + w * end) / (1.0 + w * start)
         growth = w * math.log(turn) / self.driven_travel
         travel = math.log(end / start / turn) / growth

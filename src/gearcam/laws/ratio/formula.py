@@ -98,10 +98,8 @@ class Formula(Brief):
             law = law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
             # di = (1 + w*i)^2/c*dr, from i = r/(c - w*r)
             ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
-            rate = (
-                float(((1.0 + law.mate * ratio) ** 2).mean())
-                / law.solved["center_distance_over_scale"]
-            )
+            rate = float(((1.0 + law.mate * ratio) ** 2).mean())
+            rate /= law.solved["center_distance_over_scale"]
             return replace(law, function_error=rate * error * span.period)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)

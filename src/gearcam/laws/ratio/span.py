@@ -8,7 +8,7 @@ slope is zero), so that the centrode has no corner.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Final
@@ -186,7 +186,9 @@ def demand_slower(span: Span) -> None:
         )
 
 
-def demand_below_one(largest: float, where: str, mean: float = 1.0) -> None:
+def demand_below_one(
+    largest: float, where: str, mean: float = 1.0, ways: Sequence[Way] = ()
+) -> None:
     """Refuse a ratio of an internal pair that is not below 1.
 
     Parameters
@@ -197,6 +199,8 @@ def demand_below_one(largest: float, where: str, mean: float = 1.0) -> None:
         Its place.
     mean : float
         The mean that closure asks for, where it is told.
+    ways : sequence of Way
+        Changes that may help.
 
     Raises
     ------
@@ -217,6 +221,7 @@ def demand_below_one(largest: float, where: str, mean: float = 1.0) -> None:
             value=largest,
             limit=1.0,
             nearest=nearest,
+            ways=ways,
         )
 
 
