@@ -145,9 +145,8 @@ class LogSpiral(Brief):
 
         solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
         span = Travel(travel, self.driven_travel)
-        return make_law(
-            span, [0.0, travel], [spiral(first, growth, lobes.mate)], tolerances, solved
-        )
+        piece = spiral(first, growth, lobes.mate)
+        return make_law(span, [0.0, travel], [piece], tolerances, solved)
 
 
 def _demand_one_lobe(lobes: Lobes, name: str) -> None:
