@@ -81,7 +81,7 @@ def test_it_closes_and_repeats(claim: LawClaim) -> None:
     if not law.lobes.closed:
         return
     assert law.driven.last == pytest.approx(law.lobes.advance, abs=1e-13)
-    if not law.mate == RACK:
+    if law.mate != RACK:
         assert law.lobes == claim.lobes
     phi = np.linspace(0.01, law.lobes.period - 0.01, 7)
     shifted = phi + 3 * law.lobes.period
