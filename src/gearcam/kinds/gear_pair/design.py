@@ -205,7 +205,7 @@ def _ring_faults(raw: Any, pair: Any) -> Iterator[Fault]:
     rule = 'one of outer_diameter_mm and rim_mm, the first with outer = "round"'
     diameter = given.get("outer_diameter_mm")
     if diameter is not None and (other := {"rim_mm", "outer"} & set(given)):
-        key = sorted(other)[-1]
+        key = max(other)  # rim_mm before outer
         message = f"{show(diameter)} beside {key} = {show(given[key])}"
         yield Fault(("ring", "outer_diameter_mm"), message, diameter, rule)
 
