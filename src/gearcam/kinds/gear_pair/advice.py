@@ -97,8 +97,6 @@ def _milder(search: Search) -> Iterator[Way]:
     if "ratios" in law and "driven_travel_deg" not in law:
         # arcs that close, mixed with the even turn, which closes, close
         far["law.ratios"] = mean
-    if "lowest" in law:
-        far["law.lowest"] = mean
     if far:
         yield Way(far=far)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import (
     Axis,
@@ -23,11 +23,11 @@ from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
     PLACES,
+    RING,
     Lobes,
     RackTravel,
     Span,
     angle_text,
-    demand_outside,
     demand_smooth,
     open_travel,
     span_of,
@@ -216,7 +216,9 @@ class RackLaw(Brief):
         InfeasibleError
             Where the radius is not finite, smooth, positive or periodic, or for a ring.
         """
-        demand_outside(lobes, "a rack has no inside")
+        if lobes.mate == RING:
+            way = Way(near={"pair.type": "external"})
+            raise InfeasibleError("a rack has no inside", where="pair.type", ways=(way,))
         turn = 2.0 * math.pi
         name = "r1" if self.travel is None else "travel"
         axis = Axis(name=name, high=turn, place=angle_text)

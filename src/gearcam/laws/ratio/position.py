@@ -16,14 +16,7 @@ from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
-from gearcam.laws.ratio.span import (
-    Lobes,
-    Span,
-    demand_outside,
-    open_travel,
-    span_of,
-    travel_problems,
-)
+from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of, travel_problems
 from gearcam.numerals import shown
 from gearcam.quantities import NUMBER, TEXT, param
 from gearcam.tolerances import Tolerances
@@ -116,14 +109,14 @@ class MotionLaw(Brief):
         return replace(law, function_error=abs(scale) * error)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-        demand_outside(lobes, "a crank turns once for each motion of its slide, a ring less")
         if lobes.n2 != 1:
             raise InfeasibleError(
                 "a crank turns once for each motion of its slide",
                 where="pair.teeth",
                 value=float(lobes.n2),
                 limit=1.0,
-                nearest="the driver's teeth are the driven wheel's or a multiple of them then",
+                nearest="the driver's teeth are the driven wheel's or a multiple of them then, and "
+                "the pair is external",
             )
         axis = replace(axis_of("slide", lobes.period), series=True)
         shape, error = function_of(self.slide or "", axis, tolerances.expansion)

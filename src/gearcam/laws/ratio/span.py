@@ -141,25 +141,6 @@ def demand_equal(lobes: Lobes) -> None:
         )
 
 
-def demand_outside(lobes: Lobes, why: str) -> None:
-    """Refuse a ring where no ring can be.
-
-    Parameters
-    ----------
-    lobes : Lobes
-        With the mate.
-    why : str
-        Why none can.
-
-    Raises
-    ------
-    InfeasibleError
-        For a ring.
-    """
-    if lobes.mate == RING:
-        raise InfeasibleError(why, where="pair.type", ways=(Way(near={"pair.type": "external"}),))
-
-
 def demand_slower(span: Span) -> None:
     """Refuse a ring that would turn as far as its wheel, or farther.
 
