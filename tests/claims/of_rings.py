@@ -132,10 +132,6 @@ def shapes() -> dict[str, tuple[LawClaim, ...]]:
 
 
 def formulas() -> dict[str, tuple[LawClaim, ...]]:
-    a = (math.sqrt(9 - 0.25 * 8) - 1) / 0.75  # an ellipse's centre distance, 1 : 3
-    half = 2 / 3 * math.atan(math.sqrt((1 + 0.5 * a) / (1 + 1.5 * a)))
-    polar = {0.0: 1 / (1 + 1.5 * a), math.pi: 1 / (1 + 0.5 * a), math.pi / 2: 1 / (1 + a)}
-    lobe = {math.pi / 2: half, math.pi: math.pi / 3, TURN: TURN / 3}
     return {
         "constant": (
             LawClaim(
@@ -146,53 +142,7 @@ def formulas() -> dict[str, tuple[LawClaim, ...]]:
                 continuity=3,
             ),
         ),
-        "formula": (
-            LawClaim(
-                parameters=Formula(phi2="phi1/2 - 0.08*sin(2*phi1)"),
-                lobes=DOUBLE,
-                ratio={0.0: 0.34, math.pi / 2: 0.66},
-                driven={math.pi / 4: math.pi / 8 - 0.08, TURN: math.pi},
-                continuity=3,
-            ),
-            LawClaim(
-                parameters=Formula(ratio="1 + 0.3*cos(phi1)"),
-                lobes=DOUBLE,
-                ratio={0.0: 0.65, math.pi: 0.35},
-                driven={1.0: 0.5 + 0.15 * math.sin(1.0), TURN: math.pi},
-                continuity=3,
-            ),
-            LawClaim(
-                parameters=Formula(r1="7/(1 + 0.5*cos(phi1))"),
-                lobes=Lobes(1, 3, RING),
-                ratio=polar,
-                driven=lobe,
-                continuity=3,
-            ),
-            LawClaim(
-                parameters=Formula(r1=lambda phi1: 7 / (1 + 0.5 * np.cos(phi1))),
-                lobes=Lobes(1, 3, RING),
-                ratio=polar,
-                driven=lobe,
-                continuity=3,
-            ),
-            LawClaim(
-                parameters=Formula(
-                    phi2="phi1/2 + phi1**2/20", driver_travel=2.0, driven_travel=1.2
-                ),
-                lobes=SECTOR,
-                ratio={0.0: 0.5, 1.0: 0.6, 2.0: 0.7},
-                driven={1.0: 0.55, 2.0: 1.2},
-                continuity=3,
-            ),
-            LawClaim(
-                # a circle on an open pair: r1/A = u, i = u/(1 + u) = 3/5
-                parameters=Formula(r1="2", driver_travel=2.0, driven_travel=1.2),
-                lobes=SECTOR,
-                ratio={0.0: 0.6, 1.3: 0.6},
-                driven={1.0: 0.6, 2.0: 1.2},
-                continuity=3,
-            ),
-        ),
+        "formula": _formulas(),
         "motion": (
             LawClaim(
                 # y = x + x^2/10 from 0 to 2: i = (1 + x/5)/2.4
@@ -212,60 +162,63 @@ def formulas() -> dict[str, tuple[LawClaim, ...]]:
     }
 
 
+def _formulas() -> tuple[LawClaim, ...]:
+    a = (math.sqrt(9 - 0.25 * 8) - 1) / 0.75  # an ellipse's centre distance, 1 : 3
+    half = 2 / 3 * math.atan(math.sqrt((1 + 0.5 * a) / (1 + 1.5 * a)))
+    polar = {0.0: 1 / (1 + 1.5 * a), math.pi: 1 / (1 + 0.5 * a), math.pi / 2: 1 / (1 + a)}
+    lobe = {math.pi / 2: half, math.pi: math.pi / 3, TURN: TURN / 3}
+    return (
+        LawClaim(
+            parameters=Formula(phi2="phi1/2 - 0.08*sin(2*phi1)"),
+            lobes=DOUBLE,
+            ratio={0.0: 0.34, math.pi / 2: 0.66},
+            driven={math.pi / 4: math.pi / 8 - 0.08, TURN: math.pi},
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=Formula(ratio="1 + 0.3*cos(phi1)"),
+            lobes=DOUBLE,
+            ratio={0.0: 0.65, math.pi: 0.35},
+            driven={1.0: 0.5 + 0.15 * math.sin(1.0), TURN: math.pi},
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=Formula(r1="7/(1 + 0.5*cos(phi1))"),
+            lobes=Lobes(1, 3, RING),
+            ratio=polar,
+            driven=lobe,
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=Formula(r1=lambda phi1: 7 / (1 + 0.5 * np.cos(phi1))),
+            lobes=Lobes(1, 3, RING),
+            ratio=polar,
+            driven=lobe,
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=Formula(phi2="phi1/2 + phi1**2/20", driver_travel=2.0, driven_travel=1.2),
+            lobes=SECTOR,
+            ratio={0.0: 0.5, 1.0: 0.6, 2.0: 0.7},
+            driven={1.0: 0.55, 2.0: 1.2},
+            continuity=3,
+        ),
+        LawClaim(
+            # a circle on an open pair: r1/A = u, i = u/(1 + u) = 3/5
+            parameters=Formula(r1="2", driver_travel=2.0, driven_travel=1.2),
+            lobes=SECTOR,
+            ratio={0.0: 0.6, 1.3: 0.6},
+            driven={1.0: 0.6, 2.0: 1.2},
+            continuity=3,
+        ),
+    )
+
+
 def of_phases() -> dict[str, tuple[LawClaim, ...]]:
-    degree, mid = math.radians(1), math.radians(160)
-    u, v, way = 10 * degree, 60 * degree, 150 * degree
-    # arcs have the mean of their ends: 0.4*u + 0.6*(v - u) + 0.8*(x - v) = way
-    end = v + (way - 0.4 * u - 0.6 * (v - u)) / 0.8
     return {
-        "phases": (
-            LawClaim(
-                parameters=Phases(
-                    shape="cosine", knots=(0.0, mid, TURN), ratios=(0.8, "solve", 0.8)
-                ),
-                lobes=DOUBLE,
-                ratio={0.0: 0.8, mid: 0.2, mid / 2: 0.5, mid / 3: 0.65},
-                driven={mid: mid / 2, mid / 2: mid / 4 + 0.3 * mid / math.pi, TURN: math.pi},
-                continuity=1,
-            ),
-            LawClaim(
-                parameters=Phases(
-                    shape="cosine",
-                    knots=(0.0, u, v, "solve"),
-                    ratios=(0.4, 0.4, 0.8, 0.8),
-                    driven_travel=way,
-                ),
-                lobes=SECTOR,
-                ratio={0.0: 0.4, u: 0.4, 0.5 * (u + v): 0.6, v: 0.8, 2.0: 0.8},
-                driven={u: 0.4 * u, v: 0.4 * u + 0.6 * (v - u), end: way},
-                continuity=1,
-            ),
-        ),
-        "multispeed": (
-            LawClaim(
-                parameters=Multispeed(
-                    ratios=(0.4, "solve"), angles=(150 * degree, 150 * degree), transition=u * 3
-                ),
-                lobes=DOUBLE,
-                ratio={0.0: 0.4, 157.5 * degree: 0.4 + 0.2 * 53 / 512, 4.0: 0.6},
-                driven={150 * degree: v, 180 * degree: 75 * degree, TURN: math.pi},
-                continuity=2,
-            ),
-            LawClaim(
-                parameters=Multispeed(
-                    ratios=(0.4, "solve"),
-                    angles=(40 * degree, 100 * degree),
-                    transition=20 * degree,
-                    shape="cosine",
-                    driven_travel=108 * degree,
-                ),
-                lobes=SECTOR,
-                ratio={0.0: 0.4, 50 * degree: 0.6, 2.0: 0.8},
-                driven={40 * degree: 16 * degree, 160 * degree: 108 * degree},
-                continuity=1,
-            ),
-        ),
-        "three-phase-polynomial": (_three_phases(mid, 1.5 * math.pi),),
+        "phases": _phases(),
+        "multispeed": _multispeed(),
+        "three-phase-polynomial": (_three_phases(math.radians(160), 1.5 * math.pi),),
         "fourier": (
             LawClaim(
                 parameters=Fourier(cosines=(0.2, 0.1), sines=(0.05,)),
@@ -277,6 +230,62 @@ def of_phases() -> dict[str, tuple[LawClaim, ...]]:
         ),
         "table": _tables(),
     }
+
+
+def _phases() -> tuple[LawClaim, ...]:
+    mid, degree = math.radians(160), math.radians(1)
+    u, v, way = 10 * degree, 60 * degree, 150 * degree
+    # arcs have the mean of their ends: 0.4*u + 0.6*(v - u) + 0.8*(x - v) = way
+    end = v + (way - 0.4 * u - 0.6 * (v - u)) / 0.8
+    return (
+        LawClaim(
+            parameters=Phases(shape="cosine", knots=(0.0, mid, TURN), ratios=(0.8, "solve", 0.8)),
+            lobes=DOUBLE,
+            ratio={0.0: 0.8, mid: 0.2, mid / 2: 0.5, mid / 3: 0.65},
+            driven={mid: mid / 2, mid / 2: mid / 4 + 0.3 * mid / math.pi, TURN: math.pi},
+            continuity=1,
+        ),
+        LawClaim(
+            parameters=Phases(
+                shape="cosine",
+                knots=(0.0, u, v, "solve"),
+                ratios=(0.4, 0.4, 0.8, 0.8),
+                driven_travel=way,
+            ),
+            lobes=SECTOR,
+            ratio={0.0: 0.4, u: 0.4, 0.5 * (u + v): 0.6, v: 0.8, 2.0: 0.8},
+            driven={u: 0.4 * u, v: 0.4 * u + 0.6 * (v - u), end: way},
+            continuity=1,
+        ),
+    )
+
+
+def _multispeed() -> tuple[LawClaim, ...]:
+    degree = math.radians(1)
+    return (
+        LawClaim(
+            parameters=Multispeed(
+                ratios=(0.4, "solve"), angles=(150 * degree, 150 * degree), transition=30 * degree
+            ),
+            lobes=DOUBLE,
+            ratio={0.0: 0.4, 157.5 * degree: 0.4 + 0.2 * 53 / 512, 4.0: 0.6},
+            driven={150 * degree: 60 * degree, 180 * degree: 75 * degree, TURN: math.pi},
+            continuity=2,
+        ),
+        LawClaim(
+            parameters=Multispeed(
+                ratios=(0.4, "solve"),
+                angles=(40 * degree, 100 * degree),
+                transition=20 * degree,
+                shape="cosine",
+                driven_travel=108 * degree,
+            ),
+            lobes=SECTOR,
+            ratio={0.0: 0.4, 50 * degree: 0.6, 2.0: 0.8},
+            driven={40 * degree: 16 * degree, 160 * degree: 108 * degree},
+            continuity=1,
+        ),
+    )
 
 
 def _three_phases(u: float, v: float) -> LawClaim:
