@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from gearcam.gears.rolling import Rolling, roll
-from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed
+from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.shapes import BSplineLaw
 from gearcam.laws.ratio.span import RING, WHEEL, Lobes
 from gearcam.tolerances import DEFAULT
@@ -196,3 +197,51 @@ def test_what_an_error_of_the_radius_does_to_the_ring() -> None:
         c = law.solved["center_distance_over_scale"]
         per_error.append(law.function_error / float((c / (c - mate * r) ** 2).mean()))
     assert 0.0 < per_error[0] == pytest.approx(per_error[1], rel=0.02)
+
+
+SPIRAL = LogSpiral(ratios=(0.25, 0.5), driven_travel=math.log(1.5))
+SECTORS = {
+    "spiral": SPIRAL,
+    "falling spiral": LogSpiral(ratios=(0.9, 0.4), driven_travel=1.0),
+    "phases": Phases(
+        knots=(0.0, 0.5, 1.5, "solve"), ratios=(0.4, 0.4, 0.8, 0.8), driven_travel=2.0
+    ),
+    "slope at the ends": Formula(phi2="phi1/2 + phi1**2/20", driver_travel=2.0, driven_travel=1.2),
+}
+
+
+@cache
+def sector(name: str) -> Rolling:
+    law = SECTORS[name].build(Lobes(1, 1, RING), DEFAULT)
+    return roll(law, teeth=(40, 40), center_distance=50.0, module=None, tolerances=DEFAULT)
+
+
+def test_the_mate_of_a_spiral_is_a_spiral_that_grows_the_same_way() -> None:
+    """``r1/A = exp(phi1)/3`` and ``r2 = r1 + A``, which is ``4/3*A*exp(phi2)``."""
+    made = sector("spiral")
+    phi = np.linspace(0.0, math.log(3.0), 21)
+    one, two = (track.frames(phi) for track in made.tracks)
+    np.testing.assert_allclose(np.abs(one.p), 50.0 / 3.0 * np.exp(phi), rtol=1e-13)
+    np.testing.assert_allclose(np.abs(two.p), 200.0 / 3.0 * np.exp(np.angle(two.p)), rtol=1e-13)
+    for frames in (one, two):  # a spiral's angle to its radius is the same everywhere
+        np.testing.assert_allclose(np.angle(frames.t / frames.p), math.pi / 4, rtol=1e-13)
+
+
+@pytest.mark.parametrize("name", SECTORS)
+def test_open_centrodes_roll_beyond_both_ends(name: str) -> None:
+    made = sector(name)
+    low, high = made.arc.angle(np.array([-made.margin, made.arc.length + made.margin]))
+    assert low < -1e-3 < made.law.period + 1e-3 < high
+    phi = np.linspace(low, high, 401)
+    one, two = (track.frames(phi) for track in made.tracks)
+    ratio, driven = made.law.ratio(phi), made.law.driven(phi)
+    assert 0.0 < ratio.min() <= ratio.max() < 1.0
+    np.testing.assert_allclose(one.kappa + two.kappa, (1.0 - ratio) / one.speed, rtol=1e-12)
+    turned = two.p * np.exp(-1j * driven) - made.center_distance
+    np.testing.assert_allclose(one.p * np.exp(-1j * phi), turned, atol=1e-12)
+    np.testing.assert_allclose(one.s, two.s, atol=1e-12)
+    # no corner where the continuation begins
+    ends = np.array([0.0, made.law.period])
+    for track in made.tracks:
+        before, behind = (track.frames(ends + step) for step in (-1e-9, 1e-9))
+        np.testing.assert_allclose(before.t, behind.t, atol=1e-8)

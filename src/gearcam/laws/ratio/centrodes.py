@@ -120,8 +120,9 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
 
 @dataclass(frozen=True, kw_only=True)
 class LogSpiral(Brief):
-    """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k, growing the other way.
+    """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k.
 
+    An external wheel's grows the other way, a ring's the same way.
     With ``u = r1/A = i/(1 + w*i)`` at both ends (w = 1 for a wheel as mate, -1 for a ring), the
     driven wheel turns by ``w*ln((1 - w*u0)/(1 - w*u1))/k`` and the driver by ``ln(u1/u0)/k``, so
     that its travel gives k.
