@@ -9,15 +9,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.ratio.base import RatioLaw, make_law
-from gearcam.laws.ratio.span import (
-    PLACES,
-    WHEEL,
-    Lobes,
-    Span,
-    angle_text,
-    demand_slower,
-    demand_smooth,
-)
+from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, angle_text, demand_smooth
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
@@ -62,7 +54,7 @@ def law_of_centrode(
     Raises
     ------
     InfeasibleError
-        Where the radius is not finite or smooth, or a ring would turn as far as its wheel.
+        Where the radius is not finite or smooth, or no law can be made of it.
 
     Notes
     -----
@@ -70,7 +62,6 @@ def law_of_centrode(
     driver's angle at c = 0, so that there is one root, below the c that would close a wheel of the
     largest r all around.
     """
-    demand_slower(lobes)
     radius = piecewise(knots, shapes)
     with demand_smooth("r1"):
         center = solve_center(radius, knots, lobes, tolerances)
