@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import gearcam as gc
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.errors import DesignError, InfeasibleError, Problem
 from gearcam.gears.pair import GearPair, lobes_of
 from gearcam.kinds.gear_pair.planetary import planet_curve
 from gearcam.laws.ratio.span import RING, Lobes
@@ -27,7 +27,7 @@ def built(law: dict[str, Any], teeth: list[int], **tables: Any) -> GearPair:
     return gc.build(gc.loads(text)).pair
 
 
-def only(caught: pytest.ExceptionInfo[DesignError]) -> gc.Problem:
+def only(caught: pytest.ExceptionInfo[DesignError]) -> Problem:
     (problem,) = caught.value.problems
     return problem
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gearcam.display import Brief
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
 
 
@@ -109,7 +110,7 @@ class StepsSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairSpec:
+class PairSpec(Brief):
     """Exactly one of centre distance and module is given; the other is solved.
 
     Examples
