@@ -174,6 +174,9 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
         pair({"type": "ellipse", "eccentricity": 0.1}, [30, 30], pair=RING),
         {"pair.teeth", "pair.type"},
     ),
+    "one lobe in a ring": (
+        pair({"type": "limacon", "eccentricity": 0.1}, [50, 60], pair=RING), {"pair.teeth"}
+    ),
     "a rack's ring": (pair({"type": "rack", "r1": "1"}, [40, 60], pair=RING), {"pair.type"}),
     "harmonics of a ring": (
         pair({"type": "fourier", "cosines": [0.6]}, [40, 60], pair=RING), {"law.cosines"}
