@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gearcam.display import Brief
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
 
 
@@ -109,7 +110,7 @@ class StepsSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairSpec:
+class PairSpec(Brief):
     """Exactly one of centre distance and module is given; the other is solved.
 
     Examples
@@ -130,7 +131,9 @@ class PairSpec:
         LENGTH, default=None, gt=0, le=1e6, doc="distance of the shafts"
     )
     module: float | None = param(LENGTH, default=None, gt=0, le=1e4, doc="module L/(pi*z)")
-    teeth: tuple[int, int] = param(COUNT, ge=3, le=10000, doc="tooth counts, driver first")
+    teeth: tuple[int, int] = param(
+        COUNT, ge=3, le=10000, doc="tooth counts, driver first; a closed ring has the more"
+    )
     x: float = param(
         NUMBER, default=0.0, ge=-1, le=1, doc="profile shift in modules: + on wheel 1, - on wheel 2"
     )
