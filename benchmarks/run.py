@@ -12,6 +12,7 @@ import before_cases
 import cam_cases
 import cases
 import law_cases
+import ring_cases
 from gearcam.numeric.memory import keep_freed_memory
 from measuring import ROOT, Result, environment
 
@@ -50,6 +51,7 @@ def main() -> int:
         cases.against_sweep,
         cases.against_ncgears,
         law_cases.against_ellipse,
+        ring_cases.against_external,
         before_cases.against_before,
         before_cases.large_growth,
     ):

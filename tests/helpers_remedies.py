@@ -7,6 +7,7 @@ from typing import Any
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.2}
 CIRCLE = {"type": "constant"}
+RING = {"type": "internal"}
 DOOR = {
     "type": "phases",
     "knots_deg": [0, 60, "solve"],
@@ -165,6 +166,25 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
     "one lobe": (pair({"type": "limacon", "eccentricity": 0.1}, [40, 60]), {"pair.teeth"}),
     "a crank's teeth": (
         pair({"type": "motion", "slide": "1 - cos(phi1)", "rod": 4}, [40, 60]), {"pair.teeth"}
+    ),
+    "the ring first": (
+        pair({"type": "ellipse", "eccentricity": 0.1}, [60, 30], pair=RING), {"pair.teeth"}
+    ),
+    "an equal ring": (
+        pair({"type": "ellipse", "eccentricity": 0.1}, [30, 30], pair=RING),
+        {"pair.teeth", "pair.type"},
+    ),
+    "one lobe in a ring": (
+        pair({"type": "limacon", "eccentricity": 0.1}, [50, 60], pair=RING), {"pair.teeth"}
+    ),
+    "a rack's ring": (pair({"type": "rack", "r1": "1"}, [40, 60], pair=RING), {"pair.type"}),
+    "harmonics of a ring": (
+        pair({"type": "fourier", "cosines": [0.6]}, [40, 60], pair=RING), {"law.cosines"}
+    ),
+    "phases of a ring": (
+        pair({"type": "phases", "knots_deg": [0, 60, 300, 360], "ratios": [1.1, 0.38, 0.38, 1.1]},
+             [60, 120], pair=RING),
+        {"law.ratios"},
     ),
     "teeth of an open pair": (pair(DOOR, [30, 36]), {"pair.teeth"}),
     "a long way": (pair(DOOR | {"driven_travel_deg": 300, "ratios": [1, 0.6, 0.6]}, [40, 40]),

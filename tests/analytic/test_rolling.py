@@ -13,7 +13,7 @@ from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
-from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.ratio.span import RING, Lobes
 from gearcam.tolerances import DEFAULT
 
 LAWS = {
@@ -29,6 +29,11 @@ LAWS = {
     "ellipse 0.99": (Ellipse(eccentricity=0.99), Lobes(1, 1)),
     "two to three": (Formula(ratio="1 + 0.2*cos(2*phi1)"), Lobes(2, 3)),
     "one to three": (Formula(r1="1 + 0.1*cos(phi1)"), Lobes(1, 3)),
+    "in a ring, one to two": (Formula(ratio="1 + 0.3*cos(phi1)"), Lobes(1, 2, RING)),
+    "in a ring, two to three": (
+        Formula(ratio="1 + 0.05*cos(2*phi1) + 0.04*sin(4*phi1)"),
+        Lobes(2, 3, RING),
+    ),
 }
 
 
@@ -44,18 +49,20 @@ PHI = np.linspace(-4.0, 15.0, 901)
 
 
 def test_euler_and_savary(rolling: Rolling) -> None:
-    """kappa1 + kappa2 = (1 + i)/v: the sum of the curvatures follows from the ratio alone."""
+    """kappa1 + kappa2 = (1 + w*i)/v: the sum of the curvatures follows from the ratio alone."""
     one, two = rolling.tracks[0].frames(PHI), rolling.tracks[1].frames(PHI)
     _, ratio = rolling.law.derivatives(PHI, 1)
-    expected = (1.0 + ratio) / one.speed
+    expected = (1.0 + rolling.mate * ratio) / one.speed
     np.testing.assert_allclose(one.kappa + two.kappa, expected, rtol=1e-9)
 
 
 def test_the_centrodes_touch_and_share_their_tangent(rolling: Rolling) -> None:
     one, two = rolling.tracks[0].frames(PHI), rolling.tracks[1].frames(PHI)
     turn1 = np.exp(-1j * PHI)
-    turn2 = np.exp(1j * rolling.law.phi2(PHI))
-    np.testing.assert_allclose(one.p * turn1, two.p * turn2 + rolling.center_distance, atol=1e-11)
+    w = rolling.mate
+    turn2 = np.exp(1j * w * rolling.law.phi2(PHI))
+    placed = two.p * turn2 + w * rolling.center_distance
+    np.testing.assert_allclose(one.p * turn1, placed, atol=1e-11)
     np.testing.assert_allclose(one.t * turn1, two.t * turn2, atol=1e-12)
     assert np.abs((one.p * turn1).imag).max() < 1e-11
 

@@ -1,4 +1,7 @@
-"""What ratio laws must give: those of centrodes stand in `claims.of_centrodes`."""
+"""What ratio laws must give.
+
+Those of centrodes stand in `claims.of_centrodes`, those of internal pairs in `claims.of_rings`.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import numpy as np
 
 from claims.claim import LawClaim
 from claims.of_centrodes import CENTRODES
+from claims.of_rings import RINGS
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.formula import Formula
@@ -294,7 +298,7 @@ def table() -> tuple[LawClaim, ...]:
     )
 
 
-LAW_CLAIMS: dict[str, tuple[LawClaim, ...]] = {
+OUTSIDE: dict[str, tuple[LawClaim, ...]] = {
     **CENTRODES,
     "constant": constant(),
     "formula": formula(),
@@ -305,3 +309,5 @@ LAW_CLAIMS: dict[str, tuple[LawClaim, ...]] = {
     "fourier": fourier(),
     "table": table(),
 }
+
+LAW_CLAIMS = {name: (*claims, *RINGS.get(name, ())) for name, claims in OUTSIDE.items()}

@@ -10,8 +10,9 @@ import pytest
 
 from claims.claim import LawClaim
 from claims.of_laws import LAW_CLAIMS
+from claims.of_rings import RINGS
 from gearcam.laws.ratio.base import LAWS, RatioLaw
-from gearcam.laws.ratio.span import RACK
+from gearcam.laws.ratio.span import RACK, RING
 from gearcam.tolerances import DEFAULT
 
 CLAIMS = [
@@ -47,6 +48,23 @@ def test_the_registry_holds_exactly_the_laws_that_are_claimed() -> None:
         assert dataclasses.is_dataclass(entry.parameters)
 
 
+def test_every_law_but_that_of_a_rack_is_claimed_for_a_ring() -> None:
+    assert set(RINGS) == set(LAWS) - {"rack"}
+    assert {claim.lobes.mate for claims in RINGS.values() for claim in claims} == {RING}
+
+
+@pytest.mark.parametrize("name", RINGS)
+def test_a_ring_turns_slower_all_the_time(name: str) -> None:
+    for law in map(built, RINGS[name]):
+        assert law.mate == RING
+        (_, smallest), (_, largest) = law.ratio.extremes
+        assert 0.0 < smallest <= largest < 1.0
+        if law.closed:
+            assert float(law.phi2(2 * np.pi)) == pytest.approx(
+                2 * np.pi * law.lobes.n1 / law.lobes.n2, abs=1e-13
+            )
+
+
 @pytest.mark.parametrize("claim", CLAIMS)
 def test_values_are_those_of_the_closed_form(claim: LawClaim) -> None:
     law = built(claim)
@@ -63,7 +81,7 @@ def test_it_closes_and_repeats(claim: LawClaim) -> None:
     if not law.lobes.closed:
         return
     assert law.driven.last == pytest.approx(law.lobes.advance, abs=1e-13)
-    if not law.mate == RACK:
+    if law.mate != RACK:
         assert law.lobes == claim.lobes
     phi = np.linspace(0.01, law.lobes.period - 0.01, 7)
     shifted = phi + 3 * law.lobes.period

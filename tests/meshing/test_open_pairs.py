@@ -301,7 +301,7 @@ def test_the_command_studies_the_travel_with_both_stops(name: str, tmp_path: Pat
     whole = np.isfinite(rows["closed_mm2"])
     assert np.count_nonzero(whole) > 10
     assert rows["predicted_mm2"][whole] == pytest.approx(rows["closed_mm2"][whole], rel=0.02)
-    assert ("center_distance_mm" in found) == (not door.law.mate == RACK)
+    assert ("center_distance_mm" in found) == (door.law.mate != RACK)
 
 
 def test_the_backlash_of_a_rack_is_the_way_that_it_may_move() -> None:

@@ -48,7 +48,10 @@ def errors(document: Mapping[str, Any], folder: Path) -> set[str]:
     return {finding.code for finding in findings if finding.severity == "error"}
 
 
-OTHER_RATIO = {"one lobe", "a crank's teeth", "teeth of an open pair"}
+OTHER_RATIO = {
+    *("one lobe", "a crank's teeth", "teeth of an open pair", "the ring first", "an equal ring"),
+    "one lobe in a ring",
+}
 """Designs whose tooth counts are refused for their ratio."""
 
 LONG = {
@@ -58,6 +61,8 @@ LONG = {
     "a crank's teeth",
     "a long way",
     "rounded tips",
+    "harmonics of a ring",
+    "phases of a ring",
 }
 
 

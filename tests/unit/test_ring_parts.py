@@ -157,25 +157,6 @@ def test_one_value_for_both_wheels_is_the_drivers() -> None:
     assert (one.hub is None, two.hub) == (False, None)
 
 
-def faults(ring: dict[str, Any], **pair: Any) -> dict[str, str]:
-    document = ring_design().to_dict()
-    document["pair"] |= pair
-    with pytest.raises(DesignError) as refused:
-        gearcam.design(document | {"ring": ring})
-    return {problem.key: problem.allowed for problem in refused.value.problems}
-
-
-def test_what_a_ring_cannot_be_asked_for_is_refused_by_reading() -> None:
-    assert faults({"rim_mm": 5, "outer_diameter_mm": 140}) == {
-        "ring.outer_diameter_mm": "one of both"
-    }
-    follow = faults({"outer": "follow", "outer_diameter_mm": 140})
-    assert follow == {"ring.outer_diameter_mm": "rim_mm"}
-    outside = faults({"outer": "round", "rim_mm": 5}, type="external")
-    assert outside == {"ring.rim_mm": 'pair.type = "internal" has one'}
-    assert set(faults({"outer": "follow"}, type="external")) == {"ring.outer"}
-
-
 def nearest(refused: InfeasibleError, made: Any, way: int = 0) -> GearPairResult:
     """Follow the way that a refusal names."""
     return gearcam.build(made.with_(dict(refused.ways[way].near)))

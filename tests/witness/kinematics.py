@@ -30,10 +30,11 @@ class Frames:
 
 @dataclass(frozen=True, eq=False)
 class Rolling:
-    """Both centrodes of a closed pair: a law and a centre distance in mm."""
+    """Both centrodes of a closed pair: a law, a centre distance in mm; mate -1 is a ring."""
 
     law: Law
     distance: float
+    mate: int = 1
     panels: int = 64
 
     @cached_property
@@ -60,7 +61,8 @@ class Rolling:
         for k, piece in enumerate(self.law):
             mine = panel // self.panels == k
             i[mine], di[mine], _ = piece.ratio(phi[mine], np)
-        return i, di, self.distance * i / (1 + i), self.distance * di / (1 + i) ** 2
+        rest = 1 + self.mate * i
+        return i, di, self.distance * i / rest, self.distance * di / rest**2
 
     @property
     def length(self) -> float:
@@ -90,6 +92,9 @@ class Rolling:
         i, _, r, dr = self._radii(panel, phi)
         if wheel == 1:
             angle, radius, slope, spin = phi, r, dr, np.ones_like(phi)
+        elif self.mate < 0:  # a ring, around its shaft as the driver is around its own
+            angle = driven + turn * self._sums[1][-1]
+            radius, slope, spin = self.distance + r, dr, i
         else:
             driven = driven + turn * self._sums[1][-1]
             angle, radius, slope, spin = np.pi - driven, self.distance - r, -dr, -i

@@ -65,11 +65,15 @@ def cut_space(
     curvature: float,
     flank_points: int = 400,
     arc_points: int = 200,
+    reach: float = REACH,
 ) -> Region:
-    """What the pinion's tooth takes out of the plane around the space that follows tooth k."""
+    """What the pinion's tooth takes out of the plane around the space that follows tooth k.
+
+    It is followed over `reach`, in modules, on either side.
+    """
     tooth = pinion_tooth(basic, curvature, flank_points, arc_points)
     middle = basic.space(wheel, k)
-    s = positions(rolling.length, middle, REACH * basic.module, steps)
+    s = positions(rolling.length, middle, reach * basic.module, steps)
     at = rolling.frames(wheel, s)
     angle = tooth[None, :, 1] + (middle - s[:, None]) * curvature
     radius = tooth[None, :, 0]

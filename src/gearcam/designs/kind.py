@@ -80,7 +80,7 @@ class DesignKind:
     rules : callable
         ``rules(document, found)`` yields faults between the tables.
     later : callable
-        ``later(document)`` returns the fault of what is planned, or None.
+        ``later(document)`` returns the fault of what is not made, and only that is told, or None.
     formats : tuple of str
         What ``output.files`` may list.
     rooms : tuple of str

@@ -24,6 +24,8 @@ _EXAMPLES: Final = {
     "dedendum": 1.25,
     "tip_radius": 0.38,
     "rim_mm": 10,
+    "outer_diameter_mm": 130,
+    "cutter_teeth": 30,
     "web_mm": 6,
     "angle_deg": 60,
     "lift_mm": 10,

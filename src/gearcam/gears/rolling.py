@@ -152,8 +152,8 @@ class Centrode(Track):
 
         Notes
         -----
-        With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and
-        ``q*exp(-1j*w*phi2)``, so that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
+        With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and ``q*exp(-1j*w*phi2)``,
+        so that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
         law, size = self.rolling.law, self.arc.size

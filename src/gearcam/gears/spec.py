@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
+from gearcam.display import Brief
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
 
 _RIM = 2.7
@@ -113,7 +113,7 @@ class StepsSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairSpec:
+class PairSpec(Brief):
     """Exactly one of centre distance and module is given; the other is solved.
 
     Examples
@@ -134,7 +134,9 @@ class PairSpec:
         LENGTH, default=None, gt=0, le=1e6, doc="distance of the shafts"
     )
     module: float | None = param(LENGTH, default=None, gt=0, le=1e4, doc="module L/(pi*z)")
-    teeth: tuple[int, int] = param(COUNT, ge=3, le=10000, doc="tooth counts, driver first")
+    teeth: tuple[int, int] = param(
+        COUNT, ge=3, le=10000, doc="tooth counts, driver first; a closed ring has the more"
+    )
     x: float = param(
         NUMBER, default=0.0, ge=-1, le=1, doc="profile shift in modules: + on wheel 1, - on wheel 2"
     )
@@ -179,13 +181,6 @@ class RingSpec:
         doc="teeth of the pinion cutter, whole or not; if left out, as many as leave room for the "
         "mate's tips",
     )
-
-    def problems(self) -> Iterator[tuple[str, None, str, str]]:
-        """Yield what is wrong by reading: field, None, message, allowed."""
-        if self.outer_diameter is not None and self.outer == "follow":
-            yield "outer_diameter", None, "an outside that follows is not round", "rim_mm"
-        elif self.outer_diameter is not None and self.rim is not None:
-            yield "outer_diameter", None, "rim_mm is given too", "one of both"
 
     def least_rim(self, roots: float, module: float) -> float:
         """Return the least metal outside the roots.

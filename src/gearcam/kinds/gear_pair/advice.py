@@ -82,7 +82,7 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
     elif not refusal.ways and not factor:
         yield from _other_ratios(search)
         yield from _EDGES
-    if factor:
+    if factor or search.result.design.pair.type == "internal":
         yield from _milder(search)
 
 
@@ -103,9 +103,11 @@ def _milder(search: Search) -> Iterator[Way]:
 
 def _other_ratios(search: Search) -> Iterator[Way]:
     """Yield the nearest teeth with which one wheel turns a whole number of times for the other."""
-    z1, z2 = search.result.design.pair.teeth
-    yield Way(near={"pair.teeth": [z1, max(1, round(z2 / z1)) * z1]})
-    yield Way(near={"pair.teeth": [max(1, round(z1 / z2)) * z2, z2]})
+    pair = search.result.design.pair
+    (z1, z2), internal = pair.teeth, pair.type == "internal"
+    yield Way(near={"pair.teeth": [z1, max(1 + internal, round(z2 / z1)) * z1]})
+    if not internal:  # a ring has more teeth than its wheel
+        yield Way(near={"pair.teeth": [max(1, round(z1 / z2)) * z2, z2]})
 
 
 def _of_errors(search: Search) -> Iterator[Way]:

@@ -162,17 +162,28 @@ def _homes() -> Mapping[str, str]:
     return homes | {"type": "this key belongs under [law]"}
 
 
+def _planetary(document: Mapping[str, Any]) -> Fault | None:
+    """Return the fault of a wish for a planet between sun and ring, else None."""
+    pair = document.get("pair")
+    given = pair if isinstance(pair, Mapping) and document.get("kind") == NAME else {}
+    teeth = given.get("teeth")
+    if given.get("type") != "planetary" and not (isinstance(teeth, list) and len(teeth) == 3):
+        return None
+    from gearcam.kinds.gear_pair.planetary import planetary_fault  # no other design needs it
+
+    return planetary_fault(teeth)
+
+
 def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     pair, output = document.get("pair"), document.get("output")
     yield from _pair_faults(pair)
+    yield from _ring_faults(document.get("ring"), pair)
     yield from output_faults(output)
     yield from _tolerance_faults(output, pair)
     yield from _meshing_faults(document.get("meshing"), pair)
     yield from _step_faults(document.get("meshing"), document.get("steps"))
     if isinstance(pair, Mapping) and pair.get("type") == "internal":
         yield from _shaft_faults(document.get("blank"), found)
-    else:
-        yield from _no_ring_faults(document.get("ring"))
 
 
 def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
@@ -192,14 +203,6 @@ def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
             found.parts["blank"] = replace(found.parts["blank"], **{name: (own, 0)})
 
 
-def _no_ring_faults(raw: Any) -> Iterator[Fault]:
-    given = raw if isinstance(raw, Mapping) else {}
-    for key, value in given.items():
-        if (key, value) != ("outer", RingSpec.outer):
-            message = f"{show(value)}: wheel 2 is no ring"
-            yield Fault(("ring", key), message, value, 'pair.type = "internal" has one')
-
-
 def _pair_faults(raw: Any) -> Iterator[Fault]:
     if not isinstance(raw, Mapping):
         return
@@ -212,6 +215,24 @@ def _pair_faults(raw: Any) -> Iterator[Fault]:
         yield Fault(("pair", "module_mm"), message, module, rule)
     elif distance is None and module is None:
         yield Fault(("pair",), "neither center_distance_mm nor module_mm is given", allowed=rule)
+
+
+def _ring_faults(raw: Any, pair: Any) -> Iterator[Fault]:
+    known = KINDS[NAME].table("ring").entries
+    told = raw if isinstance(raw, Mapping) else {}
+    given = {key: told[key] for key in known if key in told and told[key] != known[key].default}
+    kind = pair.get("type", "external") if isinstance(pair, Mapping) else "internal"
+    if kind == "external":
+        for key, value in given.items():
+            rule = 'pair.type = "internal", or none of the keys of [ring]'
+            yield Fault(("ring", key), f"{show(value)}: an external pair has no ring", value, rule)
+        return
+    rule = 'one of outer_diameter_mm and rim_mm, the first with outer = "round"'
+    diameter = given.get("outer_diameter_mm")
+    if diameter is not None and (other := {"rim_mm", "outer"} & set(given)):
+        key = max(other)  # rim_mm before outer
+        message = f"{show(diameter)} beside {key} = {show(given[key])}"
+        yield Fault(("ring", "outer_diameter_mm"), message, diameter, rule)
 
 
 def _tolerance_faults(raw: Any, pair: Any) -> Iterator[Fault]:
@@ -284,6 +305,7 @@ KIND: Final = DesignKind(
     required=("pair",),
     one_of={"pair": ("center_distance_mm", "module_mm")},
     rules=_rules,
+    later=_planetary,
     formats=FORMATS,
     rooms=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),
     checks=(TEETH_KIND, MESHING_KIND, PARTS_KIND),

@@ -14,7 +14,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.findings import Finding, in_order, limit_of, run_checks
 from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.demands import demand_rim
-from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
+from gearcam.gears.pair import Gear, GearPair, demand_ring, lobes_of, make_gear, make_pair
 from gearcam.gears.spec import Finish
 from gearcam.gears.steps import leads, stepped
 from gearcam.gears.track import Wheel
@@ -63,8 +63,11 @@ class PairStages(Result):
     @cached_property
     def law(self) -> RatioLaw:
         """The ratio law."""
+        law, pair = self.design.law, self.design.pair
         with self.stage("law"):
-            return self.design.law.build(lobes_of(self.design.pair), self.tolerances)
+            if getattr(law, "driven_travel", None) is None:  # closed
+                demand_ring(pair)
+            return law.build(lobes_of(pair), self.tolerances)
 
     @cached_property
     def pair(self) -> GearPair:

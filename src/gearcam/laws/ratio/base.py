@@ -21,7 +21,15 @@ from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.span import RING, Span, angle_text, continued, demand_smooth
+from gearcam.laws.ratio.span import (
+    RING,
+    Span,
+    angle_text,
+    continued,
+    demand_below_one,
+    demand_slower,
+    demand_smooth,
+)
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import Expansion
@@ -218,12 +226,14 @@ def make_law(
         Where the ratio is not finite, smooth, positive or periodic, of an internal pair not below
         1, or where it does not close.
     """
+    demand_slower(lobes)
     with demand_smooth("the ratio"):
         driven = integrate(knots, pieces, tolerances.expansion)
         ratio = piecewise(knots, pieces)
         _demand_positive(ratio)
         if lobes.mate == RING:
-            _demand_below_one(ratio)
+            _, (place, largest) = ratio.extremes
+            demand_below_one(largest, angle_text(place), lobes.advance / lobes.period)
         if not lobes.closed:
             longer, more = continued(ratio, pieces, lobes.mate)
             ratio, driven = piecewise(longer, more), integrate(longer, more, tolerances.expansion)
@@ -253,18 +263,6 @@ def _demand_positive(ratio: Piecewise) -> None:
             where=angle_text(place),
             value=smallest,
             limit=0.0,
-        )
-
-
-def _demand_below_one(ratio: Piecewise) -> None:
-    _, (place, largest) = ratio.extremes
-    if not largest < 1.0:
-        raise InfeasibleError(
-            "the ratio of an internal pair must stay below 1: the wheel would be as large as its "
-            "ring",
-            where=angle_text(place),
-            value=largest,
-            limit=1.0,
         )
 
 

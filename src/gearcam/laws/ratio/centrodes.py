@@ -9,11 +9,18 @@ import math
 from dataclasses import dataclass
 
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import LOBES, demand_lobes, law_of_centrode
-from gearcam.laws.ratio.span import Lobes, Travel, demand_equal, spiral
+from gearcam.laws.ratio.span import (
+    RING,
+    Lobes,
+    Travel,
+    demand_below_one,
+    demand_equal,
+    spiral,
+)
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
 from gearcam.quantities import ANGLE, COUNT, NUMBER, param
@@ -86,24 +93,25 @@ class Lobed:
 
 
 def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
-    """``i = r/(c - r)`` with closed forms for centre distance and driven angle.
+    """``i = r/(c - w*r)`` with closed forms for centre distance and driven angle.
 
-    With ``b = c - 1`` the ratio is ``c/(b - e*cos(n*phi1)) - 1``, whose integral over a lobe gives
-    ``c = k*sqrt(b^2 - e^2)``, k = 1 + n1/n2, and so ``b``.
+    With ``b = c - w`` and ``f = w*e`` the ratio is ``w*(c/(b - f*cos(n*phi1)) - 1)``, whose
+    integral over a lobe gives ``c = k*sqrt(b^2 - e^2)``, k = 1 + w*n1/n2, and so ``b``.
     """
-    k = 1.0 + lobes.n1 / lobes.n2
-    # (b + 1)^2 = k^2*(b^2 - e^2): the greater root, the smaller one is below e
+    w = lobes.mate
+    k, f = 1.0 + w * lobes.n1 / lobes.n2, w * e
+    # (b + w)^2 = k^2*(b^2 - e^2): the greater root, with the smaller one c is negative
     square = k * k - 1.0
-    b = (1.0 + k * math.sqrt(1.0 + square * e * e)) / square
-    c, root = b + 1.0, math.sqrt(b * b - e * e)
+    b = w * (1.0 + k * math.sqrt(1.0 + square * e * e)) / square
+    c, root = b + w, math.sqrt(b * b - e * e)
 
     def ratio(x: Jet) -> Jet:
-        return c / (b - e * cos(count * x)) - 1.0
+        return w * (c / (b - f * cos(count * x)) - 1.0)
 
     def phi2(x: Jet) -> Jet:
-        # 2*atan(tan(x/2)*sqrt((b + e)/(b - e))) without its poles
-        turn = 2.0 * atan(e * sin(count * x) / (b + root - e * cos(count * x)))
-        return (c / root) * (x + turn / count) - x
+        # 2*atan(tan(x/2)*sqrt((b + f)/(b - f))) without its poles
+        turn = 2.0 * atan(f * sin(count * x) / (b + root - f * cos(count * x)))
+        return w * ((c / root) * (x + turn / count) - x)
 
     piece = Piece(ratio, phi2)
     solved = {"center_distance_over_scale": c}
@@ -112,10 +120,12 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
 
 @dataclass(frozen=True, kw_only=True)
 class LogSpiral(Brief):
-    """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k, growing the other way.
+    """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k.
 
-    With ``u = r1/A = i/(1 + i)`` at both ends, the driven wheel turns by
-    ``ln((1 - u0)/(1 - u1))/k`` and the driver by ``ln(u1/u0)/k``, so that its travel gives k.
+    An external wheel's grows the other way, a ring's the same way.
+    With ``u = r1/A = i/(1 + w*i)`` at both ends (w = 1 for a wheel as mate, -1 for a ring), the
+    driven wheel turns by ``w*ln((1 - w*u0)/(1 - w*u1))/k`` and the driver by ``ln(u1/u0)/k``, so
+    that its travel gives k.
     """
 
     ratios: tuple[float, float] = param(NUMBER, gt=0, doc="i21 at the start and at the end")
@@ -127,7 +137,7 @@ class LogSpiral(Brief):
         Raises
         ------
         InfeasibleError
-            For unequal tooth counts or equal ratios.
+            For unequal tooth counts or equal ratios, or ratios of a ring that are not below 1.
         """
         demand_equal(lobes)
         start, end = self.ratios
@@ -139,15 +149,18 @@ class LogSpiral(Brief):
                 limit=start,
                 nearest='other ratios; a constant one is the law "constant"',
             )
-        first = start / (1.0 + start)
-        growth = math.log((1.0 + end) / (1.0 + start)) / self.driven_travel
-        travel = math.log(end / start * (1.0 + start) / (1.0 + end)) / growth
+        w = lobes.mate
+        if w == RING:
+            key = f"law.ratios[{int(end > start)}]"
+            ways = (Way(near={key: 1.0}, far={key: min(start, end)}),)
+            demand_below_one(max(start, end), key, ways=ways)
+        first, turn = start / (1.0 + w * start), (1.0 + w * end) / (1.0 + w * start)
+        growth = w * math.log(turn) / self.driven_travel
+        travel = math.log(end / start / turn) / growth
 
         solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
-        span = Travel(travel, self.driven_travel)
-        return make_law(
-            span, [0.0, travel], [spiral(first, growth, lobes.mate)], tolerances, solved
-        )
+        span = Travel(travel, self.driven_travel, w)
+        return make_law(span, [0.0, travel], [spiral(first, growth, w)], tolerances, solved)
 
 
 def _demand_one_lobe(lobes: Lobes, name: str) -> None:

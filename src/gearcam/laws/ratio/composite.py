@@ -74,7 +74,7 @@ class Multispeed(Brief):
         name = f"ratios[{self.ratios.index('solve')}]" if "solve" in self.ratios else ""
         if self.driven_travel is not None:
             demand_equal(lobes)
-            span = Travel(float(knots[-1]), self.driven_travel)
+            span = Travel(float(knots[-1]), self.driven_travel, lobes.mate)
             return arcs_law(arc, knots, values, span, tolerances, name=name)
         grid, lobe = one_lobe(knots, values, lobes, "law.angles_deg with transitions")
         return arcs_law(arc, grid, lobe, lobes, tolerances, name=name)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.ratio.base import RatioLaw, make_law
-from gearcam.laws.ratio.span import PLACES, Lobes, Span, angle_text, demand_smooth
+from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, angle_text, demand_smooth
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
@@ -30,7 +30,10 @@ LOBES = "lobes of driver and driven wheel; in lowest terms as the tooth counts w
 def law_of_centrode(
     shapes: list[Piece], knots: ArrayLike, lobes: Span, tolerances: Tolerances
 ) -> RatioLaw:
-    """Make a law from the driver's centrode: ``i = r/(c - r)``, c the centre distance in its scale.
+    """Make a law from the driver's centrode, at any scale.
+
+    With the centre distance c in its scale the ratio is ``i = r/(c - w*r)``, where w = 1 for a
+    wheel as mate and -1 for a ring.
 
     Parameters
     ----------
@@ -51,17 +54,18 @@ def law_of_centrode(
     Raises
     ------
     InfeasibleError
-        Where the radius is not finite or smooth.
+        Where the radius is not finite or smooth, or no law can be made of it.
 
     Notes
     -----
-    The driven angle falls as c grows, from infinity at the largest r, so that there is one root,
-    between the largest r and the c that would close a wheel of that radius all around.
+    The driven angle falls as c grows, of a wheel from infinity at the largest r, of a ring from the
+    driver's angle at c = 0, so that there is one root, below the c that would close a wheel of the
+    largest r all around.
     """
     radius = piecewise(knots, shapes)
     with demand_smooth("r1"):
         center = solve_center(radius, knots, lobes, tolerances)
-    ratios = {shape.function: _ratio(shape.function, center) for shape in shapes}
+    ratios = {shape.function: _ratio(shape.function, center, lobes.mate) for shape in shapes}
     pieces = [Piece(ratios[shape.function], parameters=shape.parameters) for shape in shapes]
     return make_law(lobes, knots, pieces, tolerances, {"center_distance_over_scale": center})
 
@@ -90,10 +94,10 @@ def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) 
             raise InfeasibleError(f"{name} {state}", where=angle_text(angles[bad][0]), limit=0.0)
 
 
-def _ratio(shape: Callable[..., Jet], center: float) -> Callable[..., Jet]:
+def _ratio(shape: Callable[..., Jet], center: float, mate: int) -> Callable[..., Jet]:
     def ratio(x: Jet, *parameters: Value) -> Jet:
         radius = shape(x, *parameters)
-        return radius / (center - radius)
+        return radius / (center - mate * radius)
 
     return ratio
 
@@ -126,21 +130,22 @@ def solve_center(
     ends, tolerance = np.asarray(knots, dtype=float), tolerances.expansion
     mean = expand(radius, ends, tolerance).antiderivative().last / lobes.period
     largest = float(radius(np.append(np.linspace(0.0, lobes.period, PLACES), ends)).max())
-    ratio = lobes.period / lobes.advance
+    ratio, mate = lobes.period / lobes.advance, lobes.mate
 
     def excess(c: Array) -> tuple[Array, Array]:
         center = float(c)
         try:
-            driven = expand(lambda t: radius(t) / (center - radius(t)), ends, tolerance)
-            slope = expand(lambda t: radius(t) / (center - radius(t)) ** 2, ends, tolerance)
+            driven = expand(lambda t: radius(t) / (center - mate * radius(t)), ends, tolerance)
+            slope = expand(lambda t: radius(t) / (center - mate * radius(t)) ** 2, ends, tolerance)
         except NotSmoothError:
             # Too close to the largest radius: the driven angle is lost in its peak, but large.
             return np.asarray(-np.inf), np.asarray(np.inf)
         miss = lobes.advance - driven.antiderivative().last
         return np.asarray(miss), np.asarray(slope.antiderivative().last)
 
-    low, high = largest * (1.0 + _APART), largest * (1.0 + ratio) * (1.0 + _APART)
-    start = min(max(mean * (1.0 + ratio), 0.75 * low + 0.25 * high), high)
+    low = largest * (1.0 + _APART) if mate == WHEEL else 0.0
+    high = largest * (mate + ratio) * (1.0 + _APART)
+    start = min(max(mean * (mate + ratio), 0.75 * low + 0.25 * high), high)
     return float(newton_in_bracket(excess, low, high, start, _LAST_DIGIT * high))
 
 

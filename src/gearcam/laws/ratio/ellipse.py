@@ -20,8 +20,9 @@ class Ellipse:
     """The driver's near vertex lies at phi1 = 0: ``r1 = p/(1 + e*cos(n1*phi1))``.
 
     With the semi-latus rectum p = 1 and the centre distance A the ratio is ``1/(b +
-    A*e*cos(n1*phi1))``, ``b = A - 1``, and its integral over a lobe is the driven wheel's where
-    ``b^2 - (A*e)^2 = (n2/n1)^2``. For one lobe each, ``A = 2*a``: two equal ellipses.
+    A*e*cos(n1*phi1))``, ``b = A - w`` (w = 1 for a wheel as mate, -1 for a ring), and its integral
+    over a lobe is the driven wheel's where ``b^2 - (A*e)^2 = (n2/n1)^2``. For one lobe each,
+    ``A = 2*a``: two equal ellipses.
     """
 
     eccentricity: float = param(NUMBER, ge=0, lt=1, doc="eccentricity of the ellipse")
@@ -36,10 +37,10 @@ class Ellipse:
             If the lobes are not in the ratio of the tooth counts.
         """
         count, e = demand_lobes(self.lobes, lobes), self.eccentricity
-        k = lobes.n2 / lobes.n1
-        # A^2*(1 - e^2) - 2*A + 1 - k^2 = 0; its smaller root would be an internal pair's
-        distance = (1.0 + math.sqrt(e * e + (1.0 - e * e) * k * k)) / (1.0 - e * e)
-        b, swing = distance - 1.0, distance * e
+        k, w = lobes.n2 / lobes.n1, lobes.mate
+        # A^2*(1 - e^2) - 2*w*A + 1 - k^2 = 0: the positive root
+        distance = (w + math.sqrt(e * e + (1.0 - e * e) * k * k)) / (1.0 - e * e)
+        b, swing = distance - w, distance * e
 
         def ratio(x: Jet) -> Jet:
             return 1.0 / (swing * cos(count * x) + b)

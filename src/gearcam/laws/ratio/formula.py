@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import (
     Axis,
@@ -23,6 +23,7 @@ from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
     PLACES,
+    RING,
     Lobes,
     RackTravel,
     Span,
@@ -95,9 +96,10 @@ class Formula(Brief):
         _demand_repeats(function, name, span)
         if self.ratio is None:
             law = law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
-            # di = (1 + i)^2/c*dr, from i = r/(c - r)
+            # di = (1 + w*i)^2/c*dr, from i = r/(c - w*r)
             ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
-            rate = float(((1.0 + ratio) ** 2).mean()) / law.solved["center_distance_over_scale"]
+            rate = float(((1.0 + law.mate * ratio) ** 2).mean())
+            rate /= law.solved["center_distance_over_scale"]
             return replace(law, function_error=rate * error * span.period)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
@@ -206,14 +208,17 @@ class RackLaw(Brief):
         name = "r1" if self.travel is None else "travel"
         yield from formula_problems(name, getattr(self, name))
 
-    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:  # noqa: ARG002
+    def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law to `tolerances`; the rack may have any number of teeth.
 
         Raises
         ------
         InfeasibleError
-            Where the radius is not finite, smooth, positive or periodic.
+            Where the radius is not finite, smooth, positive or periodic, or for a ring.
         """
+        if lobes.mate == RING:
+            way = Way(near={"pair.type": "external"})
+            raise InfeasibleError("a rack has no inside", where="pair.type", ways=(way,))
         turn = 2.0 * math.pi
         name = "r1" if self.travel is None else "travel"
         axis = Axis(name=name, high=turn, place=angle_text)

@@ -92,7 +92,7 @@ class Phases(Brief):
             return arcs_law(arc, knots, ratios, lobes, tolerances)
         demand_equal(lobes)
         knots, solved = _solve_knot(arc, self.knots, self.ratios, self.driven_travel)
-        span = Travel(float(knots[-1]), self.driven_travel)
+        span = Travel(float(knots[-1]), self.driven_travel, lobes.mate)
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
 
 

@@ -115,7 +115,8 @@ class MotionLaw(Brief):
                 where="pair.teeth",
                 value=float(lobes.n2),
                 limit=1.0,
-                nearest="the driver's teeth are the driven wheel's or a multiple of them then",
+                nearest="the driver's teeth are the driven wheel's or a multiple of them then, and "
+                "the pair is external",
             )
         axis = replace(axis_of("slide", lobes.period), series=True)
         shape, error = function_of(self.slide or "", axis, tolerances.expansion)

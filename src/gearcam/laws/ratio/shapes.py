@@ -12,7 +12,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
-from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.ratio.span import WHEEL, Lobes
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root
@@ -69,7 +69,7 @@ class RoundedPolygon(Brief):
 
     corners: int = param(COUNT, ge=3, le=100, doc="number of corners of the driver")
     corner_radius: float = param(
-        NUMBER, gt=0, lt=1, doc="radius of the corners over the centre distance"
+        NUMBER, gt=0, le=100, doc="radius of the corners over the centre distance"
     )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -91,7 +91,7 @@ class RoundedPolygon(Brief):
                     Way(near={"law.corners": max(1, round(self.corners / lobes.n1)) * lobes.n1}),
                 ),
             )
-        largest = lobes.n1 / (lobes.n1 + lobes.n2)
+        largest = lobes.n1 / (lobes.n2 + lobes.mate * lobes.n1)
         if not self.corner_radius < largest:
             raise InfeasibleError(
                 "the corners are rounder than a circular wheel",
@@ -106,8 +106,8 @@ class RoundedPolygon(Brief):
                     ),
                 ),
             )
-        height = self._side(lobes)
-        knots, pieces = self._pieces(height)
+        height = self._side(lobes, largest)
+        knots, pieces = self._pieces(height, lobes.mate)
         repeats = self.corners // lobes.n1
         sector = 2.0 * math.pi / self.corners
         grid = np.concatenate([knots[:-1] + k * sector for k in range(repeats)])
@@ -119,7 +119,7 @@ class RoundedPolygon(Brief):
         solved = {"side_distance_over_center_distance": height}
         return make_law(lobes, np.append(grid, lobes.period), moved, tolerances, solved)
 
-    def _pieces(self, h: float) -> tuple[np.ndarray, list[Piece]]:
+    def _pieces(self, h: float, mate: int) -> tuple[np.ndarray, list[Piece]]:
         """Knots and ratios of one sector, from the middle of a side to that of the next.
 
         The parameter of a piece is the angle about which it is symmetric.
@@ -129,28 +129,32 @@ class RoundedPolygon(Brief):
         turn = math.atan2((h - c) * math.tan(half), h)
 
         def side(x: Jet, middle: Value) -> Jet:
-            return h / (cos(x - middle) - h)
+            return h / (cos(x - middle) - mate * h)
 
         def corner(x: Jet, middle: Value) -> Jet:
             across = d * sin(x - middle)
             radius = d * cos(x - middle) + sqrt(c * c - across * across)
-            return radius / (1.0 - radius)
+            return radius / (1.0 - mate * radius)
 
         knots = np.array([0.0, turn, 2.0 * half - turn, 2.0 * half])
         shapes = ((side, 0.0), (corner, half), (side, 2.0 * half))
         return knots, [Piece(shape, parameters=(middle,)) for shape, middle in shapes]
 
-    def _side(self, lobes: Lobes) -> float:
-        """Solve h: the driven angle grows with it, from that of a circle of the corner's radius."""
+    def _side(self, lobes: Lobes, largest: float) -> float:
+        """Solve h: the driven angle grows with it, from that of a circle of the corner's radius.
+
+        A ring allows any h; but from that of a circular wheel on, `largest`, it turns too far.
+        """
         nodes, weights = np.polynomial.legendre.leggauss(64)
-        # At most the corner reaches the other shaft: d + c = 1.
-        half = math.pi / self.corners
-        highest = self.corner_radius + (1.0 - self.corner_radius) * math.cos(half)
+        highest = largest
+        if lobes.mate == WHEEL:  # at most the corner reaches the other shaft: d + c = 1
+            half = math.pi / self.corners
+            highest = self.corner_radius + (1.0 - self.corner_radius) * math.cos(half)
 
         def excess(heights: np.ndarray) -> np.ndarray:
             found = []
             for h in np.atleast_1d(heights):
-                knots, pieces = self._pieces(float(h))
+                knots, pieces = self._pieces(float(h), lobes.mate)
                 ratio = piecewise(knots, pieces)
                 # the corner's peak is sharp where it comes near the other shaft: graded parts
                 grid = np.concatenate([knots[0] + np.linspace(0, 1, 5) * knots[1], _graded(knots)])

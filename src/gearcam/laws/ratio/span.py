@@ -8,14 +8,14 @@ slope is zero), so that the centrode has no corner.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
@@ -138,6 +138,71 @@ def demand_equal(lobes: Lobes) -> None:
             value=lobes.n1 / lobes.n2,
             limit=1.0,
             nearest="this is the ratio of the counts",
+        )
+
+
+def demand_slower(span: Span) -> None:
+    """Refuse a ring that would turn as far as its wheel, or farther.
+
+    Parameters
+    ----------
+    span : Lobes or Travel
+        How far both turn.
+
+    Raises
+    ------
+    InfeasibleError
+        Naming the driver's travel.
+    """
+    if span.mate == RING and not span.advance < span.period:
+        most, key = math.degrees(span.period), "law.driven_travel_deg"
+        raise InfeasibleError(
+            "a ring turns less than its wheel",
+            where="pair.teeth" if span.closed else key,
+            value=math.degrees(span.advance),
+            limit=most,
+            unit="deg",
+            nearest="the limit is how far the driver turns",
+            ways=() if span.closed else (Way(near={key: most}, far={key: 0.1 * most}),),
+        )
+
+
+def demand_below_one(
+    largest: float, where: str, mean: float = 1.0, ways: Sequence[Way] = ()
+) -> None:
+    """Refuse a ratio of an internal pair that is not below 1.
+
+    Parameters
+    ----------
+    largest : float
+        The largest ratio.
+    where : str
+        Its place.
+    mean : float
+        The mean that closure asks for, where it is told.
+    ways : sequence of Way
+        Changes that may help.
+
+    Raises
+    ------
+    InfeasibleError
+        Naming how much less the ratio may swing about its mean.
+    """
+    if not largest < 1.0:
+        nearest = "the wheel would be as large as its ring"
+        if mean < 1.0:
+            share = shown((1.0 - mean) / (largest - mean))
+            nearest += (
+                f"; about the mean of {shown(mean)}, which closure asks for, the ratio may swing "
+                f"less than {share} times as far"
+            )
+        raise InfeasibleError(
+            "the ratio of an internal pair must stay below 1",
+            where=where,
+            value=largest,
+            limit=1.0,
+            nearest=nearest,
+            ways=ways,
         )
 
 

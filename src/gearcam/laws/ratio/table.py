@@ -157,7 +157,7 @@ def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
         )
     if driven_travel is not None:
         demand_equal(lobes)
-        return Travel(float(angles[-1]), driven_travel)
+        return Travel(float(angles[-1]), driven_travel, lobes.mate)
     if abs(angles[-1] - lobes.period) > TYPED:
         raise InfeasibleError(
             "the table must span one lobe of the tooth counts",

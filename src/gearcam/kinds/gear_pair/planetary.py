@@ -1,0 +1,79 @@
+"""Why a planet between sun and ring on a carrier is not made."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+from gearcam.designs.faults import Fault, show
+from gearcam.numerals import shown
+
+_RULE: Final = "two tooth counts, driver first, for each pair of wheels by itself"
+
+
+def planet_curve(sun: int, planet: int, ring: int) -> tuple[float, float]:
+    """Return the planet curve ``r = A*x*(1 + e*cos(n*phi))`` that meshes with sun and ring.
+
+    Parameters
+    ----------
+    sun, planet, ring : int
+        Lobes or tooth counts; ``ring >= sun + 2*planet``.
+
+    Returns
+    -------
+    x, e : float
+        Mean radius over the centre distance A of both pairs, and swing over the mean radius;
+        0 for round wheels, 1 or more where there is no such curve.
+
+    Notes
+    -----
+    Over a turn of the planet the ratio to the sun, ``r/(A - r)``, has the mean planet/sun, that to
+    the ring, ``r/(A + r)``, planet/ring. The first is convex in r and the second concave, so that
+    both can be only where ``ring > sun + 2*planet``, or on circles (Jensen). For this curve the
+    means are those of ``1/(a + b*cos)``, whence ``(1 - x)^2 - (x*e)^2 = (sun/(sun + planet))^2``
+    and ``(1 + x)^2 - (x*e)^2 = (ring/(ring - planet))^2``.
+    """
+    near, far = (sun / (sun + planet)) ** 2, (ring / (ring - planet)) ** 2
+    x = 0.25 * (far - near)
+    swing = (1.0 - x) ** 2 - near if ring > sun + 2 * planet else 0.0
+    return x, math.sqrt(swing) / x
+
+
+def planetary_fault(teeth: Any) -> Fault:
+    """Return what is wrong with a wish for a planet on a carrier.
+
+    Parameters
+    ----------
+    teeth : object
+        What stands under ``pair.teeth``.
+
+    Returns
+    -------
+    Fault
+        With the numbers, where the counts of sun, planet and ring are told.
+    """
+    what = "a planet between sun and ring on a carrier is not made"
+    why = (
+        "one planet curve meshes with both at a constant distance only where "
+        "n_ring > n_sun + 2*n_planet, or on circles"
+    )
+    counts = teeth if isinstance(teeth, list) and len(teeth) == 3 else []
+    if not counts or any(type(count) is not int or count < 1 for count in counts):
+        _, e = planet_curve(4, 4, 13)
+        least = f"already with 4, 4 and 13 lobes it swings by {shown(e)} of its mean radius"
+        return Fault(("pair",), f"{what}: {why}; {least}", allowed=_RULE)
+    sun, planet, ring = counts
+    least = sun + 2 * planet
+    if ring < least:
+        state = f"no curve closes with {show(counts)}"
+    else:
+        x, e = planet_curve(sun, planet, ring)
+        lobes = planet // math.gcd(*counts)
+        state = (
+            f"with {show(counts)} it is A*x*(1 + e*cos({lobes}*phi)) with x = {shown(x)} and "
+            f"e = {shown(e)}"
+        )
+        if e >= 1.0:
+            state += ", which is no curve about a shaft"
+    hint = f"with {least} teeth the ring and all wheels are round; more ask for a larger e"
+    return Fault(("pair", "teeth"), f"{what}: {why}; {state}", teeth, _RULE, hint)

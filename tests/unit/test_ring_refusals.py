@@ -1,0 +1,209 @@
+"""What cannot be a ring, by reading and by computing, with what is allowed instead."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from typing import Any
+
+import pytest
+
+import gearcam as gc
+from gearcam.errors import DesignError, InfeasibleError, Problem
+from gearcam.gears.pair import GearPair, lobes_of
+from gearcam.kinds.gear_pair.planetary import planet_curve
+from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.tolerances import DEFAULT
+
+ELLIPSE = {"type": "ellipse", "eccentricity": 0.1}
+
+
+def built(law: dict[str, Any], teeth: list[int], **tables: Any) -> GearPair:
+    pair = {"type": "internal", "module_mm": 2, "teeth": teeth} | tables.pop("pair", {})
+    text = 'kind = "gear-pair"\nname = "ring"\n'
+    for title, table in {"law": law, "pair": pair, **tables}.items():
+        text += f"[{title}]\n" + "".join(f"{key} = {json.dumps(table[key])}\n" for key in table)
+    return gc.build(gc.loads(text)).pair
+
+
+def only(caught: pytest.ExceptionInfo[DesignError]) -> Problem:
+    (problem,) = caught.value.problems
+    return problem
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("outer", "follow"), ("rim_mm", 5), ("outer_diameter_mm", 130), ("cutter_teeth", 30)],
+)
+def test_an_external_pair_has_no_ring(key: str, value: Any) -> None:
+    assert built(ELLIPSE, [24, 48], ring={key: value}).internal
+    with pytest.raises(DesignError) as caught:
+        built(ELLIPSE, [24, 48], pair={"type": "external"}, ring={key: value})
+    problem = only(caught)
+    assert (problem.key, problem.value) == (f"ring.{key}", value)
+    assert 'pair.type = "internal"' in problem.allowed
+
+
+def test_an_external_pair_may_say_what_is_usual_of_a_ring() -> None:
+    """A design made in Python says so when it is turned into a document."""
+    assert not built(ELLIPSE, [24, 48], pair={"type": "external"}, ring={"outer": "round"}).internal
+
+
+@pytest.mark.parametrize("beside", [{"rim_mm": 5}, {"outer": "follow"}])
+def test_a_diameter_is_that_of_a_round_outside_without_a_rim(beside: dict[str, Any]) -> None:
+    with pytest.raises(DesignError, match=f"130 beside {next(iter(beside))}") as caught:
+        built(ELLIPSE, [24, 48], ring={"outer_diameter_mm": 130, **beside})
+    assert only(caught).key == "ring.outer_diameter_mm"
+
+
+def test_the_ring_comes_second() -> None:
+    with pytest.raises(InfeasibleError, match=r"teeth = \[24, 48\], with the law's inverse"):
+        built(ELLIPSE, [48, 24])
+    assert built(ELLIPSE, [24, 48]).internal
+
+
+def test_the_inverse_of_a_law_is_that_of_the_ring_given_second() -> None:
+    """Where the ratio is i at phi1 and phi2 it is 1/i at phi2 and phi1 then, as is told."""
+    driver = gc.laws.Formula(ratio="1 + 0.2*cos(2*phi1)").build(Lobes(2, 1), DEFAULT)
+    phi = [math.pi * k / 32 for k in range(33)]
+    phi2 = [0.0, *(float(driver.phi2(angle)) for angle in phi[1:-1]), 2 * math.pi]
+    degrees = {"phi1_deg": phi2, "phi2_deg": phi}
+    table = {key: [math.degrees(one) for one in row] for key, row in degrees.items()}
+    law = built({"type": "table"} | table, [30, 60]).law
+    for k in (3, 17, 30):
+        ratio = float(driver.ratio(phi[k]))
+        assert float(law.ratio(phi2[k])) == pytest.approx(1 / ratio, rel=1e-4)  # of 33 points
+
+
+def test_equal_counts_have_no_closed_internal_pair_but_an_open_one() -> None:
+    with pytest.raises(InfeasibleError, match="equal tooth counts have no internal pair"):
+        built({"type": "constant"}, [30, 30])
+    open_one = {"type": "log-spiral", "ratios": [0.3, 0.5], "driven_travel_deg": 60}
+    assert built(open_one, [30, 30]).internal
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"type": "formula", "r1": "1 + 0.1*cos(phi1)"},
+        {"type": "formula", "phi2": "phi1 + 0.01*sin(phi1)"},
+    ],
+)
+def test_a_ring_turns_less_than_its_wheel(law: dict[str, Any]) -> None:
+    travels = {"driver_travel_deg": 90, "driven_travel_deg": 91}
+    with pytest.raises(InfeasibleError, match="a ring turns less than its wheel") as caught:
+        built(law | travels, [30, 30])
+    assert caught.value.limit == pytest.approx(90.0)
+    if "r1" in law:
+        assert built(law | travels | {"driven_travel_deg": 89.9}, [30, 30]).internal
+
+
+def test_a_ratio_stays_below_one_by_the_share_that_is_told() -> None:
+    def harmonics(share: float) -> None:
+        built({"type": "fourier", "cosines": [0.6 * share], "sines": [0.3 * share]}, [400, 600])
+
+    with pytest.raises(InfeasibleError, match="must stay below 1") as caught:
+        harmonics(1.0)
+    found = re.search(r"mean of (\S+),.* less than (\S+) times", str(caught.value))
+    assert found
+    mean, share = (float(number) for number in found.groups())
+    assert mean == pytest.approx(2 / 3, abs=1e-6)
+    assert share == pytest.approx(0.5 / math.hypot(0.6, 0.3), abs=1e-6)
+    with pytest.raises(InfeasibleError, match="must stay below 1"):
+        harmonics(share * 1.001)
+    with pytest.raises(InfeasibleError, match="concave"):  # as high as that, wheels are no wheels
+        harmonics(share * 0.999)
+
+
+def test_ratios_of_a_spiral_stay_below_one() -> None:
+    spiral = {"type": "log-spiral", "driven_travel_deg": 60}
+    for ratios, place in (([0.3, 1], 1), ([1.2, 0.5], 0)):
+        with pytest.raises(InfeasibleError, match="must stay below 1") as caught:
+            built(spiral | {"ratios": ratios}, [30, 30])
+        assert caught.value.where == f"law.ratios[{place}]"
+    assert built(spiral | {"ratios": [0.3, 0.9]}, [30, 30]).internal
+
+
+def test_a_rack_has_no_inside() -> None:
+    with pytest.raises(InfeasibleError, match="a rack has no inside"):
+        built({"type": "rack", "r1": "1 + 0.1*cos(phi1)"}, [20, 30])
+
+
+def test_a_slide_has_no_ring() -> None:
+    slide = {"type": "motion", "slide": "1 - cos(phi1)", "rod": 4}
+    with pytest.raises(InfeasibleError, match="and the pair is external"):
+        built(slide, [20, 40])
+
+
+def test_corners_no_rounder_than_a_circular_wheel() -> None:
+    polygon = {"type": "rounded-polygon", "corners": 4}
+    with pytest.raises(InfeasibleError, match="rounder than a circular wheel") as caught:
+        built(polygon | {"corner_radius": 5}, [40, 50])
+    assert caught.value.limit == pytest.approx(4.0)
+    assert built(polygon | {"corner_radius": 3.9}, [80, 100]).internal
+
+
+def test_lobes_know_their_mate() -> None:
+    spec = gc.PairSpec(type="internal", teeth=(24, 36), module=1.0)
+    assert lobes_of(spec) == Lobes(2, 3, RING)
+
+
+# lobes of sun, planet and ring; x and e in thirty digits
+PLANETS = {
+    (4, 4, 12): (0.5, 0.0),
+    (4, 4, 13): (0.459104938271605, 0.44939366285989),
+    (3, 3, 10): (0.447704081632653, 0.523976471730756),
+    (8, 8, 25): (0.478157439446367, 0.312444475974748),
+    (2, 1, 5): (0.279513888888889, 0.977526096923783),
+}
+
+
+@pytest.mark.parametrize("lobes", PLANETS)
+def test_the_curve_of_a_planet(lobes: tuple[int, int, int]) -> None:
+    assert planet_curve(*lobes) == pytest.approx(PLANETS[lobes], abs=1e-14)
+
+
+@pytest.mark.parametrize("lobes", [(4, 4, 13), (3, 3, 10), (8, 8, 25), (2, 1, 5)])
+def test_the_planet_meshes_with_both_at_one_distance(lobes: tuple[int, int, int]) -> None:
+    """Trapezia of the ratios to the sun and to the ring, over a turn of the planet."""
+    sun, planet, ring = lobes
+    x, e = planet_curve(*lobes)
+    radii = [x * (1 + e * math.cos(2 * math.pi * k / 4096)) for k in range(4096)]
+    assert sum(r / (1 - r) for r in radii) / 4096 == pytest.approx(planet / sun, rel=1e-12)
+    assert sum(r / (1 + r) for r in radii) / 4096 == pytest.approx(planet / ring, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("teeth", "words"),
+    [
+        ([24, 24, 78], "e*cos(4*phi)) with x = 0.459105 and e = 0.449394"),
+        ([24, 24, 72], "with x = 0.5 and e = 0"),
+        ([20, 10, 80], "which is no curve about a shaft"),
+        ([24, 24, 60], "no curve closes with [24, 24, 60]"),
+        ([24, 24, 20], "no curve closes"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["internal", "external", "planetary"])
+def test_a_planet_on_a_carrier_is_refused_with_its_numbers(
+    teeth: list[int], words: str, kind: str
+) -> None:
+    with pytest.raises(DesignError) as caught:
+        built(ELLIPSE, teeth, pair={"type": kind})
+    problem = only(caught)
+    assert problem.key == "pair.teeth"
+    assert words in problem.message
+    assert f"with {teeth[0] + 2 * teeth[1]} teeth the ring and all wheels are round" in problem.hint
+
+
+@pytest.mark.parametrize("teeth", [[24, 48], [24, 24, 0.5], "many"])
+def test_a_planetary_pair_is_refused_whatever_its_teeth(teeth: Any) -> None:
+    with pytest.raises(DesignError, match=r"4, 4 and 13 lobes it swings by 0\.449394") as caught:
+        built(ELLIPSE, teeth, pair={"type": "planetary"})
+    assert only(caught).key == "pair"
+
+
+def test_a_planet_wished_for_in_python_is_refused_alike() -> None:
+    pair = gc.PairSpec(type="planetary", teeth=(24, 24, 78), module=2.0)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(DesignError, match="a planet between sun and ring on a carrier"):
+        gc.build(gc.GearPairDesign(name="set", law=gc.laws.Constant(), pair=pair))
