@@ -9,11 +9,11 @@ from importlib.util import find_spec
 from typing import Any
 from xml.etree import ElementTree as ET
 
-import ezdxf
 import numpy as np
 import pytest
 import shapely
 import trimesh
+from ezdxf import filemanagement
 from ezdxf import path as ezpath
 from scipy.integrate import quad
 
@@ -60,7 +60,7 @@ def files(made: GearPairResult, kind: str) -> dict[str, bytes]:
 
 
 def dxf(data: bytes) -> Any:
-    return ezdxf.read(io.StringIO(data.decode())).modelspace()
+    return filemanagement.read(io.StringIO(data.decode())).modelspace()
 
 
 def outline(entity: Any) -> shapely.Polygon:
@@ -135,7 +135,7 @@ def test_solids_of_rings_are_closed_and_hollow(
     result: GearPairResult = request.getfixturevalue(name)
     found = files(result, kind)
     part, width = result.parts[1], result.design.pair.face_width
-    mesh = trimesh.load(io.BytesIO(found["gear2." + kind]), file_type=kind, force="mesh")
+    mesh: Any = trimesh.load(io.BytesIO(found["gear2." + kind]), file_type=kind, force="mesh")
     mesh.merge_vertices()
     assert mesh.is_watertight
     assert mesh.euler_number == 2 - 2 * (1 + len(part.openings))
@@ -145,7 +145,7 @@ def test_solids_of_rings_are_closed_and_hollow(
     (mark,) = part.marks
     volume = width * area - mark.depth * math.pi * (0.5 * mark.diameter) ** 2
     assert mesh.volume == pytest.approx(volume, rel=2e-4)
-    pair = trimesh.load(io.BytesIO(found["pair." + kind]), file_type=kind, force="mesh")
+    pair: Any = trimesh.load(io.BytesIO(found["pair." + kind]), file_type=kind, force="mesh")
     pair.merge_vertices()
     low, high = pair.bounds
     if name == "made":

@@ -67,7 +67,8 @@ def test_an_outside_that_follows_is_a_true_parallel(law: Any) -> None:
     length = math.pi * 2.0 * 48
     assert outside.moments.area == pytest.approx(area + length * away + math.pi * away**2, rel=1e-8)
     assert len(outside.runs) == 1, "no corners"
-    curve = shapely.STRtree(shapely.linestrings(np.stack([dense, np.roll(dense, -1, 0)], axis=1)))
+    chords: Any = shapely.linestrings(np.stack([dense, np.roll(dense, -1, 0)], axis=1))
+    curve = shapely.STRtree(chords)
     for points in (outside.vertices, outside.runs[0].points):
         some = shapely.points(points[:: len(points) // 500])
         distance = curve.query_nearest(some, return_distance=True)[1]
@@ -147,7 +148,7 @@ def test_one_value_for_both_wheels_is_the_drivers() -> None:
         "lightening_holes": 3,
     }
     document = ring_design(pair={"teeth": (40, 80)}).to_dict() | {"blank": sizes}
-    design = gearcam.design(document)
+    design: Any = gearcam.design(document)
     assert design.blank.bore_diameter == (10.0, 0.0)
     assert design.blank.lightening_holes == (3, 0)
     again = gearcam.design(design.to_dict())
@@ -226,7 +227,7 @@ def test_bolts_outside_the_rim_are_refused(circle: float, diameter: float, wall:
         # the hole is wider by twice the clearance
         outline = gearcam.build(design).gear2.outline
         roots, outside = shapely.LinearRing(outline), np.hypot(*outline.T).max() + 5.4
-        turns = np.exp(1j * (math.pi / 4 + 0.5 * math.pi * np.arange(4)))
+        turns: Any = np.exp(1j * (math.pi / 4 + 0.5 * math.pi * np.arange(4)))
         away = shapely.distance(roots, shapely.points(65.2 * turns.real, 65.2 * turns.imag))
         limit = 2.0 * (min(away.min(), outside - 65.2) - wall) - 0.1
         assert refused.value.limit == pytest.approx(limit, abs=5e-3)
