@@ -14,7 +14,7 @@ from mpmath import ellipe
 from gearcam.findings import CHECKS, Finding
 from gearcam.gears.centrode_checks import remote_cutter
 from gearcam.gears.checks import KIND, Subject, undercut
-from gearcam.gears.spec import Rack
+from gearcam.gears.spec import Rack, RingSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.composite import Fourier
 from gearcam.laws.ratio.constant import Constant
@@ -22,6 +22,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import job, profile
+from helpers_ring_parts import ring_job
 
 HALF = (0.0, math.pi, 2 * math.pi)
 UNEVEN = (0.0, math.radians(160), 2 * math.pi)
@@ -100,6 +101,11 @@ def door(more: float) -> GearPairResult:
     return job(made.design.law, (29, 29), module=5.0, limits={"end_gap": gap + more})
 
 
+def shaper(teeth: float) -> GearPairResult:
+    """A ring cut by a pinion of so many teeth."""
+    return ring_job(ring=RingSpec(cutter_teeth=teeth))
+
+
 class Case(NamedTuple):
     code: str
     severity: str
@@ -140,6 +146,7 @@ CASES = [
     ),
     Case("self-crossing", "warning", lambda: door(1e-9), lambda: door(-1e-9)),
     Case("concave-teeth", "warning", lambda: shaped(1.0001), lambda: shaped(0.9999)),
+    Case("cutter-small", "note", lambda: shaper(11.999), lambda: shaper(12.0)),
     Case("sharp", "warning", lambda: bending(2.499), lambda: bending(2.501)),
     Case(
         "undercut", "warning", lambda: job(Constant(), (17, 60)), lambda: job(Constant(), (18, 60))
@@ -231,7 +238,7 @@ def test_every_check_of_the_registry_is_tested_here() -> None:
         "remote-cutter",
     }
     assert named == {check.code for check in CHECKS.values() if check.kind == KIND}
-    assert len(named) == 16
+    assert len(named) == 17
 
 
 def test_a_pair_that_does_not_drive_is_an_error() -> None:

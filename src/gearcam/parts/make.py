@@ -5,6 +5,7 @@ Refused: what openings and marks refuse.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -13,25 +14,27 @@ from gearcam.errors import Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part
-from gearcam.parts.openings import Workpiece, openings
+from gearcam.parts.openings import Workpiece, openings, solid_of
+from gearcam.parts.shapes import Circle
 
 
 def make_part(
     name: str,
-    contours: Sequence[Contour],
+    contours: Sequence[Contour | Circle],
     width: float,
     blank: WheelBlank,
     work: Workpiece,
     marker: Callable[[], Mark] | None = None,
+    inner: Sequence[Contour] = (),
 ) -> Part:
-    """Make the part of a wheel.
+    """Make the part of a wheel or a ring.
 
     Parameters
     ----------
     name : str
         The stem of its files.
     contours : sequence of Contour
-        True outlines as made: one, or those of the steps.
+        True outlines as made: one, or those of the steps; of a ring they may be circles.
     width : float, mm
         Of the toothed plate.
     blank : WheelBlank
@@ -40,6 +43,8 @@ def make_part(
         Which wheel.
     marker : callable, optional
         Gives the timing mark; called only if marks are wanted.
+    inner : sequence of Contour
+        Of a ring: the true inner edges.
 
     Returns
     -------
@@ -50,16 +55,22 @@ def make_part(
     InfeasibleError
         If something has no room, or meets something else.
     """
-    found = openings(blank, contours, work)
+    found = openings(blank, contours, work, inner)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
         _demand_within(hub, contours, work)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     part = Part(
-        name=name, contours=tuple(contours), width=width, openings=found, hub=hub, marks=marks
+        name=name,
+        contours=tuple(contours),
+        width=width,
+        openings=found,
+        inner=tuple(inner),
+        hub=hub,
+        marks=marks,
     )
-    _demand_marks(part, work)
+    _demand_marks(part, blank, work)
     return part
 
 
@@ -97,10 +108,10 @@ def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
     )
 
 
-def _demand_within(hub: Hub, contours: Sequence[Contour], work: Workpiece) -> None:
+def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpiece) -> None:
     from shapely import Point
 
-    room = min(2.0 * contour.polygon.boundary.distance(Point(0.0, 0.0)) for contour in contours)
+    room = 2.0 * solid_of(contours, (), work).boundary.distance(Point(0.0, 0.0))
     if hub.diameter >= room:
         raise work.refusal(
             "the hub reaches the roots of the teeth",
@@ -117,7 +128,7 @@ def _demand_within(hub: Hub, contours: Sequence[Contour], work: Workpiece) -> No
         )
 
 
-def _demand_marks(part: Part, work: Workpiece) -> None:
+def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
     """Refuse a mark that meets an opening, the hub or the outline."""
     from shapely import Point
 
@@ -134,7 +145,16 @@ def _demand_marks(part: Part, work: Workpiece) -> None:
                 limit=max(0.0, 2.0 * room),
                 nearest="the limit is the room around its middle",
                 ways=(
+                    Way(near=_between_bolts(blank, work)),
                     Way(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
                     Way(near={"blank.timing_marks": False}),
                 ),
             )
+
+
+def _between_bolts(blank: WheelBlank, work: Workpiece) -> dict[str, object]:
+    """Return the change that turns a bolt circle by half a step, if there are bolts."""
+    if not blank.bolts:
+        return {}
+    angle = math.degrees(blank.bolt_angle) + 180.0 / blank.bolts
+    return {work.key("bolt_angle_deg"): angle if angle <= 360.0 else angle - 360.0}
