@@ -1,8 +1,8 @@
 """The ends of open wheels: where their teeth stop, and the body that holds them.
 
 The blank ends half a pitch beyond both ends of the centrode: on wheel 1 in the middle of a space,
-on wheel 2 in the middle of a tooth. From there it goes inwards along the normal, below the roots,
-then straight to a hub around the shaft.
+on wheel 2 in the middle of a tooth. From there it goes along the normal, below the roots, then
+straight to a hub around the shaft; of a ring, whose metal is outside, to an arc around its teeth.
 """
 
 from __future__ import annotations
@@ -33,6 +33,9 @@ _WHOLE = 350.0
 
 _HUB = 0.6
 """Radius of the hub over the smallest radius that the body has room for."""
+
+_RIM = 1.7
+"""Depth of a ring's body below its end faces, in modules: 2.7 below the roots."""
 
 
 def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
@@ -94,7 +97,7 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
 
 
 def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) -> tuple[Run, ...]:
-    """Return what joins the last tooth to the first around the shaft.
+    """Return what joins the last tooth to the first: around the shaft, of a ring behind its teeth.
 
     Parameters
     ----------
@@ -103,15 +106,15 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
     toothed : (n, 2) array, mm
         Its teeth, counter-clockwise.
     tolerance : float, mm
-        Chord error of the hub's arc.
+        Chord error of the arc.
     parts : int
         Dense points for each chord.
 
     Returns
     -------
     tuple of Run
-        End face, arm, hub, arm, end face, counter-clockwise; of a rack straight lines around its
-        back.
+        End face, arm, hub (of a ring its outside), arm, end face, counter-clockwise; of a rack
+        straight lines around its back.
 
     Raises
     ------
@@ -129,9 +132,14 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         corners = [complex(back, point.imag) for point in (inner[1], inner[0])]
         chain = [last, inner[1], *corners, inner[0], first]
         return tuple(_line(start, end) for start, end in pairwise(chain))
-    radius = _HUB * min(abs(points).min(), abs(inner).min())
+    # the teeth of a ring, counter-clockwise around its metal, run clockwise around the shaft
     span = float(np.angle(points[1:] / points[:-1]).sum())
     span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))
+    radius, sweep = _HUB * min(abs(points).min(), abs(inner).min()), 2.0 * math.pi - span
+    if span < 0.0:
+        module = toothing.pitch / math.pi
+        radius = max(abs(points).max() + _BELOW * module, abs(inner).max()) + _RIM * module
+        sweep = span = -span
     if span >= 2.0 * math.pi - _GAP:
         name = ("driver", "driven wheel")[toothing.wheel - 1]
         ways = toothing.track.rotation(np.array([0.0, toothing.track.around]))
@@ -147,7 +155,6 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
             more_teeth=travel / limit if travel < _WHOLE else 0.0,
         )
     hub = radius * inner / np.abs(inner)
-    sweep = 2.0 * math.pi - span
     chords = max(2, math.ceil(sweep / math.sqrt(8.0 * tolerance / radius)))
     turn = np.exp(1j * sweep * np.linspace(0.0, 1.0, chords * parts + 1))
     arc = hub[1] * turn
