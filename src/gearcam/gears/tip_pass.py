@@ -33,8 +33,11 @@ _EDGE = 8
 _FEET = 2.0
 """Pitches to either side within which feet lie, where polar angles have told them roughly."""
 
-_ANGLE = 2e-15
-"""Driver angle in turns to which a crossing is found: rounding."""
+_ANGLE = 1e-14
+"""Driver angle in turns to which a crossing is found: feet are no better."""
+
+_DIGITS = 9
+"""Digits of margins in pitches that tell which is the least: of equal ones the first is named."""
 
 
 class TipPass(NamedTuple):
@@ -76,7 +79,8 @@ class _Edge:
     """
 
     def __init__(self, mate: Toothing) -> None:
-        self.phi = mate.track.angle(np.linspace(0.0, mate.length, _EDGE * mate.teeth + 1))
+        s, reach = np.linspace(0.0, mate.length, _EDGE * mate.teeth + 1), _FEET * mate.pitch
+        self.phi, self.low, self.high = mate.track.angle(np.stack([s, s - reach, s + reach]))
         base = mate.frames(self.phi, curved=False)
         points = base.p + mate.cutter.addendum * mate.turn * base.t
         self.polar, self.radii = np.unwrap(np.angle(points)), np.abs(points)
@@ -84,9 +88,10 @@ class _Edge:
     def _places(self, points: Plane) -> Array:
         return self.polar[0] + (np.angle(points) - self.polar[0]) % (2.0 * math.pi)
 
-    def feet(self, points: Plane) -> Array:
-        """Return feet of points on the centrode, rad."""
-        return np.interp(self._places(points), self.polar, self.phi)
+    def feet(self, points: Plane) -> tuple[Array, ...]:
+        """Return between which driver angles feet of points lie, and a guess, rad."""
+        places = self._places(points)
+        return tuple(np.interp(places, self.polar, v) for v in (self.low, self.high, self.phi))
 
     def beyond(self, points: Plane) -> Array:
         """Return how far points are among the teeth, mm; an open ring ends."""
@@ -119,18 +124,20 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     TipPass
         Of closed wheels the first of what repeats with the lobes.
     """
-    edge = _Edge(ring.toothing)
+    own, edge = wheel.toothing, _Edge(ring.toothing)
     corners = _corners(wheel, ring.toothing)
-    stays = _stays(*_follow(wheel.toothing, ring.toothing, corners, edge))
-    found = [TipPass(math.inf, 0, 0.0, 0.0)]
-    for side in (1.0, -1.0):
-        margins, angles = _margins(wheel.toothing, ring, corners.points, edge, stays, side)
-        if margins.size:
-            worst = int(np.argmin(margins))
-            at = stays.corner[worst]
-            tooth, sigma = int(corners.tooth[at]), float(corners.sigma[at])
-            found.append(TipPass(float(margins[worst]), tooth, sigma, float(angles[worst])))
-    return min(found)
+    stays = _stays(*_follow(own, ring.toothing, corners, edge))
+    margins, angles = _margins(own, ring, corners.points, edge, stays)
+    if not np.isfinite(margins).any():
+        return TipPass(math.inf, 0, 0.0, 0.0)
+    worst = int(np.argmin(np.round(margins / own.pitch, _DIGITS)))
+    corner, phi1 = stays.corner[worst % len(stays.corner)], float(angles[worst])
+    return TipPass(
+        float(margins[worst]),
+        int(corners.tooth[corner]),
+        float(corners.sigma[corner]),
+        phi1 % own.track.around if own.closed else phi1,
+    )
 
 
 def _corners(wheel: Outline, mate: Toothing) -> _Corners:
@@ -190,34 +197,34 @@ def _stays(phi: Array, depth: Array) -> _Stays:
 
 
 def _margins(
-    own: Toothing, ring: Outline, points: Plane, edge: _Edge, stays: _Stays, side: float
+    own: Toothing, ring: Outline, points: Plane, edge: _Edge, stays: _Stays
 ) -> tuple[Array, Array]:
-    """Return margins, mm, to the tip corners on one `side` of spaces, and driver angles, rad.
+    """Return margins, mm, and driver angles, rad, of all stays, (2n,).
 
-    On side 1 lies the tooth that begins the space, with its flank sigma = 1.
+    First to the tooth that begins a space, with its flank sigma = 1, then to that which ends it.
     """
-    mate, corner = ring.toothing, points[stays.corner]
-    formed, tips = len(mate.numbers), ring.flanks.tips
+    mate, tips = ring.toothing, ring.flanks.tips
+    corner, deep, out = (np.tile(v, 2) for v in (points[stays.corner], stays.deep, stays.edge))
+    formed, side = len(mate.numbers), np.repeat([1.0, -1.0], len(stays.corner))
 
     def seen(phi: Array) -> tuple[Array, Array]:
         return _feet(own, mate, edge, corner, phi)
 
-    space = np.round((seen(stays.deep)[0] - mate.moved) / mate.pitch)
-    tooth = space.astype(int) + (0 if side > 0.0 else 1) - mate.numbers[0]
+    start, low = seen(deep)
+    space = np.round((start - mate.moved) / mate.pitch).astype(int)
+    tooth = np.where(side > 0.0, space, space + 1) - mate.numbers[0]
     meets = np.full(tooth.shape, mate.closed) | ((tooth >= 0) & (tooth < formed))
-    index = tooth % formed + (0 if side > 0.0 else formed)
+    index = np.where(side > 0.0, 0, formed) + tooth % formed
     height = tips.height[index]
-    low, high = seen(stays.deep)[1] - height, seen(stays.edge)[1] - height
+    low, high = low - height, seen(out)[1] - height
     meets &= low < 0.0
-    crosses = meets & (high > 0.0)
     # a corner that never gets out is looked at where it is nearest to that
-    start = np.where(crosses, stays.deep, stays.edge)
-    tolerance = _ANGLE * mate.track.around
+    crosses = meets & (high > 0.0)
     phi = bracketed_root(
         lambda x: np.where(crosses, seen(x)[1] - height, 0.0),
-        start,
-        stays.edge,
-        tolerance,
+        np.where(crosses, deep, out),
+        out,
+        _ANGLE * mate.track.around,
         (np.where(crosses, low, 0.0), np.where(crosses, high, 0.0)),
     )
     margin = side * (seen(phi)[0] - mate.track.arc_length(tips.foot[index]))
@@ -232,9 +239,6 @@ def _feet(
     """Return arc lengths of feet of corners on the ring's centrode, and heights, mm."""
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
     path = there.p + there.t * np.conj(here.t) * (points - here.p)
-    guess = edge.feet(path)
-    s, reach = mate.track.arc_length(guess), _FEET * mate.pitch
-    low, high = mate.track.angle(np.stack([s - reach, s + reach]))
-    foot = feet(mate, path, low, high, guess)
+    foot = feet(mate, path, *edge.feet(path))
     base = mate.frames(foot, curved=False)
-    return mate.track.arc_length(foot), np.real(np.conj(mate.turn * base.t) * (path - base.p))
+    return base.s, np.real(np.conj(mate.turn * base.t) * (path - base.p))
