@@ -18,7 +18,9 @@ import gearcam as gc
 from gearcam.errors import InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
+from gearcam.gears.outline import build_outline
 from gearcam.gears.pair import Gear
+from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.contact import contacts
@@ -28,6 +30,7 @@ from gearcam.meshing.numbers import numbers
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
+from gearcam.tolerances import DEFAULT
 from helpers_meshing import moved
 
 Array = NDArray[np.float64]
@@ -49,6 +52,8 @@ LAWS = {
         gc.laws.Formula(ratio="1 + 0.2*cos(phi1) + 0.04*sin(2*phi1)"), (30, 60), 2.0, gc.Rack(),
     ),
 }  # fmt: skip
+CLEAN = ["circular", "one lobe", "asymmetric"]
+"""The tips of the two lobes meet outside the mesh."""
 
 
 def pair_of(law: object, teeth: tuple[int, int], module: float, rack: gc.Rack) -> GearPairResult:
@@ -191,7 +196,7 @@ def test_contact_ratios_of_circular_rings(teeth: tuple[int, int], ratio: float) 
     assert result.contact_ratios["contact_ratio"] == pytest.approx(ratio, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", CLEAN)
 @pytest.mark.parametrize("ahead", [OVERCLOSURE, -OVERCLOSURE])
 def test_a_turn_as_designed_runs_clean(name: str, ahead: float) -> None:
     meshing = studied(name, ahead=ahead)
@@ -239,7 +244,7 @@ def test_a_circular_ring_off_its_distance_is_an_involute_ring(more: float) -> No
     assert meshing.every("backlash") == pytest.approx(20.0 * play, abs=1e-11)
 
 
-@pytest.mark.parametrize("name", ["one lobe", "two lobes", "asymmetric"])
+@pytest.mark.parametrize("name", ["one lobe", "asymmetric"])
 def test_mounted_farther_interferes_and_nearer_plays(name: str) -> None:
     result = made(name)
     far, near = studied(name, 0.1), studied(name, -0.1)
@@ -317,17 +322,15 @@ def whole_areas(name: str, distance: float, angles: Array, lead: float) -> list[
     for phi1, driven in zip(angles.tolist(), driven_angles(name, angles).tolist(), strict=True):
         one = made(name).gear1.outline @ [1, 1j] * np.exp(-1j * (phi1 + OVERCLOSURE))
         two = made(name).gear2.outline @ [1, 1j] * np.exp(-1j * (driven + lead)) - distance
-        wheel, hole = (
-            shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in (one, two)
-        )  # fmt: skip
+        wheel, hole = (shapely.Polygon(np.stack([z.real, z.imag], axis=1)) for z in (one, two))
         areas.append(wheel.difference(hole).area)
     return areas
 
 
 @pytest.mark.parametrize("name", LAWS)
-@pytest.mark.parametrize("more", [0.0, 0.03, -0.03, -2.5])
+@pytest.mark.parametrize("more", [0.0, 0.03, -0.03, 0.4])
 def test_all_overlap_is_that_of_the_whole_outlines(name: str, more: float) -> None:
-    """In place, pressed together, apart, and so far that tips meet on the ring's other side."""
+    """In place, mounted far and near (in modules), and turned by up to half a tooth."""
     result, module = made(name), made(name).pair.module
     first, second = (half_teeth(gear.profile) for gear in result.gears)
     distance = result.pair.center_distance + more * module
@@ -340,51 +343,77 @@ def test_all_overlap_is_that_of_the_whole_outlines(name: str, more: float) -> No
         expected = whole_areas(name, distance, angles, lead)
         assert areas == pytest.approx(expected, rel=1e-9, abs=1e-12 * module**2)
         most = max(most, *expected)
-    assert (most > 0.01 * module**2) == (more > -1.0 or result.pair.center_distance < 8.0 * module)
+    assert most > 0.1 * module**2
 
 
 def test_tips_that_meet_far_from_the_mesh_are_found() -> None:
     """28 teeth in 36, full height: corners meet before a quarter of a turn; in 37 they pass."""
-    overlaps = {}
-    for ring in (36, 37):
-        meshing = study(pair_of(ROUND, (28, ring), 1.0, DEEP).gears, MeshingSpec())
-        overlaps[ring] = meshing
-    assert codes(overlaps[37]) == {}
-    assert codes(overlaps[36])["interference"] == "error"
-    (finding,) = (f for f in run_checks(KIND, overlaps[36], {}) if f.code == "interference")
-    where = finding.where
-    assert "deepest at phi1 = " in where
-    assert "tooth" in where.partition(" in ")[2]
-    # the place is that of the tips: within the ring's tip circle, no flank of the pair near it
-    rows = overlaps[36].columns
+    found = {}
+    for teeth in (36, 37):
+        made_so = pair_of(ROUND, (28, teeth), 1.0, DEEP)
+        one, two = made_so.pair.toothings
+        gears = (  # as they are cut, whatever a build would take off their tips
+            replace(made_so.gear1, profile=build_outline(one, two, 1e-3, DEFAULT, follow=False)),
+            replace(made_so.gear2, profile=build_outline(two, one, 1e-3, DEFAULT, follow=False)),
+        )
+        found[teeth] = study(gears, MeshingSpec())
+    assert codes(found[37]) == {}
+    (finding,) = (f for f in run_checks(KIND, found[36], {}) if f.code == "interference")
+    assert finding.severity == "error"
+    rows = found[36].columns
+    deepest = int(rows["depth_mm"].filled(0.0).argmax())
+    phi1 = rows["phi1_deg"][deepest]
+    tooth, space = (int(rows[name][deepest]) for name in ("tooth1", "tooth2"))
+    assert f"deepest at phi1 = {phi1:g} deg, tooth {tooth} in tooth {space}" in finding.where
+    # tips meet: far from the line of centres, above the mean radius of the wheel's tips
     strange = np.ma.getmaskarray(rows["predicted_mm2"]) & (rows["depth_mm"].filled(0.0) > 1e-3)
     assert np.count_nonzero(strange) > 20
-    assert rows["patch_to_mm"][strange].min() > 14.5
-    one = rows["tooth1"][strange].data.astype(int)
-    middle = 2.0 * math.pi * (one - 1) / 28.0
+    assert rows["patch_to_mm"][strange].min() > 14.9
+    middle = 2.0 * math.pi * (rows["tooth1"][strange].data - 1.0) / 28.0
     away = np.abs(np.angle(np.exp(1j * (middle - np.radians(rows["phi1_deg"][strange])))))
-    assert away.min() > math.radians(50.0)
+    assert away.min() > math.radians(45.0)
 
 
-@pytest.mark.parametrize("wheel", [1, 2])
+def test_the_tips_of_a_lobed_ring_meet_where_it_is_narrow() -> None:
+    """Full height and 20 teeth more on the ring, enough for circles; in some phases tips meet."""
+    (finding,) = (f for f in run_checks(KIND, studied("two lobes"), {}) if f.code == "interference")
+    found = numbers(studied("two lobes"))
+    assert 20 <= found["interference_steps"] <= 60
+    assert finding.value > 0.1
+    phi1 = np.unique(studied("two lobes").phi1[studied("two lobes").every("interferes")])
+    areas = np.array(whole_areas("two lobes", 18.96124240457442, phi1, 0.0))
+    assert areas.min() > 1e-4
+    clear = studied("two lobes").phi1[~studied("two lobes").every("interferes")]
+    explained = 4.0 * OVERCLOSURE * 60.0  # of each pair of flanks: depth times less than 1 mm
+    assert max(whole_areas("two lobes", 18.96124240457442, clear, 0.0)) < explained
+
+
+def about_tooth_1(steps: int, ahead: float) -> MeshingSpec:
+    turn = math.radians(12.0)
+    return MeshingSpec(start=-turn, end=turn, steps=steps, overclosure=math.radians(ahead))
+
+
+@pytest.mark.parametrize(("wheel", "tooth"), [(1, 1), (2, 60)])
 @pytest.mark.parametrize("by", [1e-3, -1e-3])
-def test_a_tooth_moved_by_1_um_is_found(wheel: int, by: float) -> None:
-    """By the flanks as the ring's lag or as lack of room, and by the outlines alone."""
-    spec = MeshingSpec(
-        start=math.radians(-12.0), end=math.radians(12.0), steps=48, overclosure=math.radians(1e-4)
-    )
-    setup = mount(made("asymmetric").gears, spec)
-    tooth = 1 if wheel == 1 else 60
-    whole, broken = run(setup), run(moved(setup, tooth, by, wheel))
-    assert codes(whole) == {}
-    radius = np.abs(made("asymmetric").pair.rolling.tracks[1].frames(np.zeros(1)).p)[0]
-    assert np.abs(broken.every("lead")).max() == pytest.approx(1e-3 / radius, rel=0.1)
-    assert broken.every("backlash").min() == pytest.approx(-1e-3, rel=0.05)
+def test_a_tooth_moved_by_1_um_is_found(wheel: Wheel, tooth: int, by: float) -> None:
+    """By the flanks: as the ring's lag, and as lack of room on the other side."""
+    setup = mount(made("asymmetric").gears, about_tooth_1(24, 0.005))
+    broken = run(moved(setup, tooth, by, wheel))
+    radius = float(np.abs(made("asymmetric").pair.rolling.tracks[1].frames(np.zeros(1)).p[0]))
+    if (by < 0.0) == (wheel == 1):  # pressed on the flank that drives; else the others carry
+        assert broken.every("lead").max() == pytest.approx(1e-3 / radius, rel=0.1)
+    assert broken.every("backlash").min() == pytest.approx(-1e-3, rel=0.15)
     assert codes(broken)["interference"] == "error"
-    outlines = run(replace(moved(setup, tooth, by, wheel), pairs=setup.pairs))
-    pressed = (by < 0.0) == (wheel == 1)  # towards the flank that drives, or away from it
-    assert numbers(outlines)["interference_steps"] > 5
-    assert (numbers(outlines)["pairs_in_contact"]["max"] >= 1) or not pressed
+
+
+@pytest.mark.parametrize(("wheel", "tooth", "by"), [(1, 1, -1e-3), (2, 60, 1e-3), (2, 60, -1e-3)])
+def test_outlines_alone_find_a_tooth_moved_by_1_um(wheel: Wheel, tooth: int, by: float) -> None:
+    setup = mount(made("asymmetric").gears, about_tooth_1(8, 4e-4))
+    assert codes(run(setup)) == {}
+    found = run(replace(moved(setup, tooth, by, wheel), pairs=setup.pairs))
+    finding = next(one for one in run_checks(KIND, found, {}) if one.code == "interference")
+    assert f"tooth {tooth}" in finding.where
+    assert finding.value == pytest.approx(1e-3 * math.cos(ALPHA), abs=4e-4)
 
 
 def test_distances_at_which_a_ring_does_not_mesh_are_refused() -> None:
@@ -407,17 +436,15 @@ def test_columns_of_a_ring() -> None:
     driven = np.radians(table["phi2_deg"])
     points = table["r2_mm"] * np.exp(1j * driven)
     assert table["x2_mm"] + 1j * table["y2_mm"] == pytest.approx(points, abs=1e-12)
-    # of a curve that runs counter-clockwise, by finite differences of its own points
-    x, y, s = table["x2_mm"], table["y2_mm"], table["s_mm"]
-    (dx, dy), (ddx, ddy) = ((np.gradient(z, s) for z in (x, y)) for _ in range(1)), (0, 0)
-    bend = dx * np.gradient(dy, s) - dy * np.gradient(dx, s)
-    inside = slice(3, -3)
-    assert 1.0 / table["rho2_mm"][inside] == pytest.approx(-bend[inside], abs=3e-4)
+    # the geometric curvature, positive where round, by finite differences of the points
+    dx, dy = (np.gradient(table[axis], table["s_mm"]) for axis in ("x2_mm", "y2_mm"))
+    bend = dx * np.gradient(dy, table["s_mm"]) - dy * np.gradient(dx, table["s_mm"])
+    assert (-1.0 / table["rho2_mm"])[3:-3] == pytest.approx(bend[3:-3], abs=3e-4)
+    assert bend.max() > 0.02
     found = result.contact(phases("asymmetric"), "drive")
     point = found["x_mm"] + 1j * found["y_mm"]
     assert found["contact_radius2_mm"] == pytest.approx(np.abs(point + distance), abs=1e-12)
     assert np.radians(found["phi2_deg"]) == pytest.approx(
         driven_angles("asymmetric", np.radians(found["phi1_deg"])), abs=1e-12
     )
-    chart = result.chart("curvature")
-    assert chart.lines[1].y.min() == pytest.approx(-1.0 / -table["rho2_mm"][table["rho2_mm"] < 0].max(), rel=1e-3)
+    assert result.chart("curvature").lines[1].y.min() == pytest.approx(-bend.max(), abs=3e-4)
