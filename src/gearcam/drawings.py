@@ -239,6 +239,8 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
     from gearcam.parts.parallel import followed, moved, sized
 
     match feature.shape:
+        case Circle(diameter=diameter) as circle if feature.kind in OUTER:
+            return replace(circle, diameter=diameter + kerf)
         case Circle(diameter=diameter) as circle if diameter > kerf:
             return replace(circle, diameter=diameter - kerf)
         case Circle(center=center, diameter=diameter):
@@ -286,7 +288,7 @@ def pair_drawing(
     parts : two Part
         Driver first.
     center_distance : float, mm
-        Distance of the shafts; 0 for a rack, which has none.
+        Place of the second shaft on x, negative for a ring; 0 for a rack, which has none.
     centrodes : sequence of Path
         In the wheels' own frames, driver first; may be empty.
     placements : two Placement, optional
@@ -306,11 +308,13 @@ def pair_drawing(
     offsets = ((0.0, 0.0), (float(center_distance), 0.0))
     stands = placements or ((0.0, offsets[0]), (0.0, offsets[1]))
     features: list[Feature] = []
-    for number, (part, stand) in enumerate(zip(parts, stands, strict=True), start=1):
+    numbered = enumerate(zip(parts, stands, strict=True), start=1)
+    # what is drawn later lies on top: a wheel in its ring
+    for number, (part, stand) in sorted(numbered, key=lambda one: not one[1][0].inner):
         features += place(part_features(part), *stand, prefix=f"GEAR{number}_")
     for path, stand in zip(centrodes, stands, strict=False):
         features += place([Feature(layer=CENTRODE, shape=path)], *stand)
-    size = CROSS_SIZE * (center_distance or float(np.ptp(parts[0].contour.vertices)))
+    size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
     for offset in offsets if center_distance else offsets[:1]:
         features.append(Feature(layer=CENTER, shape=Cross(center=np.array(offset), size=size)))
     return Drawing(name="pair", features=tuple(features))

@@ -79,6 +79,7 @@ def part_facts(part: Part, tools: ToolLimits, density: float | None) -> dict[str
     from gearcam.parts.mass import mass_properties
 
     made: dict[str, Any] = {
+        "part": {"area_mm2": part.steps[0].moments.area},
         "tool": tools.as_dict(),
         "openings": [opening.as_dict() for opening in part.openings],
     }

@@ -19,6 +19,13 @@ CLOSURE = math.radians(1e-7)
 _ANY_RADIUS = 1e6
 """Default of the concave radius: every concave part is reported, mm."""
 
+_CUTTER_TEETH = (
+    "cutter_teeth",
+    Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"),
+    12.0,
+)
+"""Limit of a pinion cutter's teeth, in concave parts and in rings."""
+
 
 @pair_check(
     "closure", limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE)
@@ -91,10 +98,12 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
 def concave(subject: Subject, limit: float) -> Iterator[Remark]:
     """Note a concave part, which a rack or hob cannot cut.
 
-    Looks at: concave parts of the centrodes.
+    Looks at: concave parts of the centrodes; a ring is concave by nature.
     """
     for gear in subject.gears:
         cutter, (place, radius) = gear.toothing.cutter, gear.toothing.track.concave
+        if gear.ring:
+            continue
         if cutter.kind == "pinion" and radius < limit:
             yield Remark(
                 "The centrode is concave here: no rack or hob can cut this wheel; its "
@@ -127,11 +136,7 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
             )
 
 
-@pair_check(
-    "concave-teeth",
-    limit=("cutter_teeth", Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"), 12.0),
-    unit="teeth",
-)
+@pair_check("concave-teeth", limit=_CUTTER_TEETH, unit="teeth")
 def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn where teeth are wide for a concave part: tips crowd, and only a tiny cutter fits.
 
@@ -139,11 +144,28 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
     """
     for gear in subject.gears:
         count, (place, radius) = gear.toothing.cutter.teeth, gear.toothing.track.concave
-        if count < limit:
+        if count < limit and not gear.ring:
             yield Remark(
                 "The teeth are wide for this concave part, whose radius is "
                 f"{shown(radius)} mm. {subject.with_teeth(limit / count)} the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
+                count,
+            )
+
+
+@pair_check("cutter-small", limit=_CUTTER_TEETH, severity="note", unit="teeth")
+def cutter_small(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Note that the pinion cutter of a ring has few teeth.
+
+    Looks at: teeth of the pinion cutter of a ring.
+    """
+    for gear in subject.gears:
+        count = gear.toothing.cutter.teeth
+        if gear.ring and count < limit:
+            yield Remark(
+                "The pinion cutter of the ring has few teeth: a shaper may have none so small, "
+                "and the fillets are those of a cutter of this size.",
+                f"wheel {gear.wheel}",
                 count,
             )
 

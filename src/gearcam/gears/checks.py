@@ -173,21 +173,25 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
 def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of a rim below 1.2 tooth depths (2.7 modules for the common rack).
 
-    Looks at: rim between bore and root.
+    Looks at: rim between bore and root, or outside the roots of a ring.
     """
-    for gear, bore in zip(subject.gears, subject.bores, strict=True):
-        if bore is None:
-            continue
-        rim = gear.least_radius - 0.5 * bore
-        if rim < limit * subject.pair.module * (1.0 - ROUNDING):  # the bore named keeps it
-            largest = 2.0 * (gear.least_radius - limit * subject.pair.module)
-            hint = (
-                f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the limit"
-                if largest > 0
-                else "no bore keeps the limit"
-            )
+    least = limit * subject.pair.module
+    for rim, gear in subject.rims:
+        if rim < least * (1.0 - ROUNDING):  # the bore or rim named keeps it
+            largest = 2.0 * (gear.least_radius - least)
+            what, hint = "between bore and root", "no bore keeps the limit"
+            if gear.ring:
+                what = "outside the roots"
+                across = shown(2.0 * (gear.largest_radius + least), 12)
+                hint = f"ring.rim_mm = {shown(least, 12)} keeps the limit, and a round outside of "
+                hint += f"{across} mm does"
+            elif largest > 0:
+                hint = (
+                    f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the "
+                    "limit"
+                )
             yield Remark(
-                f"The rim between bore and root is {shown(rim)} mm thick; {hint}.",
+                f"The rim {what} is {shown(rim)} mm thick; {hint}.",
                 f"wheel {gear.wheel}",
                 rim / subject.pair.module,
             )

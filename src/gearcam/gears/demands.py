@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
+from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
 from gearcam.numerals import shown
 
 _TIP_PART = 0.95
@@ -216,3 +216,35 @@ def demand_clearance(
                     ),
                 ),
             )
+
+
+def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> None:
+    """Refuse an outer diameter that leaves no metal outside the roots of a ring.
+
+    Parameters
+    ----------
+    ring : RingSpec
+        What is asked for.
+    roots : float, mm
+        Largest radius of its teeth.
+    module : float, mm
+        Module.
+    limit : float, mm
+        Rim that leaves no finding.
+
+    Raises
+    ------
+    InfeasibleError
+        With the diameter that keeps the limit.
+    """
+    if ring.least_rim(roots, module) <= 0.0:
+        raise InfeasibleError(
+            "the outside of the ring reaches the roots of the teeth",
+            where="wheel 2, ring.outer_diameter_mm",
+            value=ring.outer_diameter,
+            limit=2.0 * roots,
+            unit="mm",
+            nearest="the limit is the circle around the roots; "
+            f"{shown(2.0 * (roots + limit))} mm leave a rim of {shown(limit)} mm",
+            ways=(Way(near={"ring.outer_diameter_mm": 2.0 * (roots + limit)}),),
+        )

@@ -17,6 +17,7 @@ def gear_tree(gear: Gear) -> dict[str, Any]:
     pinion = cutter.kind == "pinion"
     return {
         "name": gear.name,
+        "internal": True if gear.ring else None,
         "teeth": gear.toothing.teeth,
         "centrode": {
             "length_mm": Fact(gear.toothing.length, "centrode length"),
@@ -26,10 +27,12 @@ def gear_tree(gear: Gear) -> dict[str, Any]:
         },
         "cutter": cutter.kind,
         "cutter_pitch_radius_mm": 1.0 / cutter.kc if pinion else None,
+        "cutter_teeth": cutter.teeth if pinion else None,
         "cutter_tip_radius_mm": cutter.tip_radius,
         "undercut_teeth": list(gear.profile.undercut_teeth),
         "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
-        "root_radius_min_mm": gear.least_radius,
+        "root_radius_min_mm": None if gear.ring else gear.least_radius,
+        "root_radius_max_mm": gear.largest_radius if gear.ring else None,
         "outline": {
             "vertices": len(gear.outline),
             "least_vertices": gear.profile.sampler.least,

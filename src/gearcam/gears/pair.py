@@ -162,6 +162,16 @@ class Gear(Brief, Displayed):
         """Vertices of the outline, (n, 2), mm, counter-clockwise, in the wheel's frame."""
         return self.profile.points
 
+    @property
+    def ring(self) -> bool:
+        """Whether it is a ring or a sector of one: its metal is outside its teeth."""
+        return self.pair.internal and self.wheel == 2
+
+    @property
+    def hollow(self) -> bool:
+        """Whether its outline is the edge of a hole: a ring that goes all around."""
+        return self.ring and self.toothing.closed
+
     @cached_property
     def flanks(self) -> Columns:
         """Points on the flanks as made, `FLANK_POINTS` on each (see `flank_points`)."""
@@ -199,16 +209,23 @@ class Gear(Brief, Displayed):
         return Facts(gear_tree(self), ("teeth",), self.name)
 
     def picture(self) -> str:
-        """Return a picture of the outline and the centrode, SVG, in the wheel's frame."""
+        """Return a picture of the outline and the centrode, SVG, in the wheel's frame.
+
+        Around the teeth of a ring there is metal, a module of which is drawn.
+        """
         from gearcam.markup import outlines
 
         track = self.toothing.track
         centrode = self.centrode(
             np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
         )
+        edges = [self.outline]
+        if self.hollow:
+            spokes = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, PICTURED))
+            edges.append((self.largest_radius + self.pair.module) * as_pairs(spokes))
         return outlines(
             self.facts.headline,
-            [self.outline],
+            edges,
             [centrode],
             wheel=self.wheel,
             axis=not track.slides,
@@ -219,6 +236,12 @@ class Gear(Brief, Displayed):
         """Smallest distance of the outline from the axis, mm."""
         x, y = self.outline.T
         return float(np.hypot(x, y).min())
+
+    @cached_property
+    def largest_radius(self) -> float:
+        """Largest distance of the teeth from the axis, mm: of a ring where its root is deepest."""
+        x, y = self.profile.toothed.T
+        return float(np.hypot(x, y).max())
 
     def centrode(self, phi: Array) -> Array:
         """Return points of the centrode at driver angles, rad: (n, 2), mm, in the wheel's frame."""

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
+
+_RIM = 2.7
+"""Rim outside a ring's roots, in modules, where the design gives none: 1.2 tooth depths."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,6 +179,32 @@ class RingSpec:
         doc="teeth of the pinion cutter, whole or not; if left out, as many as leave room for the "
         "mate's tips",
     )
+
+    def problems(self) -> Iterator[tuple[str, None, str, str]]:
+        """Yield what is wrong by reading: field, None, message, allowed."""
+        if self.outer_diameter is not None and self.outer == "follow":
+            yield "outer_diameter", None, "an outside that follows is not round", "rim_mm"
+        elif self.outer_diameter is not None and self.rim is not None:
+            yield "outer_diameter", None, "rim_mm is given too", "one of both"
+
+    def least_rim(self, roots: float, module: float) -> float:
+        """Return the least metal outside the roots.
+
+        Parameters
+        ----------
+        roots : float, mm
+            Largest distance of the roots from the axis.
+        module : float, mm
+            Module.
+
+        Returns
+        -------
+        float, mm
+            Not positive where a round outside would reach the roots.
+        """
+        if self.outer_diameter is not None:
+            return 0.5 * self.outer_diameter - roots
+        return self.rim if self.rim is not None else _RIM * module
 
 
 @dataclass(frozen=True, kw_only=True)

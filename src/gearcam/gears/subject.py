@@ -41,11 +41,24 @@ class Subject(Brief):
         Both wheels.
     bores : (float or None, float or None), mm
         Bore diameters.
+    rim : float or None, mm
+        Least metal outside the roots of a ring.
     """
 
     pair: GearPair
     gears: tuple[Gear, Gear]
     bores: tuple[float | None, float | None]
+    rim: float | None = None
+
+    @property
+    def rims(self) -> list[tuple[float, Gear]]:
+        """Metal between bore and root, or outside the roots of a ring, mm, and of which wheel."""
+        found = [
+            (gear.least_radius - 0.5 * bore, gear)
+            for gear, bore in zip(self.gears, self.bores, strict=True)
+            if bore is not None
+        ]
+        return found + ([(self.rim, self.gears[1])] if self.rim is not None else [])
 
     def with_teeth(self, factor: float) -> str:
         """Return in words with how many teeth, in the same ratio, all is `factor` times as wide."""

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol, cast
 
 import numpy as np
 
@@ -146,6 +146,7 @@ class Part(Brief, Displayed):
         Such as ``gear1``: the stem of its files.
     contours : tuple of Contour
         Outlines in the part's frame, counter-clockwise: one, or those of the steps from z = 0 up.
+        Of a ring they may be circles.
     width : float, mm
         From z = 0 to z = width, shared evenly by the steps.
     openings : tuple of Opening
@@ -165,7 +166,7 @@ class Part(Brief, Displayed):
     """
 
     name: str
-    contours: tuple[Contour, ...]
+    contours: tuple[Contour | Circle, ...]
     width: float
     openings: tuple[Opening, ...] = ()
     inner: tuple[Contour, ...] = ()
@@ -173,7 +174,8 @@ class Part(Brief, Displayed):
     marks: tuple[Mark, ...] = ()
 
     def __post_init__(self) -> None:
-        if not all(contour.area > 0 for contour in (*self.contours, *self.inner)):
+        edges = (*self.contours, *self.inner)
+        if not all(edge.area > 0 for edge in edges if isinstance(edge, Contour)):
             raise ValueError(f"{self.name}: the contour must run counter-clockwise")
         if not self.width > 0:
             raise ValueError(f"{self.name}: the width must be positive, not {self.width} mm")
@@ -182,8 +184,8 @@ class Part(Brief, Displayed):
 
     @property
     def contour(self) -> Contour:
-        """The outline, of a stepped part the lowest."""
-        return self.contours[0]
+        """The outline, of a ring its inner edge; of a stepped part the lowest."""
+        return cast("Contour", (self.inner or self.contours)[0])
 
     @cached_property
     def facts(self) -> Facts:
@@ -191,6 +193,7 @@ class Part(Brief, Displayed):
         tree = {
             "width_mm": self.width,
             "thickness_mm": Fact(self.thickness, "from face to face"),
+            "area_mm2": self.steps[0].moments.area,
             "volume_mm3": self.volume,
             "steps": len(self.contours) if len(self.contours) > 1 else None,
             "openings": [opening.as_dict() for opening in self.openings] or None,
@@ -207,9 +210,11 @@ class Part(Brief, Displayed):
         """Return a picture of the (lowest) outline with its openings, SVG, in the part's frame."""
         from gearcam.markup import outlines
 
-        loops = [opening.shape.points(self.tolerance) for opening in self.steps[0].openings]
+        step = self.steps[0]
+        edges = (step.edge, *(opening.shape for opening in step.openings))
+        loops = [edge.points(self.tolerance) for edge in edges]
         marks = [pocket.edge.points(self.tolerance) for pocket in self.pockets]
-        return outlines(self.facts.headline, [self.outline, *loops, *marks])
+        return outlines(self.facts.headline, [*loops, *marks])
 
     @property
     def outline(self) -> Array:
@@ -274,8 +279,9 @@ class Part(Brief, Displayed):
         """The (lowest) outline with its openings, chords within the tolerance."""
         from shapely import Polygon
 
-        holes = [opening.shape.points(self.tolerance) for opening in self.steps[0].openings]
-        return Polygon(self.contour.vertices, holes)
+        step = self.steps[0]
+        holes = [opening.shape.points(self.tolerance) for opening in step.openings]
+        return Polygon(step.edge.points(self.tolerance), holes)
 
     @property
     def thickness(self) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from gearcam.display import Brief
 from gearcam.findings import Remark, check
@@ -42,8 +43,8 @@ class PartsSubject(Brief):
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
-        """The largest tools for the outlines; of stepped parts for their lowest."""
-        return tuple(tool_limits(part.contour) for part in self.parts)
+        """The largest tools for the toothed edges; of stepped parts for their lowest."""
+        return tuple(tool_limits(part.contour, hollow=bool(part.inner)) for part in self.parts)
 
 
 @check("thin-wall", kind=KIND, limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0))
@@ -72,7 +73,11 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
         else (LinearRing(shape.points(part.tolerance)), 0.0)
         for opening in part.openings
     ]
-    edges = [(contour.polygon.boundary, "outline") for contour in part.contours]
+    edges: list[tuple[Any, str]] = [
+        (LinearRing(edge.points(part.tolerance)), what)
+        for what, ones in (("outline", part.contours), ("roots", part.inner))
+        for edge in ones
+    ]
     if part.hub is not None:
         circle = Point(0.0, 0.0).buffer(0.5 * part.hub.diameter, quad_segs=256).boundary
         edges.append((circle, "hub's edge"))

@@ -13,25 +13,27 @@ from gearcam.errors import Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part
-from gearcam.parts.openings import Workpiece, openings
+from gearcam.parts.openings import Workpiece, openings, solid_of
+from gearcam.parts.shapes import Circle
 
 
 def make_part(
     name: str,
-    contours: Sequence[Contour],
+    contours: Sequence[Contour | Circle],
     width: float,
     blank: WheelBlank,
     work: Workpiece,
     marker: Callable[[], Mark] | None = None,
+    inner: Sequence[Contour] = (),
 ) -> Part:
-    """Make the part of a wheel.
+    """Make the part of a wheel or a ring.
 
     Parameters
     ----------
     name : str
         The stem of its files.
     contours : sequence of Contour
-        True outlines as made: one, or those of the steps.
+        True outlines as made: one, or those of the steps; of a ring they may be circles.
     width : float, mm
         Of the toothed plate.
     blank : WheelBlank
@@ -40,6 +42,8 @@ def make_part(
         Which wheel.
     marker : callable, optional
         Gives the timing mark; called only if marks are wanted.
+    inner : sequence of Contour
+        Of a ring: the true inner edges.
 
     Returns
     -------
@@ -50,14 +54,20 @@ def make_part(
     InfeasibleError
         If something has no room, or meets something else.
     """
-    found = openings(blank, contours, work)
+    found = openings(blank, contours, work, inner)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
         _demand_within(hub, contours, work)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     part = Part(
-        name=name, contours=tuple(contours), width=width, openings=found, hub=hub, marks=marks
+        name=name,
+        contours=tuple(contours),
+        width=width,
+        openings=found,
+        inner=tuple(inner),
+        hub=hub,
+        marks=marks,
     )
     _demand_marks(part, work)
     return part
@@ -97,10 +107,10 @@ def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
     )
 
 
-def _demand_within(hub: Hub, contours: Sequence[Contour], work: Workpiece) -> None:
+def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpiece) -> None:
     from shapely import Point
 
-    room = min(2.0 * contour.polygon.boundary.distance(Point(0.0, 0.0)) for contour in contours)
+    room = 2.0 * solid_of(contours, (), work).boundary.distance(Point(0.0, 0.0))
     if hub.diameter >= room:
         raise work.refusal(
             "the hub reaches the roots of the teeth",

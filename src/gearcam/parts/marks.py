@@ -40,13 +40,14 @@ def timing_mark(
     width: float,
     *,
     bore_reach: float = 0.0,
+    outside: float | None = None,
     tilt: float = 0.0,
     diameter: float | None = None,
 ) -> Mark:
-    """Place a wheel's timing mark just inside the root, on a given direction.
+    """Place a timing mark just inside a wheel's root, or outside a ring's, on a given direction.
 
-    Wheel 1 takes the direction 0 and wheel 2 the direction pi: at phi1 = 0 both lie on the line of
-    centres and face each other across the pitch point.
+    Wheel 1 takes the direction 0 and wheel 2 the direction pi, a ring 0: at phi1 = 0 both lie on
+    the line of centres and face each other across the pitch point.
 
     Parameters
     ----------
@@ -63,6 +64,8 @@ def timing_mark(
     bore_reach : float, mm
         Radius within which bore, keyway and hub lie: the mark stays clear of it, and shrinks where
         the rim is thin.
+    outside : float or None, mm
+        Of a ring: distance of its outside from the axis in that direction.
     tilt : float, rad
         Angle between the radius and the centrode's normal, 0 where the centrode crosses the line of
         centres squarely.
@@ -76,25 +79,30 @@ def timing_mark(
     Raises
     ------
     InfeasibleError
-        If bore and root leave no rim, or none for the diameter that is asked for.
+        If bore, or a ring's outside, and root leave no rim, or none for the diameter that is asked
+        for.
     """
     lean = math.cos(tilt)
-    rim = (pitch_radius - bore_reach) * lean - dedendum_mm
+    way, end, between = -1.0, bore_reach, "bore and root"
+    if outside is not None:
+        way, end, between = 1.0, outside, "root and outside"
+    rim = way * (end - pitch_radius) * lean - dedendum_mm
     if rim <= 0:
-        root = max(0.0, pitch_radius - dedendum_mm / lean)
+        root = max(0.0, pitch_radius + way * dedendum_mm / lean)
+        told = "outside" if way > 0.0 else "circle around bore, keyway and hub"
         raise InfeasibleError(
-            "no room for a timing mark between bore and root",
+            f"no room for a timing mark between {between}",
             where=f"direction {shown(math.degrees(direction))} deg",
-            value=2 * bore_reach,
+            value=2 * end,
             limit=2 * root,
             unit="mm",
-            nearest="this is the circle around bore, keyway and hub, and the root there",
+            nearest=f"this is the {told}, and the root there",
             ways=(Way(near={"blank.timing_marks": False}),),
         )
     largest = RIM_PART * rim
     if diameter is not None and diameter > largest:
         raise InfeasibleError(
-            "no room for so large a timing mark between bore and root",
+            f"no room for so large a timing mark between {between}",
             where=f"direction {shown(math.degrees(direction))} deg, blank.mark_diameter_mm",
             value=diameter,
             limit=largest,
@@ -107,7 +115,7 @@ def timing_mark(
         )
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)
-    radius = pitch_radius - (dedendum_mm + gap + 0.5 * diameter) / lean
+    radius = pitch_radius + way * (dedendum_mm + gap + 0.5 * diameter) / lean
     center = radius * np.array([math.cos(direction), math.sin(direction)])
     depth = min(MARK_DEPTH, MARK_DEPTH_PART * width)
     return Mark(center=center, diameter=diameter, depth=depth)

@@ -22,9 +22,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.body import Opening
+from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
 
 if TYPE_CHECKING:
@@ -127,8 +126,35 @@ def _bolts(blank: WheelBlank) -> Iterator[Opening]:
         yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
 
+def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> Polygon:
+    """Return what all steps of a wheel or a ring have in common.
+
+    Parameters
+    ----------
+    edges : sequence of Contour or Circle
+        Their outlines.
+    inner : sequence of Contour
+        Of a ring: their inner edges.
+    work : Workpiece
+        Which wheel.
+
+    Returns
+    -------
+    Polygon
+        Without openings.
+    """
+    from shapely import Polygon, intersection_all
+
+    regions = [
+        Polygon(edge.points(_FINE * work.module), [hole.points(_FINE * work.module) for hole in at])
+        for edge, at in zip(edges, [[hole] for hole in inner] or [[]] * len(edges), strict=True)
+    ]
+    made: Any = intersection_all(regions)
+    return made
+
+
 def openings(
-    blank: WheelBlank, contours: Sequence[Contour], work: Workpiece
+    blank: WheelBlank, contours: Sequence[Edge], work: Workpiece, inner: Sequence[Edge] = ()
 ) -> tuple[Opening, ...]:
     """Return everything that goes through a wheel.
 
@@ -136,10 +162,12 @@ def openings(
     ----------
     blank : WheelBlank
         What is wanted.
-    contours : sequence of Contour
+    contours : sequence of Contour or Circle
         The outlines of its steps.
     work : Workpiece
         Which wheel.
+    inner : sequence of Contour
+        Of a ring: the inner edges of its steps.
 
     Returns
     -------
@@ -152,10 +180,7 @@ def openings(
     InfeasibleError
         If they meet each other, the hub's edge or the outline, or have no room.
     """
-    from shapely import intersection_all
-
-    # what all steps have in common
-    solid: Any = intersection_all([contour.polygon for contour in contours])
+    solid = solid_of(contours, inner, work)
     wide = blank.widened
     found = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
     found += _bolts(wide)

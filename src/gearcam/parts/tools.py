@@ -1,4 +1,4 @@
-"""The largest cutter or wire that can make an outline from outside.
+"""The largest cutter or wire that can make an edge: an outline from outside, a ring from inside.
 
 A round tool reaches every place of an outline if its radius is below the smallest *inner radius*
 (0 at an inner corner) and it passes the narrowest *slot*: the largest disc that fits between two
@@ -92,22 +92,25 @@ class ToolLimits(Brief):
         return made
 
 
-def tool_limits(contour: Contour) -> ToolLimits:
-    """Return what limits a round tool that cuts an outline from outside.
+def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
+    """Return what limits a round tool that cuts an edge from where no metal is.
 
     Parameters
     ----------
     contour : Contour
-        The outline as it is made.
+        The edge as it is made.
+    hollow : bool
+        Whether the metal is outside it.
 
     Returns
     -------
     ToolLimits
         Radii from the tangents of the dense points, widths between dense points.
     """
-    ends = np.cumsum([len(run.points) for run in contour.runs])
-    points = as_complex(np.concatenate([run.points for run in contour.runs]))
-    tangents = as_complex(np.concatenate([run.tangents for run in contour.runs]))
+    runs = [run.reversed for run in reversed(contour.runs)] if hollow else contour.runs
+    ends = np.cumsum([len(run.points) for run in runs])
+    points = as_complex(np.concatenate([run.points for run in runs]))
+    tangents = as_complex(np.concatenate([run.tangents for run in runs]))
     size = float(np.ptp(contour.vertices, axis=0).max())
     radius, place = _inner(points, tangents, ends, size)
     # no place of a convex outline faces another

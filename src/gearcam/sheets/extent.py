@@ -1,6 +1,6 @@
 """How far outlines reach: sizes of the true curve, not of its chords.
 
-Depends on numeric.
+Depends on numeric and parts' shapes.
 """
 
 from __future__ import annotations
@@ -14,18 +14,29 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.hermite import on_cubics
+from gearcam.parts.shapes import Circle
 
 _BETWEEN: Final = 129
 """Points of a cubic that stands for the curve between two dense points."""
 
+_WAYS: Final = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+"""Right, up, left, down."""
 
-def true_points(contours: Iterable[Contour]) -> Array:
-    """Return points on true outlines, (n, 2), mm: dense, and much denser where they reach farthest.
+
+def true_points(edges: Iterable[Contour | Circle]) -> Array:
+    """Return points on true edges, (n, 2), mm: dense, and much denser where they reach farthest.
 
     The places farthest along x and y, and farthest from and nearest to the origin, are good to
-    1e-8 mm: between dense points the curve is a cubic with the tangents at its ends.
+    1e-8 mm: between dense points the curve is a cubic with the tangents at its ends. Of circles
+    they are the places farthest along x and y.
     """
-    runs = [run for contour in contours for run in contour.runs]
+    return np.vstack([_points(edge) for edge in edges])
+
+
+def _points(edge: Contour | Circle) -> Array:
+    if isinstance(edge, Circle):
+        return edge.center + 0.5 * edge.diameter * _WAYS
+    runs = edge.runs
     points = np.vstack([run.points for run in runs])
     tangents = as_complex(np.vstack([run.tangents for run in runs]))
     reach = np.hypot(*points.T)

@@ -15,8 +15,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import CENTER, Circle, Drawing
+from gearcam.drawings import CENTER, OUTLINE, Circle, Drawing, reach
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.contour import Contour
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.extent import true_points
 from gearcam.sheets.paper import begin, finish
@@ -49,7 +50,7 @@ def pair_sheet(
     drawing : Drawing
         The pair with its centrodes (see `gearcam.drawings.pair_drawing`).
     center_distance : float, mm
-        Distance of the shafts, at (0, 0) and (center_distance, 0); 0 for a rack.
+        Place of the second shaft on x, the first being at 0: negative for a ring; 0 for a rack.
     facts : mapping of str to str
         Rows of the parameter table.
     title : str
@@ -69,7 +70,8 @@ def pair_sheet(
     """
     if not drawing.contours:
         raise ValueError(f"{drawing.name}: nothing to draw")
-    points = true_points(drawing.contours)
+    outlines = _outlines(drawing)
+    points = true_points(outlines)
     low, high = points.min(axis=0), points.max(axis=0)
     below = FIRST_LEVEL + LEVEL * LEVELS
     room = np.array([LEFT, below]), np.array([RIGHT, ABOVE])
@@ -91,15 +93,21 @@ def pair_sheet(
     return finish(board, name=drawing.name, title=title, facts=facts, notes=notes)
 
 
+def _outlines(drawing: Drawing) -> list[Contour | Circle]:
+    """Return the outlines of both wheels, the driver's first."""
+    ones = sorted((f for f in drawing.features if f.kind == OUTLINE), key=lambda one: one.layer)
+    return [one.shape for one in ones if isinstance(one.shape, Contour | Circle)]
+
+
 def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
     for feature in drawing.features:
         if feature.kind != CENTER:
             board.draw(feature.layer, feature.shape)
-    over, outlines = OVERHANG * board.unit, [one.vertices for one in drawing.contours]
-    for shaft, outline in zip(shafts, outlines, strict=False):
-        low, high = float(outline[:, 1].min()), float(outline[:, 1].max())
+    over, boxes = OVERHANG * board.unit, [reach(one) for one in _outlines(drawing)]
+    for shaft, corners in zip(shafts, boxes, strict=False):
+        low, high = float(corners[:, 1].min()), float(corners[:, 1].max())
         board.line(CENTERLINE, (shaft, low - over), (shaft, high + over))
-    xs = np.concatenate(outlines)[:, 0]
+    xs = np.concatenate(boxes)[:, 0]
     board.line(CENTERLINE, (float(xs.min()) - over, 0.0), (float(xs.max()) + over, 0.0))
 
 

@@ -56,10 +56,14 @@ SAME: Final = 1e-6
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Wheel:
-    """A part and what its sheet needs to know of it; its points are on the true curve."""
+    """A part and what its sheet needs to know of it; points are on the true curves.
+
+    `points` are those of the outline, `toothed` those of the teeth: of a ring its inner edge.
+    """
 
     part: Part
     points: Array
+    toothed: Array
 
     @property
     def low(self) -> Array:
@@ -72,7 +76,7 @@ class _Wheel:
     @property
     def turns(self) -> bool:
         """Whether the axis lies within the outline: racks have none."""
-        corners = as_complex(self.part.contours[-1].vertices)
+        corners = as_complex(self.part.contours[-1].points(self.part.tolerance))
         if not corners.all():
             return False
         turn = float(np.angle(np.roll(corners, -1) / corners).sum())
@@ -112,7 +116,9 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     ValueError
         If the part is too large for the smallest scale.
     """
-    wheel = _Wheel(part=part, points=true_points(part.contours[-1:]))
+    points = true_points(part.contours[-1:])
+    toothed = true_points(part.inner[-1:]) if part.inner else points
+    wheel = _Wheel(part=part, points=points, toothed=toothed)
     keyed = wheel.bore if isinstance(wheel.bore, Loop) else None
     shown = 2.0 * wheel.bore_radius if keyed else 0.0
     size = wheel.high - wheel.low + [part.thickness + shown, 0.0]
@@ -153,6 +159,9 @@ def _front_view(board: Board, wheel: _Wheel) -> None:
     first = FIRST_LEVEL * board.unit
     left, low = wheel.points[wheel.points.argmin(axis=0)]
     right, high = wheel.points[wheel.points.argmax(axis=0)]
+    if isinstance(part.contours[-1], Circle):
+        board.linear(left, right, float(low[1]) - first, prefix="Ø")
+        return
     board.linear(left, right, float(low[1]) - first)
     board.linear(low, high, float(left[0]) - first, vertical=True)
 
@@ -196,7 +205,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
 
 def _span(edge: Edge) -> tuple[float, float]:
     """Return how far an edge reaches along y, mm."""
-    ys = (true_points([edge]) if isinstance(edge, Contour) else reach(edge))[:, 1]
+    ys = (reach(edge) if isinstance(edge, Loop) else true_points([edge]))[:, 1]
     return float(ys.min()), float(ys.max())
 
 
@@ -245,10 +254,10 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
 
 
 def _radii(board: Board, wheel: _Wheel) -> None:
-    """Tell the farthest and the nearest point of the outline from the axis."""
-    reach = np.hypot(*wheel.points.T)
+    """Tell the farthest and the nearest point of the teeth from the axis."""
+    reach = np.hypot(*wheel.toothed.T)
     for place, words in ((int(reach.argmax()), "max"), (int(reach.argmin()), "min")):
-        x, y = wheel.points[place].tolist()
+        x, y = wheel.toothed[place].tolist()
         radius, ways = float(reach[place]), np.array([math.atan2(y, x)])
         made = RoundDimension(center=np.zeros(2), radius=radius, diameter=False, suffix=f" {words}")
         # a leader need not point to the axis

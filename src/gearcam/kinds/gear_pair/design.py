@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
@@ -30,6 +30,12 @@ if TYPE_CHECKING:
 
 NAME: Final = "gear-pair"
 """As in a file."""
+
+_OF_SHAFT: Final = (
+    "bore_diameter", "keyway_width", "keyway_depth", "bore_flat", "hub_diameter", "hub_front",
+    "hub_back", "lightening_holes", "stop_pin",
+)  # fmt: skip
+"""What of a blank a ring does not have."""
 
 _COARSEST: Final = 50
 """A chord tolerance coarser than module/50 no longer draws a tooth."""
@@ -156,13 +162,42 @@ def _homes() -> Mapping[str, str]:
     return homes | {"type": "this key belongs under [law]"}
 
 
-def _rules(document: Mapping[str, Any], _: Examined) -> Iterator[Fault]:
+def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     pair, output = document.get("pair"), document.get("output")
     yield from _pair_faults(pair)
     yield from output_faults(output)
     yield from _tolerance_faults(output, pair)
     yield from _meshing_faults(document.get("meshing"), pair)
     yield from _step_faults(document.get("meshing"), document.get("steps"))
+    if isinstance(pair, Mapping) and pair.get("type") == "internal":
+        yield from _shaft_faults(document.get("blank"), found)
+    else:
+        yield from _no_ring_faults(document.get("ring"))
+
+
+def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
+    """Yield what a ring has no place for; one value for both wheels is the driver's alone."""
+    if not isinstance(raw, Mapping):
+        return
+    known = table_of("blank", Blank).entries.values()
+    for key, name in ((one.key, one.name) for one in known if one.name in _OF_SHAFT):
+        value = raw.get(key)
+        if isinstance(value, list):
+            if len(value) > 1 and _is_number(value[1]) and value[1]:
+                message = f"{show(value[1])}: wheel 2 is a ring, without a shaft in its middle"
+                rule = "0; [ring] tells of the metal outside its teeth"
+                yield Fault(("blank", key, 1), message, value[1], rule)
+        elif value and "blank" in found.parts:
+            own = getattr(found.parts["blank"], name)[0]
+            found.parts["blank"] = replace(found.parts["blank"], **{name: (own, 0)})
+
+
+def _no_ring_faults(raw: Any) -> Iterator[Fault]:
+    given = raw if isinstance(raw, Mapping) else {}
+    for key, value in given.items():
+        if (key, value) != ("outer", RingSpec.outer):
+            message = f"{show(value)}: wheel 2 is no ring"
+            yield Fault(("ring", key), message, value, 'pair.type = "internal" has one')
 
 
 def _pair_faults(raw: Any) -> Iterator[Fault]:

@@ -13,7 +13,7 @@ from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
 from gearcam.gears.gear_facts import gear_tree
-from gearcam.gears.subject import KIND
+from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.numerals import shown
@@ -76,6 +76,7 @@ def _pair(result: GearPairResult) -> Tree:
     else:
         solved["module_mm"] = pair.module
     return {
+        "type": None if pair.on_rack else given.type,
         "module_mm": Fact(pair.module, "module"),
         "teeth": list(pair.teeth),
         "face_width_mm": given.face_width,
@@ -133,7 +134,7 @@ def _mesh(result: GearPairResult) -> Tree:
             place=f"wheel {gear.wheel}, tooth {tooth}",
             shown=True,
         ),
-        "rim_min_mm": _rim(result, limit_of(KIND, "thin-rim", limits) * module),
+        "rim_min_mm": _rim(subject, limit_of(KIND, "thin-rim", limits) * module),
         "backlash_mm": Fact(max(subject.backlash, 0.0), "backlash as made", shown=True),
         "acceleration_max": Fact(
             abs(float(values[worst])),
@@ -170,12 +171,8 @@ def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tup
         )
 
 
-def _rim(result: GearPairResult, limit: float) -> Fact | None:
-    rims = [
-        (gear.least_radius - 0.5 * bore, gear.wheel)
-        for gear, bore in zip(result.gears, result.bores, strict=True)
-        if bore is not None
-    ]
+def _rim(subject: Subject, limit: float) -> Fact | None:
+    rims = [(rim, gear.wheel) for rim, gear in subject.rims]
     if not rims:
         return None
     rim, wheel = min(rims)

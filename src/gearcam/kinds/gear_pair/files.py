@@ -71,11 +71,11 @@ def _pair_drawing(result: GearPairResult) -> Drawing:
 
 def placements(result: GearPairResult) -> tuple[Placement, Placement]:
     """Return how the wheels of a `result` stand when assembled: wheel 1 turned by -phi1."""
-    phi1 = result.design.output.pose
-    phi2 = float(result.law.phi2(np.array(phi1)))
+    phi1, guide = result.design.output.pose, result.pair.rolling.guide
+    moved = float(guide.nominal(np.array(phi1)))
     if result.pair.on_rack:
-        return (-phi1, (0.0, 0.0)), (0.0, (0.0, -result.pair.center_distance * phi2))
-    return (-phi1, (0.0, 0.0)), (phi2, (result.pair.shift, 0.0))
+        return (-phi1, (0.0, 0.0)), (0.0, (0.0, -moved))
+    return (-phi1, (0.0, 0.0)), (guide.turns * moved, (guide.place, 0.0))
 
 
 def _style(result: GearPairResult) -> DxfStyle:

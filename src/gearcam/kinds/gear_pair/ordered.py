@@ -7,15 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from gearcam.findings import limit_of
+from gearcam.gears.outside import outside
 from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.columns import Columns
+from gearcam.numeric.contour import Contour
+from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
-from gearcam.parts.openings import Workpiece
+from gearcam.parts.openings import Workpiece, solid_of
+from gearcam.parts.rim import demand_bolts
+from gearcam.parts.shapes import Circle
 
 Steps = tuple[tuple[Gear, Gear], ...]
 
@@ -49,6 +55,8 @@ def make_parts(steps: Steps, design: GearPairDesign) -> tuple[Part, Part]:
 
 def _part(gears: list[Gear], design: GearPairDesign) -> Part:
     gear = gears[0]
+    if gear.ring:
+        return _ring(gears, design)
     lobes, rack = gear.pair.law.lobes, gear.toothing.track.slides
     travel = None
     if not lobes.closed and not rack:
@@ -65,19 +73,53 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
     return make_part(gear.name, contours, design.pair.face_width, blank, work, marker)
 
 
-def _mark(gear: Gear, design: GearPairDesign) -> Mark:
+def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
+    """Return the part of a ring; the outline of an open one goes around its outside too."""
+    gear, ring, blank = gears[0], design.ring, design.blank.wheel(2)
+    roots = max(one.largest_radius for one in gears)
+    rim = ring.least_rim(roots, gear.pair.module)
+    around = None if ring.outer == "follow" else roots + rim
+    toothed = [one.profile.contour for one in gears]
+    contours: list[Contour | Circle] = [*toothed]
+    if gear.hollow:
+        edge = Circle(center=np.zeros(2), diameter=2.0 * around) if around else outside(gear, rim)
+        contours = [edge] * len(gears)
+    inner = toothed if gear.hollow else []
+    work = Workpiece(name="wheel 2", module=gear.pair.module, wheel=2)
+    wall = limit_of(PARTS_KIND, "thin-wall", design.limits)
+    demand_bolts(blank, solid_of(contours, inner, work), work, wall)
+    return make_part(
+        gear.name,
+        contours,
+        design.pair.face_width,
+        blank,
+        work,
+        lambda: _mark(gear, design, rim, around),
+        inner,
+    )
+
+
+def _mark(
+    gear: Gear, design: GearPairDesign, rim: float = 0.0, around: float | None = None
+) -> Mark:
+    """Return the timing mark of a wheel, or of a ring with its `rim` and the radius around it."""
     frames = gear.toothing.frames(np.zeros(1))
     radius = complex(frames.p[0])
     normal = complex(frames.t[0]) * gear.toothing.turn
     blank = design.blank.wheel(gear.wheel).widened
+    dedendum = gear.toothing.cutter.dedendum
+    tilt = abs(float(np.angle(normal / (-radius if gear.ring else radius))))
+    if gear.ring and around is None:
+        around = abs(radius) + (dedendum + rim) / math.cos(tilt)
     return timing_mark(
         abs(radius),
-        0.0 if gear.wheel == 1 else math.pi,
+        math.pi if gear.wheel == 2 and not gear.ring else 0.0,
         gear.pair.module,
-        gear.toothing.cutter.dedendum,
+        dedendum,
         design.pair.face_width,
         bore_reach=max(blank.bore_reach, 0.5 * blank.hub_diameter),
-        tilt=abs(float(np.angle(normal / radius))),
+        outside=around,
+        tilt=tilt,
         diameter=blank.mark_diameter,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gearcam.gears.spec import PairSpec, Rack, StepsSpec
+from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.meshing.settings import MeshingSpec
@@ -10,5 +10,5 @@ from gearcam.parts.blank import Blank
 
 __all__ = [
     "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec", "PairSpec",
-    "Rack", "StepsSpec",
+    "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import Finding, in_order, run_checks
+from gearcam.findings import Finding, in_order, limit_of, run_checks
 from gearcam.gears.checks import KIND, Subject
+from gearcam.gears.demands import demand_rim
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
 from gearcam.gears.spec import Finish
 from gearcam.gears.steps import leads, stepped
@@ -130,6 +131,9 @@ class PairStages(Result):
                         ),
                     ),
                 )
+            if gear.hollow:
+                limit = limit_of(KIND, "thin-rim", self.design.limits) * pair.module
+                demand_rim(self.design.ring, gear.largest_radius, pair.module, limit)
             return gear
 
     @property
@@ -139,7 +143,7 @@ class PairStages(Result):
 
     @property
     def bores(self) -> tuple[float | None, float | None]:
-        """Bore diameters, mm, of circles that hold their keyways; a rack has none."""
+        """Bore diameters, mm, of circles that hold their keyways; racks and rings have none."""
         blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
         first, second = (2.0 * blank.bore_reach for blank in blanks)
         return first or None, None if self.pair.on_rack else second or None
@@ -166,7 +170,10 @@ class PairStages(Result):
         return self._subject(self.gears)
 
     def _subject(self, gears: tuple[Gear, Gear]) -> Subject:
-        return Subject(pair=gears[0].pair, gears=gears, bores=self.bores)
+        rim = None
+        if gears[1].ring:
+            rim = self.design.ring.least_rim(gears[1].largest_radius, self.pair.module)
+        return Subject(pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim)
 
     def _gear_findings(self, subject: Subject) -> tuple[Finding, ...]:
         with self.stage("checks"):

@@ -1,0 +1,90 @@
+"""Bolt holes in the rim of a ring: between its roots and its outside.
+
+Refused: holes that the rim has no room for, with the largest that keep their walls, and with the
+bolt circle that has the most room.
+
+Depends on parts' shapes; shapely inside the functions.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.errors import Way
+from gearcam.numerals import rounded_down, shown
+from gearcam.numeric.arrays import Array
+from gearcam.parts.blank import WheelBlank
+from gearcam.parts.openings import Workpiece
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+_CIRCLES: Final = 400
+"""Bolt circles among which the roomiest is sought."""
+
+_SHARE: Final = 0.999
+"""Share of a room that a remedy takes: walls are measured between chords."""
+
+
+def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float) -> None:
+    """Refuse bolt holes that do not lie in the rim.
+
+    Parameters
+    ----------
+    blank : WheelBlank
+        With the bolts.
+    solid : Polygon
+        The ring without them, in its own frame.
+    work : Workpiece
+        What it is.
+    wall : float, mm
+        Wall that remedies leave on both sides.
+
+    Raises
+    ------
+    InfeasibleError
+        With the largest diameter that keeps the walls, if one does.
+    """
+    if not blank.bolts:
+        return
+    wide, taken = blank.bolt_diameter + blank.widening, 2.0 * wall + blank.widening
+    (room,) = _rooms(blank, solid, np.array([blank.bolt_circle]))
+    if wide < room:
+        return
+    far = float(np.hypot(*np.array(solid.exterior.coords).T).max())
+    circles = 2.0 * far * np.arange(1, _CIRCLES) / _CIRCLES
+    rooms = _rooms(blank, solid, circles)
+    best, most = float(circles[rooms.argmax()]), float(rooms.max()) - taken
+    diameter, circle = work.key("bolt_diameter_mm"), work.key("bolt_circle_mm")
+    ways = [Way(near={circle: best})] if most >= blank.bolt_diameter else []
+    if room > taken:
+        ways.append(Way(near={diameter: _SHARE * (room - taken)}))
+    elif most > 0.0:
+        ways.append(Way(near={circle: best, diameter: min(blank.bolt_diameter, _SHARE * most)}))
+    ways.append(Way(near={work.key("bolts"): 0}))
+    roomiest = f"no bolt circle keeps walls of {shown(wall)} mm: a larger rim of [ring] may"
+    if most > 0.0:
+        roomiest = f"a bolt circle of {shown(best)} mm takes up to {rounded_down(most, 4)} mm"
+    told = f"the limit keeps walls of {shown(wall)} mm on both sides; " if room > taken else ""
+    raise work.refusal(
+        "the bolt holes do not lie in the rim of the ring",
+        "blank.bolt_diameter_mm",
+        value=blank.bolt_diameter,
+        limit=room - taken if room > taken else None,
+        nearest=f"{told}{roomiest}",
+        ways=ways,
+    )
+
+
+def _rooms(blank: WheelBlank, solid: Polygon, circles: Array) -> Array:
+    """Return the diameters of the largest holes that fit on bolt circles, mm; 0 where none does."""
+    from shapely import points
+
+    turns = blank.bolt_angle + 2.0 * math.pi * np.arange(blank.bolts) / blank.bolts
+    spokes = 0.5 * np.exp(1j * turns)[:, None] * circles
+    middles: Any = points(spokes.real, spokes.imag)
+    away = np.where(solid.contains(middles), solid.boundary.distance(middles), 0.0)
+    return 2.0 * away.min(axis=0)
