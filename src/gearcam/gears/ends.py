@@ -14,9 +14,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
+from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
@@ -31,11 +32,11 @@ _GAP = 0.1
 _WHOLE = 350.0
 """Travel of a wheel, deg, beyond which no tooth count helps."""
 
+_MORE = 1.001
+"""Times the least rim or diameter that is named as one that does: clear of rounding."""
+
 _HUB = 0.6
 """Radius of the hub over the smallest radius that the body has room for."""
-
-_RIM = 1.7
-"""Depth of a ring's body below its end faces, in modules: 2.7 below the roots."""
 
 
 def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
@@ -96,7 +97,9 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
     return made
 
 
-def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) -> tuple[Run, ...]:
+def body_runs(
+    toothing: Toothing, toothed: Array, tolerance: float, parts: int, ring: RingSpec
+) -> tuple[Run, ...]:
     """Return what joins the last tooth to the first: around the shaft, of a ring behind its teeth.
 
     Parameters
@@ -109,6 +112,8 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         Chord error of the arc.
     parts : int
         Dense points for each chord.
+    ring : RingSpec
+        Outside of a ring.
 
     Returns
     -------
@@ -119,7 +124,8 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
     Raises
     ------
     InfeasibleError
-        If the ends meet: the wheel would turn by a full turn or more.
+        If the ends meet: the wheel would turn by a full turn or more. If a ring has no metal for
+        its end faces, or its outside is not round.
     """
     points = toothed @ [1.0, 1j]
     frames = toothing.frames(toothing.track.angle(toothing.ends))
@@ -137,8 +143,8 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
     span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))
     radius, sweep = _HUB * min(abs(points).min(), abs(inner).min()), 2.0 * math.pi - span
     if span < 0.0:
-        module = toothing.pitch / math.pi
-        radius = max(abs(points).max() + _BELOW * module, abs(inner).max()) + _RIM * module
+        roots, faces = float(abs(points).max()), float(abs(inner).max())
+        radius = _outside(ring, roots, faces, toothing.pitch / math.pi)
         sweep = span = -span
     if span >= 2.0 * math.pi - _GAP:
         name = ("driver", "driven wheel")[toothing.wheel - 1]
@@ -165,6 +171,35 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         Run(points=as_pairs(arc), tangents=as_pairs(1j * arc / radius)),
         _line(hub[0], inner[0]),
         _line(inner[0], first),
+    )
+
+
+def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float:
+    """Return the outer radius of an open ring, mm, from those of its roots and its end faces.
+
+    Refused is what is not round, or leaves no metal for the end faces.
+    """
+    if ring.outer != "round":
+        raise InfeasibleError(
+            "only a ring that goes all around has an outside that follows its roots",
+            where="ring.outer",
+            nearest='an open ring has outer = "round"',
+            ways=(Way(near={"ring.outer": "round"}),),
+        )
+    rim, least = ring.least_rim(roots, module), max(_BELOW * module, faces - roots)
+    if rim >= least:
+        return roots + rim
+    key, value, limit = "ring.rim_mm", rim, least
+    if ring.outer_diameter is not None:
+        key, value, limit = "ring.outer_diameter_mm", ring.outer_diameter, 2.0 * (roots + least)
+    raise InfeasibleError(
+        "an open ring has end faces a module deep below its roots, and its outside is within them",
+        where=f"wheel 2, {key}",
+        value=value,
+        limit=limit,
+        unit="mm",
+        nearest="the limit is the outside that the end faces just reach",
+        ways=(Way(near={key: _MORE * limit}),),
     )
 
 
