@@ -19,12 +19,14 @@ from helpers_internal import (
     DEEP,
     LAWS,
     ROUND,
+    Array,
     Plane,
     driven_angles,
     made,
     pair_of,
     phases,
-)  # fmt: skip
+)
+from helpers_pairs import job
 
 FLANK_POINTS = [
     ("one lobe", 1, 1, 3.0, 0.670422458743, 17.3669675696998 + 1.50032475382222j,
@@ -126,9 +128,13 @@ def test_the_pressure_angle_at_the_pitch_point_is_told_by_the_slope_of_the_centr
 
 @pytest.mark.parametrize(
     ("teeth", "ratio"),
-    [((28, 37), 2.281837124), ((28, 40), 2.190603171), ((40, 48), 2.10811715),
-     ((40, 49), 2.098621311)],
-)  # fmt: skip
+    [
+        ((28, 37), 2.281837124),
+        ((28, 40), 2.190603171),
+        ((40, 48), 2.10811715),
+        ((40, 49), 2.098621311),
+    ],
+)
 def test_contact_ratios_of_circular_rings(teeth: tuple[int, int], ratio: float) -> None:
     """000, eq. 4.63: from the tips of both wheels, full height, module 1."""
     result = pair_of(ROUND, teeth, 1.0, DEEP)
@@ -160,6 +166,22 @@ def test_a_circular_ring_off_its_distance_is_an_involute_ring(more: float) -> No
     told = numbers(meshing)
     assert told["center_distance_mm"] == pytest.approx(distance, abs=1e-12)
     assert meshing.every("backlash") == pytest.approx(20.0 * play, abs=1e-11)
+
+
+def test_backlash_as_made_is_taken_up() -> None:
+    """Driven, a ring is behind, held back ahead: by the play along the pitch curve, to first order."""
+    law, teeth, module, rack = LAWS["asymmetric"]
+    result = job(law, teeth, module=module, rack=rack, internal=True, backlash=0.005)
+    leads = []
+    for side in (DRIVE, COAST):
+        pairs = flank_pairs(result.gears, side)
+        leads.append(first_touch(pairs, phases(), contacts(pairs, phases()))[0])
+    assert leads[0].max() < 0.0 < leads[1].min()
+    frames = result.pair.rolling.tracks[1].frames(phases())
+    along = np.imag(np.conj(frames.p) * frames.t)  # mm that a turn of 1 moves along the pitch line
+    assert (leads[1] - leads[0]) * along == pytest.approx(0.005, rel=0.005)
+    found = numbers(study(result.gears, MeshingSpec(steps=12)))["backlash_mm"]
+    assert (found["min"], found["max"]) == pytest.approx((0.005, 0.005), rel=0.005)
 
 
 def dense(gear: Gear, tooth: int, sigma: int) -> Plane:

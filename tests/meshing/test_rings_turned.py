@@ -34,7 +34,7 @@ from helpers_internal import (
     driven_angles,
     made,
     pair_of,
-)  # fmt: skip
+)
 from helpers_meshing import moved
 
 
