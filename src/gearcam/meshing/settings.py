@@ -22,7 +22,7 @@ class MeshingSpec(Brief):
     The driver is turned ahead by `overclosure` at each (a negative one holds it back, so that the
     other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
     the pitch point are studied. Without `center_distance` the wheels stand as designed; a larger
-    one gives play, but presses a wheel against its ring.
+    one gives backlash, but presses a wheel into its ring.
 
     Examples
     --------
