@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 import gearcam
-from gearcam.gears.spec import PairSpec, Rack
+from gearcam.gears.spec import PairSpec, Rack, RingSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.parts.blank import Blank
@@ -32,6 +32,8 @@ def job(
     files: tuple[str, ...] = ("csv",),
     x: float = 0.0,
     backlash: float = 0.0,
+    internal: bool = False,
+    ring: RingSpec | None = None,
 ) -> GearPairResult:
     """Return the job of a design made in Python; lengths in mm, limits in inner units."""
     if module is None and distance is None:
@@ -41,8 +43,14 @@ def job(
             name="sample",
             law=law,
             pair=PairSpec(
-                center_distance=distance, module=module, teeth=teeth, x=x, backlash=backlash
+                type="internal" if internal else "external",
+                center_distance=distance,
+                module=module,
+                teeth=teeth,
+                x=x,
+                backlash=backlash,
             ),
+            ring=ring or RingSpec(),
             rack=rack or Rack(),
             blank=Blank(bore_diameter=bores),
             limits=limits or {},

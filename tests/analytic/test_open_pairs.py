@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ import shapely
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
+from gearcam.gears.spec import RingSpec
 from gearcam.laws.ratio.centrodes import LogSpiral
-from gearcam.laws.ratio.formula import RackLaw
+from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.span import ONE_LOBE, Travel
 from gearcam.tolerances import DEFAULT
@@ -130,6 +132,85 @@ def test_ends_that_meet_are_refused_with_the_way_that_does() -> None:
         else:
             with pytest.raises(InfeasibleError):
                 _ = made.gears
+
+
+SECTOR = Formula(
+    ratio="1 + 0.3*cos(phi1) + 0.2*sin(phi1)",
+    driver_travel=math.radians(200),
+    driven_travel=math.radians(110),
+)
+
+
+@pytest.mark.parametrize(
+    ("ring", "rim"),
+    [(RingSpec(), 5.4), (RingSpec(rim=7.0), 7.0), (RingSpec(outer_diameter=240.0), None)],
+)
+def test_the_body_of_a_ring_s_sector_lies_outside_its_teeth(
+    ring: RingSpec, rim: float | None
+) -> None:
+    """Counter-clockwise around the metal: teeth, then an arc about the shaft on the outside."""
+    made = job(SECTOR, (24, 24), module=2.0, internal=True, ring=ring)
+    gear, points = made.gear2, made.gear2.outline @ [1, 1j]
+    assert shapely.LinearRing(gear.outline).is_ccw
+    # half a pitch inside and outside the pitch curve, in the middle of a tooth and of a space
+    toothing = gear.toothing
+    for place, solid in ((9.5, (True, True)), (10.0, (False, False))):
+        frames = toothing.frames(toothing.track.angle(place * toothing.pitch))
+        normal = toothing.turn * frames.t  # to the tips: to the shaft
+        assert np.real(frames.p * np.conj(normal)) < 0.0
+        for height, metal in zip((-1.0, 1.0), solid, strict=True):
+            x, y = np.stack([(frames.p + height * normal).real, (frames.p + height * normal).imag])
+            assert shapely.contains_xy(shapely.Polygon(gear.outline), x, y) == metal
+    toothed = gear.profile.toothed @ [1, 1j]
+    outside = 120.0 if rim is None else np.abs(toothed).max() + rim
+    assert np.abs(points).max() == pytest.approx(outside, rel=1e-12)
+    arc = points[np.abs(np.abs(points) - outside) < 1e-9]
+    assert len(arc) > 20
+    # it spans the angle of the end faces
+    ends = toothing.frames(toothing.track.angle(toothing.ends))
+    faces = ends.p - (toothing.cutter.dedendum + 2.0) * toothing.turn * ends.t
+    assert np.angle(arc[-1] / arc[0]) == pytest.approx(np.angle(faces[1] / faces[0]), abs=1e-9)
+    assert made.gear1.least_radius < np.abs(toothed).min()  # wheel 1 keeps its hub
+
+
+@pytest.mark.parametrize(
+    ("key", "spec", "value"),
+    [
+        ("ring.rim_mm", lambda rim: RingSpec(rim=rim), 1.5),
+        ("ring.outer_diameter_mm", lambda size: RingSpec(outer_diameter=size), 180.0),
+    ],
+)
+def test_an_outside_within_the_end_faces_is_refused_with_one_that_does(
+    key: str, spec: Callable[[float], RingSpec], value: float
+) -> None:
+    def sector(given: float) -> np.ndarray:
+        made = job(SECTOR, (24, 24), module=2.0, internal=True, ring=spec(given))
+        return made.gear2.outline
+
+    with pytest.raises(InfeasibleError, match="end faces") as caught:
+        sector(value)
+    (way,), limit = caught.value.ways, caught.value.limit
+    assert limit is not None
+    named = way.near[key]
+    assert isinstance(named, float)
+    assert shapely.Polygon(sector(named)).is_valid
+    assert limit < named < 1.01 * limit
+    with pytest.raises(InfeasibleError, match="end faces"):
+        sector(0.999 * limit)
+
+
+def test_the_outside_of_an_open_ring_is_round() -> None:
+    with pytest.raises(InfeasibleError, match="goes all around"):
+        _ = job(
+            SECTOR, (24, 24), module=2.0, internal=True, ring=RingSpec(outer="follow")
+        ).gear2.outline
+
+
+def test_a_ring_s_sector_that_meets_itself_is_refused() -> None:
+    law = Formula(ratio="1", driver_travel=math.radians(359), driven_travel=math.radians(357))
+    with pytest.raises(InfeasibleError, match="ends of the dr") as caught:
+        _ = job(law, (300, 300), module=1.0, internal=True).gears
+    assert caught.value.limit == pytest.approx(353.0, abs=3.0)
 
 
 def test_a_circular_wheel_drives_a_straight_rack() -> None:

@@ -20,8 +20,8 @@ from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.centrodes import LogSpiral
-from gearcam.laws.ratio.formula import RackLaw
-from gearcam.laws.ratio.span import RACK
+from gearcam.laws.ratio.formula import Formula, RackLaw
+from gearcam.laws.ratio.span import RACK, RING, WHEEL
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import touches
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
@@ -35,6 +35,12 @@ Array = NDArray[np.float64]
 
 OVERCLOSURE = math.radians(0.005)
 
+SECTOR = Formula(
+    ratio="1 + 0.3*cos(phi1) + 0.2*sin(phi1)",
+    driver_travel=math.radians(200),
+    driven_travel=math.radians(110),
+)
+
 PAIRS = {
     "phases": lambda: profile("furnace_door"),
     "sine": lambda: profile("furnace_door_two_phase"),
@@ -42,6 +48,7 @@ PAIRS = {
     "short spiral": lambda: job(
         LogSpiral(ratios=(0.8, 2.36), driven_travel=math.radians(61)), (16, 16), module=2.0
     ),
+    "ring": lambda: job(SECTOR, (24, 24), module=2.0, internal=True),
     "feeder": lambda: profile("feeder"),
     "pinion": lambda: job(RackLaw(r1="1"), (20, 30), module=2.0),
     "short rack": lambda: job(RackLaw(r1="1 + 0.1*cos(phi1)"), (20, 6), module=2.0),
@@ -73,7 +80,8 @@ def stop(name: str) -> float:
 def lead_of(name: str, way: float) -> float:
     """The driven wheel's turn for a way of about the pitch circle, mm; of a rack the way."""
     pair = made(name).pair
-    return way if pair.law.mate == RACK else way / (0.5 * pair.center_distance)
+    radius = {RACK: 1.0, WHEEL: 0.5 * pair.center_distance, RING: 2.0 * pair.center_distance}
+    return way / radius[pair.law.mate]
 
 
 def seen(name: str, points: Any, phi: float, lead: float, distance: float) -> Any:
@@ -82,7 +90,8 @@ def seen(name: str, points: Any, phi: float, lead: float, distance: float) -> An
     driven = float(law.phi2(phi))
     if law.mate == RACK:
         return points - 1j * (size * driven + lead) + distance
-    return points * np.exp(1j * (driven + lead)) + distance
+    turn = -1j if law.mate == RING else 1j
+    return points * np.exp(turn * (driven + lead)) + distance
 
 
 def whole_areas(name: str, distance: float, angles: Array, lead: float) -> Array:
@@ -136,7 +145,9 @@ def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float) -> N
     assert max(most) > 0.01 * module**2  # at both stops there was something to see
 
 
-@pytest.mark.parametrize(("name", "turn"), [("spiral", -1.0), ("spiral", math.pi), ("phases", 2.0)])
+@pytest.mark.parametrize(
+    ("name", "turn"), [("spiral", -1.0), ("spiral", math.pi), ("phases", 2.0), ("ring", 1.9)]
+)
 def test_arms_and_hubs_are_seen(name: str, turn: float) -> None:
     """Turned so far that bodies run into teeth and into each other."""
     mounted = turning(name, -4.0)
@@ -187,7 +198,7 @@ def flank(gear: Gear, place: int, sigma: int) -> NDArray[np.complex128]:
 
 def dense_touch(name: str, side: int, phi: float, distance: float) -> float:
     """First touch by dense points: of every flank near the pitch point on both wheels' blanks."""
-    gears, feeds = made(name).gears, made(name).law.mate == RACK
+    gears, mate = made(name).gears, made(name).law.mate
     first, second = (gear.toothing for gear in gears)
     s = float(first.track.arc_length(phi))
     ahead = []
@@ -199,9 +210,11 @@ def dense_touch(name: str, side: int, phi: float, distance: float) -> float:
         own = own % first.teeth if first.closed else own
         one = flank(gears[0], own, side) * np.exp(-1j * phi) - distance
         two = seen(name, flank(gears[1], place, -side), phi, 0.0, 0.0)
-        height, turn = (
-            (lambda z: -z.real, lambda z: -z.imag) if feeds else (np.abs, lambda z: np.angle(-z))
-        )
+        height, turn = {
+            RACK: (lambda z: -z.real, lambda z: -z.imag),
+            RING: (np.abs, lambda z: -np.angle(z)),
+            WHEEL: (np.abs, lambda z: np.angle(-z)),
+        }[mate]
         order = np.argsort(height(two))
         rho = height(two)[order]
         inside = (height(one) > rho[0]) & (height(one) < rho[-1])
@@ -211,7 +224,7 @@ def dense_touch(name: str, side: int, phi: float, distance: float) -> float:
     return -side * max(ahead)
 
 
-@pytest.mark.parametrize("name", ["phases", "spiral", "feeder", "short rack"])
+@pytest.mark.parametrize("name", ["phases", "spiral", "ring", "feeder", "short rack"])
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 @pytest.mark.parametrize("shift", [0.1, -0.1])
 def test_first_touch_is_that_of_dense_points(name: str, side: int, shift: float) -> None:
@@ -238,7 +251,7 @@ def test_a_rack_moved_away_plays_by_twice_the_way_s_tangent(shift: float) -> Non
         assert np.all(hit == (shift < 0.0 or not free))
 
 
-@pytest.mark.parametrize("name", ["phases", "spiral", "feeder"])
+@pytest.mark.parametrize("name", ["phases", "spiral", "ring", "feeder"])
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(
     name: str, side: int
@@ -261,7 +274,7 @@ def test_a_flank_moved_by_20_um_turns_the_driven_wheel_by_20_um_over_its_lever(
     assert moved.turn[moved.pair != j] == pytest.approx(others, abs=1e-12)
 
 
-@pytest.mark.parametrize("name", ["phases", "spiral", "feeder"])
+@pytest.mark.parametrize("name", ["phases", "spiral", "ring", "feeder"])
 @pytest.mark.parametrize("tooth", ["first", "last"])
 def test_an_end_tooth_moved_by_20_um_is_seen_at_its_stop(name: str, tooth: str) -> None:
     mounted = turning(name)

@@ -216,7 +216,7 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
     side : {-1, +1}
         `DRIVE` or `COAST`.
     distance : float, mm, optional
-        Distance of the shafts as mounted (of a rack see `FlankPairs`); as designed if left out.
+        As mounted (see `Mounting`); as designed if left out.
 
     Returns
     -------

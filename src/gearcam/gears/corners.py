@@ -75,7 +75,9 @@ def highest_corners(
         return result
     import shapely
 
-    body = shapely.Polygon(mate_outline()).buffer(-2.0 * tolerance)
+    # of a ring the outline bounds a hole, and the metal is outside
+    hollow = mate.turn == 1j and not mate.track.clockwise
+    body = shapely.Polygon(mate_outline()).buffer(2.0 * (tolerance if hollow else -tolerance))
     shapely.prepare(body)
 
     def hits(some: Ints, reach: Array) -> Mask:
@@ -84,7 +86,7 @@ def highest_corners(
         other = mate.frames(phi, curved=False)
         # both tangents are one, and the outward normals opposite
         path = other.p + other.t * along
-        return np.any(shapely.contains_xy(body, path.real, path.imag), axis=1)
+        return np.any(shapely.contains_xy(body, path.real, path.imag) != hollow, axis=1)
 
     at = at[hits(at, highest[at])]
     low, high = np.zeros(at.size), highest[at]

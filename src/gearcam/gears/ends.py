@@ -1,8 +1,8 @@
 """The ends of open wheels: where their teeth stop, and the body that holds them.
 
 The blank ends half a pitch beyond both ends of the centrode: on wheel 1 in the middle of a space,
-on wheel 2 in the middle of a tooth. From there it goes inwards along the normal, below the roots,
-then straight to a hub around the shaft.
+on wheel 2 in the middle of a tooth. From there it goes along the normal, below the roots, then
+straight to a hub around the shaft; of a ring, whose metal is outside, to an arc around its teeth.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
+from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
@@ -30,6 +31,9 @@ _GAP = 0.1
 
 _WHOLE = 350.0
 """Travel of a wheel, deg, beyond which no tooth count helps."""
+
+_MORE = 1.001
+"""Times the least rim or diameter that is named as one that does: clear of rounding."""
 
 _HUB = 0.6
 """Radius of the hub over the smallest radius that the body has room for."""
@@ -93,8 +97,10 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
     return made
 
 
-def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) -> tuple[Run, ...]:
-    """Return what joins the last tooth to the first around the shaft.
+def body_runs(
+    toothing: Toothing, toothed: Array, tolerance: float, parts: int, ring: RingSpec
+) -> tuple[Run, ...]:
+    """Return what joins the last tooth to the first: around the shaft, of a ring behind its teeth.
 
     Parameters
     ----------
@@ -103,20 +109,23 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
     toothed : (n, 2) array, mm
         Its teeth, counter-clockwise.
     tolerance : float, mm
-        Chord error of the hub's arc.
+        Chord error of the arc.
     parts : int
         Dense points for each chord.
+    ring : RingSpec
+        Outside of a ring.
 
     Returns
     -------
     tuple of Run
-        End face, arm, hub, arm, end face, counter-clockwise; of a rack straight lines around its
-        back.
+        End face, arm, hub (of a ring its outside), arm, end face, counter-clockwise; of a rack
+        straight lines around its back.
 
     Raises
     ------
     InfeasibleError
-        If the ends meet: the wheel would turn by a full turn or more.
+        If the ends meet: the wheel would turn by a full turn or more. If a ring has no metal for
+        its end faces, or its outside is not round.
     """
     points = toothed @ [1.0, 1j]
     frames = toothing.frames(toothing.track.angle(toothing.ends))
@@ -129,9 +138,14 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         corners = [complex(back, point.imag) for point in (inner[1], inner[0])]
         chain = [last, inner[1], *corners, inner[0], first]
         return tuple(_line(start, end) for start, end in pairwise(chain))
-    radius = _HUB * min(abs(points).min(), abs(inner).min())
+    # the teeth of a ring, counter-clockwise around its metal, run clockwise around the shaft
     span = float(np.angle(points[1:] / points[:-1]).sum())
     span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))
+    radius, sweep = _HUB * min(abs(points).min(), abs(inner).min()), 2.0 * math.pi - span
+    if span < 0.0:
+        roots, faces = float(abs(points).max()), float(abs(inner).max())
+        radius = _outside(ring, roots, faces, toothing.pitch / math.pi)
+        sweep = span = -span
     if span >= 2.0 * math.pi - _GAP:
         name = ("driver", "driven wheel")[toothing.wheel - 1]
         ways = toothing.track.rotation(np.array([0.0, toothing.track.around]))
@@ -147,7 +161,6 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
             more_teeth=travel / limit if travel < _WHOLE else 0.0,
         )
     hub = radius * inner / np.abs(inner)
-    sweep = 2.0 * math.pi - span
     chords = max(2, math.ceil(sweep / math.sqrt(8.0 * tolerance / radius)))
     turn = np.exp(1j * sweep * np.linspace(0.0, 1.0, chords * parts + 1))
     arc = hub[1] * turn
@@ -158,6 +171,35 @@ def body_runs(toothing: Toothing, toothed: Array, tolerance: float, parts: int) 
         Run(points=as_pairs(arc), tangents=as_pairs(1j * arc / radius)),
         _line(hub[0], inner[0]),
         _line(inner[0], first),
+    )
+
+
+def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float:
+    """Return the outer radius of an open ring, mm, from those of its roots and its end faces.
+
+    Refused is what is not round, or leaves no metal for the end faces.
+    """
+    if ring.outer != "round":
+        raise InfeasibleError(
+            "only a ring that goes all around has an outside that follows its roots",
+            where="ring.outer",
+            nearest='an open ring has outer = "round"',
+            ways=(Way(near={"ring.outer": "round"}),),
+        )
+    rim, least = ring.least_rim(roots, module), max(_BELOW * module, faces - roots)
+    if rim >= least:
+        return roots + rim
+    key, value, limit = "ring.rim_mm", rim, least
+    if ring.outer_diameter is not None:
+        key, value, limit = "ring.outer_diameter_mm", ring.outer_diameter, 2.0 * (roots + least)
+    raise InfeasibleError(
+        "an open ring has end faces a module deep below its roots, and its outside is within them",
+        where=f"wheel 2, {key}",
+        value=value,
+        limit=limit,
+        unit="mm",
+        nearest="the limit is the outside that the end faces just reach",
+        ways=(Way(near={key: _MORE * limit}),),
     )
 
 

@@ -7,8 +7,9 @@ then ahead of its nominal place, its *lead*: equal directions of the normals, an
 As designed the rolls are equal and the lead is 0. It is the same for all pairs of evenly spaced
 flanks: they touch together at any distance of the shafts.
 
-Positions are those of the mounted pair: O1 at 0, O2 at the distance of the shafts, as complex
-numbers. A rack has no O2; its lead is part of its travel, mm.
+Positions are those of the mounted pair, as complex numbers: O1 at 0, O2 at the distance of the
+shafts along x, that of a ring as far the other way. A rack has no O2; its lead is part of its
+travel, mm.
 """
 
 from __future__ import annotations
@@ -52,7 +53,8 @@ class Mounting(Brief):
     side : {-1, +1}
         sigma of the driver's flanks.
     distance : float, mm
-        Distance of the shafts as mounted; of a rack how far it stands off its place.
+        Place of the driven frame as mounted, along x: the distance of the shafts, less than 0 for
+        a ring; of a rack how far it stands off its place.
     """
 
     toothings: tuple[Toothing, Toothing]

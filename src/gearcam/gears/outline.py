@@ -15,6 +15,7 @@ from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
 from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, join, regular_rows, select, untangle
+from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.numerals import shown
@@ -76,6 +77,8 @@ class Outline(Brief):
         Largest chord error.
     oversampling : int
         Dense points per chord.
+    ring : RingSpec, optional
+        Outside of an open ring, as its defaults say if left out.
     """
 
     toothing: Toothing
@@ -83,6 +86,7 @@ class Outline(Brief):
     flanks: Flanks
     tolerance: float
     oversampling: int
+    ring: RingSpec | None = None
 
     @cached_property
     def sampler(self) -> Sampler:
@@ -104,7 +108,10 @@ class Outline(Brief):
         """What joins the ends of an open wheel around its shaft; nothing for a closed one."""
         if self.toothing.closed:
             return ()
-        return body_runs(self.toothing, self.toothed, self.chord_error, self.oversampling)
+        parts = self.oversampling
+        return body_runs(
+            self.toothing, self.toothed, self.chord_error, parts, self.ring or RingSpec()
+        )
 
     @cached_property
     def points(self) -> Array:
@@ -156,6 +163,7 @@ def build_outline(
     tolerances: Tolerances,
     *,
     follow: bool = True,
+    ring: RingSpec | None = None,
 ) -> Outline:
     """Build the outline of a wheel.
 
@@ -173,6 +181,8 @@ def build_outline(
         Inner accuracy.
     follow : bool
         Whether corners are followed into the mate's roots.
+    ring : RingSpec, optional
+        Outside of an open ring, as its defaults say if left out.
 
     Returns
     -------
@@ -194,6 +204,7 @@ def build_outline(
         flanks=flanks,
         tolerance=tolerance,
         oversampling=tolerances.oversampling,
+        ring=ring,
     )
     _demand_simple(outline)
     _demand_shaft(outline)

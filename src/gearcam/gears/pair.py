@@ -19,7 +19,7 @@ from gearcam.gears.flank_points import flank_points
 from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, roll
-from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack
+from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
@@ -333,7 +333,13 @@ def make_pair(
     )
 
 
-def make_gear(pair: GearPair, wheel: Wheel, tolerance: float, tolerances: Tolerances) -> Gear:
+def make_gear(
+    pair: GearPair,
+    wheel: Wheel,
+    tolerance: float,
+    tolerances: Tolerances,
+    ring: RingSpec | None = None,
+) -> Gear:
     """Cut a wheel.
 
     Parameters
@@ -346,6 +352,8 @@ def make_gear(pair: GearPair, wheel: Wheel, tolerance: float, tolerances: Tolera
         Chord tolerance.
     tolerances : Tolerances
         Inner accuracy.
+    ring : RingSpec, optional
+        Outside of an open ring, as its defaults say if left out.
 
     Returns
     -------
@@ -357,7 +365,7 @@ def make_gear(pair: GearPair, wheel: Wheel, tolerance: float, tolerances: Tolera
         If the wheel does not stay in one piece.
     """
     mate = pair.toothings[2 - wheel]
-    profile = build_outline(pair.toothings[wheel - 1], mate, tolerance, tolerances)
+    profile = build_outline(pair.toothings[wheel - 1], mate, tolerance, tolerances, ring=ring)
     return Gear(pair=pair, wheel=wheel, profile=profile)
 
 

@@ -73,7 +73,7 @@ class Rolling(Brief):
             closed=self.law.lobes.closed and not slides,
             slides=slides,
             turn=-1j if wheel == 1 else 1j,
-            clockwise=wheel == 2 and self.mate != RING,
+            clockwise=wheel == 2 and not (self.mate == RING and self.law.lobes.closed),
             rolling=self,
             wheel=wheel,
         )

@@ -32,7 +32,8 @@ class Contacts:
     point, force : (n,) complex arrays, mm and 1
         The point, and the unit direction in which the driver presses.
     pressure_angle : (n,) array, rad
-        Between the force and the perpendicular to the line of centres; positive pushes them apart.
+        Between the force and the perpendicular to the line of centres; positive pushes the teeth
+        out of mesh: both shafts apart, those of a ring and its wheel together.
     sliding : (n,) array, mm/rad
         Sliding speed along the driver's flank, tip outward, per rad of the driver: driver's arc
         less the driven one's.
@@ -131,7 +132,7 @@ def contact_columns(found: Contacts, distance: float) -> dict[str, Array]:
     found : Contacts
         The points.
     distance : float, mm
-        Of the shafts; 0 of a rack.
+        As mounted (see `Mounting`).
 
     Returns
     -------

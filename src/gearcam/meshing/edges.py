@@ -233,5 +233,6 @@ def to_pitch_line(pairs: FlankPairs, phi1: Array) -> Array:
     (n,) array
         The driven radius times the cosine of the pitch line's slope; of a rack the cosine alone.
     """
-    one, two = (toothing.frames(phi1, curved=False) for toothing in pairs.toothings)
-    return -pairs.guide.lever(-np.abs(two.p).astype(complex), one.t * np.exp(-1j * phi1))
+    guide, one = pairs.guide, pairs.toothings[0].frames(phi1, curved=False)
+    pitch_point = (np.abs(one.p) - guide.place).astype(complex)
+    return -guide.lever(pitch_point, one.t * np.exp(-1j * phi1))

@@ -53,7 +53,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
         ],
     }
     if turning.rolling.guide.turns:
-        result["center_distance_mm"] = turning.distance
+        result["center_distance_mm"] = abs(turning.distance)
     if not meshing.blocks:
         return result
     stepwise = pairs_in_contact(meshing)

@@ -67,7 +67,7 @@ class Turning:
     driver, driven : HalfTeeth
         The wheels.
     distance : float, mm
-        Distance of the shafts as mounted; of a rack, how far it is moved away from its place.
+        As mounted (see `Mounting`).
     moved : float, mm
         How far the teeth are moved on along the centrodes: a step of stepped wheels.
     """

@@ -21,7 +21,8 @@ class MeshingSpec(Brief):
     or the travel of open wheels and racks to the stop.
     The driver is turned ahead by `overclosure` at each (a negative one holds it back, so that the
     other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
-    the pitch point are studied. Without `center_distance` the wheels stand as designed.
+    the pitch point are studied. Without `center_distance` the wheels stand as designed; a larger
+    one gives backlash, but presses a wheel into its ring.
 
     Examples
     --------

@@ -9,6 +9,7 @@ the penetration. An interruption keeps the phases done.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -234,7 +235,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
 
 
 def _distance(pair: GearPair, spec: MeshingSpec) -> float:
-    """Distance of the shafts as mounted, mm; 0 of a rack."""
+    """Place of wheel 2's frame as mounted, mm along x (see `Guide`)."""
     if spec.center_distance is None:
         return pair.shift
     if pair.on_rack:
@@ -246,7 +247,7 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
             nearest="leave it out: the rack stands as designed",
         )
     depth = 2.0 * pair.rack.addendum * pair.module
-    least, most = pair.center_distance - depth, pair.center_distance + depth
+    least, most = max(0.0, pair.center_distance - depth), pair.center_distance + depth
     if not least < spec.center_distance < most:
         raise InfeasibleError(
             "the wheels are mounted so far from their designed distance that their teeth do not "
@@ -257,7 +258,7 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
             unit="mm",
             nearest=f"between {shown(least)} and {shown(most)} mm",
         )
-    return spec.center_distance
+    return math.copysign(spec.center_distance, pair.shift)
 
 
 def _block(setup: Setup, phi1: Array, first: int) -> Block:

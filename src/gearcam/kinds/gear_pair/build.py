@@ -72,9 +72,10 @@ class GearPairResult(PairStages):
         Columns
             ``phi1_deg``, ``phi2_deg``; ``ratio`` i21; ``r1_mm`` and ``r2_mm``, distances of the
             pitch point from both shafts; ``s_mm``, arc length of both; ``rho1_mm``, ``rho2_mm``,
-            radii of curvature, negative where concave, infinite where straight; ``x1_mm``,
-            ``y1_mm``, ``x2_mm``, ``y2_mm``, points in each wheel's own frame. Of a rack
-            ``travel_mm`` stands for phi2, ratio and r2. At a knot the values after it count.
+            radii of curvature, negative where concave towards the tips (as a ring is where it is
+            round), infinite where straight; ``x1_mm``, ``y1_mm``, ``x2_mm``, ``y2_mm``, points in
+            each wheel's own frame. Of a rack ``travel_mm`` stands for phi2, ratio and r2. At a knot
+            the values after it count.
 
         Raises
         ------
@@ -128,7 +129,8 @@ class GearPairResult(PairStages):
             of one pair are its path of contact. ``phi1_deg`` and ``phi2_deg`` (of a rack
             ``travel_mm``), nominal; ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth,
             -1 drives; ``pairs``, how many touch in this phase; ``x_mm``, ``y_mm``, the point in the
-            fixed frame (driver's shaft at 0, driven one at the centre distance on x);
+            fixed frame (driver's shaft at 0, driven one at the centre distance on x, that of a
+            ring at minus it);
             ``force_x``, ``force_y``, the unit direction in which the driver presses there;
             ``contact_radius1_mm``, ``contact_radius2_mm`` from both shafts;
             ``pressure_angle_deg`` of the force to the perpendicular to the line of centres;

@@ -62,7 +62,7 @@ def _ratio(result: GearPairResult) -> Chart:
 def _curvature(result: GearPairResult) -> Chart:
     names = {"rho1_mm": "driver", "rho2_mm": "driven"}
     chart = _of_centrodes(
-        "Curvature of the centrodes, positive where convex",
+        "Curvature of the centrodes, positive where convex towards the tips",
         "curvature, 1/mm",
         names,
         result,

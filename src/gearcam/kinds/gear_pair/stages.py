@@ -116,7 +116,7 @@ class PairStages(Result):
     def _gear(self, wheel: Wheel, pair: GearPair) -> Gear:
         with self.stage(f"gear{wheel}"):
             tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
-            gear = make_gear(pair, wheel, tolerance, self.tolerances)
+            gear = make_gear(pair, wheel, tolerance, self.tolerances, self.design.ring)
             bore = self.bores[wheel - 1]
             if bore is not None and 0.5 * bore >= gear.least_radius:
                 largest, key = 2.0 * gear.least_radius, f"blank.bore_diameter_mm[{wheel - 1}]"

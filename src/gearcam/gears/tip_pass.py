@@ -1,0 +1,244 @@
+"""Tips that meet outside the mesh of a wheel and a ring, and by how much they pass each other.
+
+A corner of wheel 1, an upper end of a flank, comes into a space of the ring pitches before its
+contact and leaves it pitches behind. Where it is as high as a tip corner beside that space, the
+arc length along the ring's centrode between the feet of both is what they pass each other by: the
+*tip-pass margin*, less than 0 where tips collide. Corners are followed over half a turn of wheel 1
+either way, so that those that come back into the ring elsewhere are found too. Rounded edges are
+taken as sharp.
+
+On circles the margin is ``r2*(theta1*z1/z2 + inv(alpha_w) - inv(alpha_a2) - theta2)``.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from gearcam.gears.flank import Toothing
+from gearcam.gears.outline import Outline
+from gearcam.gears.tips import feet
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.roots import bracketed_root
+
+_ROLLS = 4
+"""Rolls in a pitch at which corners are looked for; they stay in a space for pitches."""
+
+_EDGE = 8
+"""Places in a pitch of the ring's addendum curve, by which corners are sorted roughly."""
+
+_FEET = 2.0
+"""Pitches to either side within which feet lie, where polar angles have told them roughly."""
+
+_ANGLE = 1e-14
+"""Driver angle in turns to which a crossing is found: feet are no better."""
+
+_DIGITS = 9
+"""Digits of margins in pitches that tell which is the least: of equal ones the first is named."""
+
+
+class TipPass(NamedTuple):
+    """Where a corner of wheel 1 passes a tip corner of the ring most closely.
+
+    Parameters
+    ----------
+    margin : float, mm
+        Along the ring's centrode; less than 0 where tips collide, infinite where none meet.
+    tooth : int
+        Number of the tooth of wheel 1.
+    sigma : float
+        Its side: 1 where s is larger, else -1.
+    phi1 : float, rad
+        Driver angle.
+    """
+
+    margin: float
+    tooth: int
+    sigma: float
+    phi1: float
+
+
+class _Corners(NamedTuple):
+    """Corners that are followed: points, mm, numbers of teeth, sides; (n,) each."""
+
+    points: Plane
+    tooth: Ints
+    sigma: Array
+
+
+class _Edge:
+    """The ring's addendum curve by polar angles, roughly.
+
+    Parameters
+    ----------
+    mate : Toothing
+        The ring.
+    """
+
+    def __init__(self, mate: Toothing) -> None:
+        s, reach = np.linspace(0.0, mate.length, _EDGE * mate.teeth + 1), _FEET * mate.pitch
+        self.phi, self.low, self.high = mate.track.angle(np.stack([s, s - reach, s + reach]))
+        base = mate.frames(self.phi, curved=False)
+        points = base.p + mate.cutter.addendum * mate.turn * base.t
+        self.polar, self.radii = np.unwrap(np.angle(points)), np.abs(points)
+
+    def _places(self, points: Plane) -> Array:
+        return self.polar[0] + (np.angle(points) - self.polar[0]) % (2.0 * math.pi)
+
+    def feet(self, points: Plane) -> tuple[Array, ...]:
+        """Return between which driver angles feet of points lie, and a guess, rad."""
+        places = self._places(points)
+        return tuple(np.interp(places, self.polar, v) for v in (self.low, self.high, self.phi))
+
+    def beyond(self, points: Plane) -> Array:
+        """Return how far points are among the teeth, mm; an open ring ends."""
+        radii = np.interp(self._places(points), self.polar, self.radii, right=math.inf)
+        return np.abs(points) - radii
+
+
+class _Stays(NamedTuple):
+    """Stays of corners between the ring's teeth, and the ends that are seen of them.
+
+    `corner` tells whose; `deep` is the driver angle, rad, in the middle, and `edge` one beyond the
+    end; where a corner never gets out it is the nearest to that.
+    """
+
+    corner: Ints
+    deep: Array
+    edge: Array
+
+
+def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
+    """Return the least tip-pass margin of a wheel in a ring.
+
+    Parameters
+    ----------
+    wheel, ring : Outline
+        Both, with the ends of their flanks.
+
+    Returns
+    -------
+    TipPass
+        Of closed wheels the first of what repeats with the lobes.
+    """
+    own, edge = wheel.toothing, _Edge(ring.toothing)
+    corners = _corners(wheel, ring.toothing)
+    stays = _stays(*_follow(own, ring.toothing, corners, edge))
+    margins, angles = _margins(own, ring, corners.points, edge, stays)
+    if not np.isfinite(margins).any():
+        return TipPass(math.inf, 0, 0.0, 0.0)
+    worst = int(np.argmin(np.round(margins / own.pitch, _DIGITS)))
+    corner, phi1 = stays.corner[worst % len(stays.corner)], float(angles[worst])
+    return TipPass(
+        float(margins[worst]),
+        int(corners.tooth[corner]),
+        float(corners.sigma[corner]),
+        phi1 % own.track.around if own.closed else phi1,
+    )
+
+
+def _corners(wheel: Outline, mate: Toothing) -> _Corners:
+    """Return the corners of whole teeth, of closed wheels of those of a lobe."""
+    own, tips = wheel.toothing, wheel.flanks.tips
+    points = own.flank_points(own.frames(tips.phi, curved=False), *own.flanks)
+    numbers = np.array(own.numbers)[own.whole]
+    count = math.gcd(own.teeth, mate.teeth) if own.closed else len(numbers)
+    return _Corners(
+        own.of_teeth(points)[:, :count].ravel(),
+        np.tile(numbers[:count], 2),
+        np.repeat([1.0, -1.0], count),
+    )
+
+
+def _follow(
+    own: Toothing, mate: Toothing, corners: _Corners, edge: _Edge
+) -> tuple[Array, Array]:
+    """Return driver angles, rad, and how far corners are in the ring there, mm, roughly.
+
+    Rows are corners, columns rolls over half a turn either way from the middle of their tooth; of
+    an open wheel over all of its travel.
+    """
+    both = corners.points.reshape(2, -1, 1)
+    half = math.ceil(0.5 * own.teeth) if own.closed else own.teeth
+    count = 2 * half * _ROLLS + 1
+    rolls = np.arange(count + (both.shape[1] - 1) * _ROLLS) / _ROLLS - half
+    s = float(own.tooth_places[own.whole][0]) + own.pitch * rolls
+    phi = own.track.angle(s if own.closed else np.clip(s, 0.0, own.length))
+    here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
+    turn = there.t * np.conj(here.t)
+    stack = np.stack([turn, there.p - turn * here.p, phi])
+    turn, shift, phi = sliding_window_view(stack, count, axis=1)[:, ::_ROLLS]
+    depth = edge.beyond(shift + turn * both)
+    return np.tile(phi.real, (2, 1)), depth.reshape(-1, count)
+
+
+def _stays(phi: Array, depth: Array) -> _Stays:
+    """Find the stays of corners in the ring, and both ends of each that are seen."""
+    rows, columns = phi.shape
+    inside = np.pad(depth > 0.0, ((0, 0), (1, 1)))
+    starts, stops = (
+        np.stack(np.nonzero(change), axis=1)
+        for change in (inside[:, 1:] & ~inside[:, :-1], inside[:, :-1] & ~inside[:, 1:])
+    )
+    corner, deep, edge = [], [], []
+    for (row, start), (_, stop) in zip(starts, stops, strict=True):
+        stay = depth[row, start:stop]
+        # one roll further out, since the places are rough
+        ends = [max(start - 2, 0)] if start > 0 else []
+        ends += [min(stop + 1, columns - 1)] if stop < columns else []
+        for end in ends or [start + int(np.argmin(stay))]:
+            corner.append(row)
+            deep.append(phi[row, start + int(np.argmax(stay))])
+            edge.append(phi[row, end])
+    return _Stays(np.array(corner, dtype=int), np.array(deep), np.array(edge))
+
+
+def _margins(
+    own: Toothing, ring: Outline, points: Plane, edge: _Edge, stays: _Stays
+) -> tuple[Array, Array]:
+    """Return margins, mm, and driver angles, rad, of all stays, (2n,).
+
+    First to the tooth that begins a space, with its flank sigma = 1, then to that which ends it.
+    """
+    mate, tips = ring.toothing, ring.flanks.tips
+    corner, deep, out = (np.tile(v, 2) for v in (points[stays.corner], stays.deep, stays.edge))
+    formed, side = len(mate.numbers), np.repeat([1.0, -1.0], len(stays.corner))
+
+    def seen(phi: Array) -> tuple[Array, Array]:
+        return _feet(own, mate, edge, corner, phi)
+
+    start, low = seen(deep)
+    space = np.round((start - mate.moved) / mate.pitch).astype(int)
+    tooth = np.where(side > 0.0, space, space + 1) - mate.numbers[0]
+    meets = np.full(tooth.shape, mate.closed) | ((tooth >= 0) & (tooth < formed))
+    index = np.where(side > 0.0, 0, formed) + tooth % formed
+    height = tips.height[index]
+    low, high = low - height, seen(out)[1] - height
+    meets &= low < 0.0
+    # a corner that never gets out is looked at where it is nearest to that
+    crosses = meets & (high > 0.0)
+    phi = bracketed_root(
+        lambda x: np.where(crosses, seen(x)[1] - height, 0.0),
+        np.where(crosses, deep, out),
+        out,
+        _ANGLE * mate.track.around,
+        (np.where(crosses, low, 0.0), np.where(crosses, high, 0.0)),
+    )
+    margin = side * (seen(phi)[0] - mate.track.arc_length(tips.foot[index]))
+    if mate.closed:
+        margin = (margin + 0.5 * mate.length) % mate.length - 0.5 * mate.length
+    return np.where(meets, margin, math.inf), phi
+
+
+def _feet(
+    own: Toothing, mate: Toothing, edge: _Edge, points: Plane, phi: Array
+) -> tuple[Array, Array]:
+    """Return arc lengths of feet of corners on the ring's centrode, and heights, mm."""
+    here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
+    path = there.p + there.t * np.conj(here.t) * (points - here.p)
+    foot = feet(mate, path, *edge.feet(path))
+    base = mate.frames(foot, curved=False)
+    return base.s, np.real(np.conj(mate.turn * base.t) * (path - base.p))
