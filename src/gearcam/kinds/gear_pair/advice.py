@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
+from gearcam.findings import limit_of
+from gearcam.gears.subject import KIND
 
 if TYPE_CHECKING:
     from gearcam.advice import Changes, Search
@@ -22,8 +24,14 @@ _LIKELY: Final = 1.5
 _SHARE: Final = 0.6
 """Part of the time that tooth counts may take where there are other ways."""
 
-_OF_TEETH: Final = frozenset({"contact-ratio", "undercut"})
+_OF_TEETH: Final = frozenset({"contact-ratio", "undercut", "tips-collide"})
 """Findings that more teeth or a smaller swing may lift."""
+
+_LOW: Final = 0.3
+"""Lowest addendum, in modules, that is tried where tips collide: lower ones do not mesh."""
+
+_FINE: Final = 0.005
+"""Step to which the largest one is found, in modules."""
 
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges as they are cut."""
@@ -33,13 +41,16 @@ def seek(search: Search, refusal: InfeasibleError | None) -> None:
     """Lead a `search` for remedies: tooth counts, what a `refusal` names, a milder law."""
     factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
     ways = [*(refusal.ways if refusal else ()), *_others(search, refusal, factor)]
+    last = [*_larger_ring(search)]
     if factor:
         end = search.until
-        if ways:
+        if ways or last:
             search.until = end - (1.0 - _SHARE) * (end - time.perf_counter())
         _more_teeth(search, factor)
         search.until = end
     search.follow(ways)
+    if not search.found:
+        search.follow(last)
 
 
 def hopeless(result: Any) -> bool:
@@ -86,6 +97,38 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
         yield from _milder(search)
 
 
+def _larger_ring(search: Search) -> Iterator[Way]:
+    """Yield a ring of the next multiple of the wheel's teeth: it gives all of them more room."""
+    pair = search.result.design.pair
+    z1, z2 = pair.teeth
+    if pair.type == "internal" and z1 < z2:
+        yield Way(near={"pair.teeth": [z1, (z2 // z1 + 1) * z1]})
+
+
+def _lower(search: Search) -> Iterator[Way]:
+    """Yield the largest addendum with which tips pass each other."""
+    design = search.result.design
+    limit = limit_of(KIND, "tips-collide", design.limits)
+
+    def passes(addendum: float) -> bool:
+        other = type(search.result)(
+            design.with_({"rack.addendum": addendum}), search.result.tolerances
+        )
+        try:
+            found = other.subject.tip_pass
+        except InfeasibleError:
+            return False
+        return found is None or found.margin >= limit
+
+    low, high = round(_LOW / _FINE), math.floor(search.result.pair.rack.addendum / _FINE)
+    if low >= high or not passes(_LOW):
+        return
+    while high - low > 1 and not search.over():
+        middle = (low + high) // 2
+        low, high = (middle, high) if passes(middle * _FINE) else (low, middle)
+    yield Way(near={"rack.addendum": low * _FINE})
+
+
 def _milder(search: Search) -> Iterator[Way]:
     """Yield ways to a law that swings less."""
     law, teeth = search.document["law"], search.result.design.pair.teeth
@@ -110,6 +153,8 @@ def _other_ratios(search: Search) -> Iterator[Way]:
 
 def _of_errors(search: Search) -> Iterator[Way]:
     """Yield the ways out of a pair's findings that are errors."""
+    if "tips-collide" in search.codes:
+        yield from _lower(search)
     if search.codes & _OF_TEETH:
         addendum = value_at(search.document, "rack.addendum")
         if addendum is not None and addendum < 1.0:
