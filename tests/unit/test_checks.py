@@ -22,6 +22,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import job, profile
+from helpers_rings import highest_on_circles, ring
 
 HALF = (0.0, math.pi, 2 * math.pi)
 UNEVEN = (0.0, math.radians(160), 2 * math.pi)
@@ -100,6 +101,10 @@ def door(more: float) -> GearPairResult:
     return job(made.design.law, (29, 29), module=5.0, limits={"end_gap": gap + more})
 
 
+def circles(addendum: float) -> GearPairResult:
+    return ring({"type": "constant"}, (28, 33), rack={"addendum": addendum})
+
+
 class Case(NamedTuple):
     code: str
     severity: str
@@ -145,6 +150,13 @@ CASES = [
         "undercut", "warning", lambda: job(Constant(), (17, 60)), lambda: job(Constant(), (18, 60))
     ),
     Case("contact-ratio", "warning", lambda: overlap_of(1.0999), lambda: overlap_of(1.1001)),
+    # tips as high as this end neither at form points nor at cusps
+    Case(
+        "tips-collide",
+        "error",
+        lambda: circles(highest_on_circles(28, 33) + 1e-6),
+        lambda: circles(highest_on_circles(28, 33) - 1e-6),
+    ),
     Case("thin-rim", "warning", lambda: rim(0.002), lambda: rim(-0.002)),
     Case(
         "no-backlash",
@@ -231,7 +243,7 @@ def test_every_check_of_the_registry_is_tested_here() -> None:
         "remote-cutter",
     }
     assert named == {check.code for check in CHECKS.values() if check.kind == KIND}
-    assert len(named) == 16
+    assert len(named) == 17
 
 
 def test_a_pair_that_does_not_drive_is_an_error() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.design import value_at
@@ -33,6 +35,9 @@ _LOW: Final = 0.3
 _FINE: Final = 0.005
 """Step to which the largest one is found, in modules."""
 
+_TIMES: Final = (1, 2, 4)
+"""How many times the wheel's teeth are tried with a larger ring, if fewer do not do."""
+
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges as they are cut."""
 
@@ -50,7 +55,7 @@ def seek(search: Search, refusal: InfeasibleError | None) -> None:
         search.until = end
     search.follow(ways)
     if not search.found:
-        search.follow(last)
+        any(search.along(way) for way in last)
 
 
 def hopeless(result: Any) -> bool:
@@ -88,6 +93,7 @@ def _more_teeth(search: Search, factor: float) -> None:
 
 def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Way]:
     """Yield ways beside more teeth and what a refusal names."""
+    yield from _usual_cutter(search)
     if refusal is None:
         yield from _of_errors(search)
     elif not refusal.ways and not factor:
@@ -98,11 +104,24 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
 
 
 def _larger_ring(search: Search) -> Iterator[Way]:
-    """Yield a ring of the next multiple of the wheel's teeth: it gives all of them more room."""
+    """Yield rings of the next multiple of the wheel's teeth: they give all of them more room."""
     pair = search.result.design.pair
     z1, z2 = pair.teeth
     if pair.type == "internal" and z1 < z2:
-        yield Way(near={"pair.teeth": [z1, (z2 // z1 + 1) * z1]})
+        for times in _TIMES:
+            yield Way(near={"pair.teeth": [times * z1, (z2 // z1 + 1) * times * z1]})
+
+
+def _usual_cutter(search: Search) -> Iterator[Way]:
+    """Yield the cutter that a ring has where none is given."""
+    design = search.result.design
+    if design.ring.cutter_teeth is None:
+        return
+    free = replace(design, ring=replace(design.ring, cutter_teeth=None))
+    with suppress(InfeasibleError):
+        cutter = type(search.result)(free, search.result.tolerances).pair.toothings[1].cutter
+        if cutter.kc:
+            yield Way(near={"ring.cutter_teeth": round(cutter.teeth, 3)})
 
 
 def _lower(search: Search) -> Iterator[Way]:
