@@ -84,8 +84,7 @@ def test_lobes(
         twins = [(tooth, phi1), ((1 - tooth) % count + 1, -phi1)]
         degrees = math.degrees(found.phi1)
         assert any(
-            (found.tooth - k) % count == 0
-            and (degrees - angle + 0.5e-3) % lobe < 1e-3
+            (found.tooth - k) % count == 0 and (degrees - angle + 0.5e-3) % lobe < 1e-3
             for k, angle in twins
         )
 

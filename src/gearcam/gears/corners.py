@@ -17,6 +17,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
 from gearcam.gears.polar import PolarCurve
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -123,9 +124,7 @@ def _paths(
     return phi, np.conj(own.t) * (corner[:, None] - own.p)
 
 
-def _grazing(
-    toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array
-) -> Mask:
+def _grazing(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:
     """Whether corners that end about the mate's form point run into the fillet that begins there.
 
     There the corner's path touches the fillet. By Euler and Savary it bends less, and so goes into
@@ -141,7 +140,8 @@ def _grazing(
 def _deep(toothing: Toothing, mate: Toothing, flanks: tuple[Array, Array], reach: Array) -> Mask:
     """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll.
 
-    A ring's bends away from the corner, so that this is deeper. The rolls of neighbouring teeth are a pitch apart, and are the same ones for most of their way.
+    A ring's bends away from the corner, so that this is deeper. The rolls of neighbouring teeth are
+    a pitch apart, and are the same ones for most of their way.
     """
     sf, sigma = (values.reshape(2, -1) for values in flanks)
     ends = toothing.track.angle(sf - sigma * reach.reshape(sf.shape))

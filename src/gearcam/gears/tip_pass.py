@@ -142,7 +142,7 @@ def _follow(
 
 def _stays(phi: Array, depth: Array) -> _Stays:
     """Find the stays of corners in the ring, and both ends of each that are seen."""
-    rows, columns = phi.shape
+    last = phi.shape[1] - 1
     inside = np.pad(depth > 0.0, ((0, 0), (1, 1)))
     starts, stops = (
         np.stack(np.nonzero(change), axis=1)
@@ -153,7 +153,7 @@ def _stays(phi: Array, depth: Array) -> _Stays:
         stay = depth[row, start:stop]
         # one roll further out, since the places are rough
         ends = [max(start - 2, 0)] if start > 0 else []
-        ends += [min(stop + 1, columns - 1)] if stop < columns else []
+        ends += [min(stop + 1, last)] if stop <= last else []
         for end in ends or [start + int(np.argmin(stay))]:
             corner.append(row)
             deep.append(phi[row, start + int(np.argmax(stay))])
@@ -169,7 +169,8 @@ def _margins(
     First to the tooth that begins a space, with its flank sigma = 1, then to that which ends it.
     """
     mate, tips = ring.toothing, ring.flanks.tips
-    corner, deep, out = (np.tile(v, 2) for v in (points[stays.corner], stays.deep, stays.edge))
+    corner = np.tile(points[stays.corner], 2)
+    deep, out = np.tile(stays.deep, 2), np.tile(stays.edge, 2)
     formed, side = len(mate.numbers), np.repeat([1.0, -1.0], len(stays.corner))
 
     def seen(phi: Array) -> tuple[Array, Array]:

@@ -114,32 +114,31 @@ def _larger_ring(search: Search) -> Iterator[Way]:
 
 def _usual_cutter(search: Search) -> Iterator[Way]:
     """Yield the cutter that a ring has where none is given."""
-    design = search.result.design
-    if design.ring.cutter_teeth is None:
+    result: Any = search.result
+    ring = result.design.ring
+    if ring.cutter_teeth is None:
         return
-    free = replace(design, ring=replace(design.ring, cutter_teeth=None))
+    free = replace(result.design, ring=replace(ring, cutter_teeth=None))
     with suppress(InfeasibleError):
-        cutter = type(search.result)(free, search.result.tolerances).pair.toothings[1].cutter
+        cutter = type(result)(free, result.tolerances).pair.toothings[1].cutter
         if cutter.kc:
             yield Way(near={"ring.cutter_teeth": round(cutter.teeth, 3)})
 
 
 def _lower(search: Search) -> Iterator[Way]:
     """Yield the largest addendum with which tips pass each other."""
-    design = search.result.design
-    limit = limit_of(KIND, "tips-collide", design.limits)
+    result: Any = search.result
+    limit = limit_of(KIND, "tips-collide", result.design.limits)
 
     def passes(addendum: float) -> bool:
-        other = type(search.result)(
-            design.with_({"rack.addendum": addendum}), search.result.tolerances
-        )
+        other = type(result)(result.design.with_({"rack.addendum": addendum}), result.tolerances)
         try:
             found = other.subject.tip_pass
         except InfeasibleError:
             return False
         return found is None or found.margin >= limit
 
-    low, high = round(_LOW / _FINE), math.floor(search.result.pair.rack.addendum / _FINE)
+    low, high = round(_LOW / _FINE), math.floor(result.pair.rack.addendum / _FINE)
     if low >= high or not passes(_LOW):
         return
     while high - low > 1 and not search.over():
