@@ -171,12 +171,12 @@ def _other_ratios(search: Search) -> Iterator[Way]:
 
 def _of_errors(search: Search) -> Iterator[Way]:
     """Yield the ways out of a pair's findings that are errors."""
+    addendum = value_at(search.document, "rack.addendum")
     if "tips-collide" in search.codes:
         yield from _lower(search)
+    elif search.codes & _OF_TEETH and addendum is not None and addendum < 1.0:
+        yield Way(far={"rack.addendum": 1.0})
     if search.codes & _OF_TEETH:
-        addendum = value_at(search.document, "rack.addendum")
-        if addendum is not None and addendum < 1.0:
-            yield Way(far={"rack.addendum": 1.0})
         if search.document["pair"]["x"]:
             yield Way(far={"pair.x": 0.0})
         yield from _EDGES
