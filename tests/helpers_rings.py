@@ -49,13 +49,16 @@ def driver(e: float, n1: int, n2: int) -> dict[str, Any]:
     return {"type": "formula", "ratio": f"{r1}/({a!r} + {r1})"}
 
 
-def passed_on_circles(z1: int, z2: int, addendum: float = 1.0) -> float:
-    """Trochoidal interference of a circular pair of full tips, module 1, mm along the ring.
+def passed_on_circles(
+    z1: int, z2: int, addendum: float = 1.0, of_ring: float | None = None
+) -> float:
+    """Trochoidal interference of a circular pair, module 1, mm along the ring.
 
     Source: 000 section 4.2.2; the angles by the law of cosines at both shafts.
     """
     r1, r2, alpha = 0.5 * z1, 0.5 * z2, math.radians(20)
-    a, tip1, tip2 = r2 - r1, r1 + addendum, r2 - addendum
+    a, tip1 = r2 - r1, r1 + addendum
+    tip2 = r2 - (addendum if of_ring is None else of_ring)
     at1, at2 = (math.acos(r * math.cos(alpha) / tip) for r, tip in ((r1, tip1), (r2, tip2)))
     turn1 = math.acos((tip2**2 - tip1**2 - a * a) / (2.0 * tip1 * a))
     turn2 = math.acos((tip2**2 + a * a - tip1**2) / (2.0 * tip2 * a))

@@ -51,6 +51,16 @@ def test_circles(teeth: tuple[int, int], margin: float) -> None:
     assert found.tooth == 1
 
 
+@pytest.mark.parametrize("teeth", [(28, 33), (28, 34), (28, 40), (40, 49)])
+def test_tips_that_end_below_the_addendum_curve(teeth: tuple[int, int]) -> None:
+    result = ring(CONSTANT, teeth)
+    height = float(result.gear2.profile.tip_height.min())
+    assert height < 0.9
+    found = result.subject.tip_pass
+    assert found is not None
+    assert found.margin == pytest.approx(passed_on_circles(*teeth, 1.0, height), abs=1e-11)
+
+
 def test_the_angle_at_which_a_corner_leaves() -> None:
     found = passed(ring(CONSTANT, (28, 36)))
     # tooth 3 of the reference at 90.740 degrees
@@ -146,6 +156,17 @@ def test_a_mirrored_law_has_mirrored_tips() -> None:
     assert other.margin == pytest.approx(one.margin, abs=1e-11)
     assert other.sigma == -one.sigma
     assert (other.phi1 + one.phi1 + 1e-9) % math.pi == pytest.approx(0.0, abs=2e-9)
+
+
+def test_tips_that_collide_do_not_shorten_flanks() -> None:
+    result = ring({"type": "formula", "ratio": "1 + 0.02*cos(3*phi1)"}, (36, 48))
+    found = result.subject.tip_pass
+    assert found is not None
+    assert found.margin < 0.0
+    for number, gear in enumerate(result.gears):
+        mate = result.pair.toothings[1 - number]
+        free = build_outline(gear.toothing, mate, TRACED, DEFAULT, follow=False)
+        assert gear.profile.flanks.highest == pytest.approx(free.flanks.highest, abs=1e-12)
 
 
 def test_a_ring_tip_grazes_no_fillet() -> None:

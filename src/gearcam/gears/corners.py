@@ -77,7 +77,7 @@ def highest_corners(
     sf, sigma = flanks
     hollow = mate.track.hollow
     internal = hollow or toothing.track.hollow
-    near = _deep(toothing, mate, flanks, highest)
+    near = _deep(toothing, mate.cutter, flanks, highest)
     if internal:
         near |= _grazing(toothing, mate.cutter, flanks, highest)
     tight = min(toothing.cutter.teeth, mate.cutter.teeth) < _FEW and not internal
@@ -137,11 +137,10 @@ def _grazing(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], re
     return (reach > _ABOUT * cutter.reach) & (kappa - cutter.kc > room)
 
 
-def _deep(toothing: Toothing, mate: Toothing, flanks: tuple[Array, Array], reach: Array) -> Mask:
+def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:
     """Whether corners go deep below the mate's pitch line, as on a straight rack, at any roll.
 
-    A ring's bends away from the corner, so that this is deeper. The rolls of neighbouring teeth are
-    a pitch apart, and are the same ones for most of their way.
+    The rolls of neighbouring teeth are a pitch apart, and are the same ones for most of their way.
     """
     sf, sigma = (values.reshape(2, -1) for values in flanks)
     ends = toothing.track.angle(sf - sigma * reach.reshape(sf.shape))
@@ -149,11 +148,9 @@ def _deep(toothing: Toothing, mate: Toothing, flanks: tuple[Array, Array], reach
     rolls = np.arange(-_WINDOW * _ROLLS, (_WINDOW + sf.shape[1] - 1) * _ROLLS + 1) / _ROLLS
     own = toothing.frames(toothing.track.angle(sf[:, :1] + toothing.pitch * rolls), curved=False)
     up = np.conj(toothing.turn * own.t)
-    base = up * own.p
-    bend, cutter = 0.5 / mate.track.concave.radius if mate.track.hollow else 0.0, mate.cutter
+    base = np.real(up * own.p)
     count = round(2 * _WINDOW * _ROLLS) + 1
     up, base = (sliding_window_view(v, count, axis=1)[:, ::_ROLLS] for v in (up, base))
-    apart = up * corner[..., None] - base
-    down = apart.real + bend * (apart.imag * apart.imag)
+    down = np.real(up * corner[..., None]) - base
     clearance = cutter.dedendum - toothing.cutter.addendum
     return np.any(down > cutter.dedendum - _CAUTION * clearance, axis=2).ravel()
