@@ -23,6 +23,7 @@ from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import job, profile
 from helpers_ring_parts import ring_job
+from helpers_rings import highest_on_circles, ring
 
 HALF = (0.0, math.pi, 2 * math.pi)
 UNEVEN = (0.0, math.radians(160), 2 * math.pi)
@@ -106,6 +107,10 @@ def shaper(teeth: float) -> GearPairResult:
     return ring_job(ring=RingSpec(cutter_teeth=teeth))
 
 
+def circles(addendum: float) -> GearPairResult:
+    return ring({"type": "constant"}, (28, 33), rack={"addendum": addendum})
+
+
 class Case(NamedTuple):
     code: str
     severity: str
@@ -152,6 +157,13 @@ CASES = [
         "undercut", "warning", lambda: job(Constant(), (17, 60)), lambda: job(Constant(), (18, 60))
     ),
     Case("contact-ratio", "warning", lambda: overlap_of(1.0999), lambda: overlap_of(1.1001)),
+    # tips as high as this end neither at form points nor at cusps
+    Case(
+        "tips-collide",
+        "error",
+        lambda: circles(highest_on_circles(28, 33) + 1e-6),
+        lambda: circles(highest_on_circles(28, 33) - 1e-6),
+    ),
     Case("thin-rim", "warning", lambda: rim(0.002), lambda: rim(-0.002)),
     Case(
         "no-backlash",

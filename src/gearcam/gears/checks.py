@@ -16,6 +16,7 @@ from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject, pair_check
+from gearcam.laws.ratio.span import angle_text
 from gearcam.numerals import rounded_down, shown
 from gearcam.quantities import LENGTH, NUMBER, Param
 
@@ -163,6 +164,33 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
                 f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in short])}",
                 float(height.min()),
             )
+
+
+@pair_check(
+    "tips-collide",
+    limit=("tip_pass", Param(LENGTH, ge=0, doc="least margin by which tips pass each other"), 0.0),
+    severity="error",
+)
+def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Report tips of an internal pair that collide outside the mesh; a warning where they pass.
+
+    Looks at: corners of wheel 1 on their way into the ring and out of it.
+    """
+    found = subject.tip_pass
+    if found is None or found.margin >= limit:
+        return
+    message = "Tips pass each other closely outside the mesh."
+    if found.margin < 0.0:
+        message = (
+            "Tips collide outside the mesh: where it enters or leaves the ring, a corner of "
+            f"wheel 1 is {shown(-found.margin)} mm within a tooth, along the pitch curve."
+        )
+    yield Remark(
+        message,
+        f"wheel 1, tooth {found.tooth}, {angle_text(found.phi1)}",
+        found.margin,
+        severity="error" if found.margin < 0.0 else "warning",
+    )
 
 
 @pair_check(

@@ -4,6 +4,9 @@ At the moment of contact the end of a flank lies on the mate's flank. Where the 
 the corner goes on deeper beyond that moment, and may run into the mate's root. Such corners are
 found in two steps: those that come near the depth of the mate's root, or where a wheel is cut by a
 small pinion, are followed against its outline. Most wheels have none.
+
+In an internal pair a corner counts only below the mate's centrode: above it tips meet tips, which
+shorter flanks do not cure (see `gearcam.gears.tip_pass`).
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
+from gearcam.gears.polar import PolarCurve
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _WINDOW, _WIDE = 1.25, 4.0
@@ -29,6 +33,9 @@ _HALVINGS = 14
 
 _CAUTION = 0.4
 """Share of the clearance within which a corner is followed."""
+
+_ABOUT = 0.8
+"""Share of the way to the mate's form point from which a corner counts as there."""
 
 _FEW = 24.0
 """Teeth of a pinion cutter below which all corners are followed: it leaves much in the corners of a
@@ -68,17 +75,20 @@ def highest_corners(
     if toothing.track.concave.radius == math.inf and mate.cutter.kc == 0.0:
         return result
     sf, sigma = flanks
+    hollow = mate.track.hollow
+    internal = hollow or toothing.track.hollow
     near = _deep(toothing, mate.cutter, flanks, highest)
-    tight = min(toothing.cutter.teeth, mate.cutter.teeth) < _FEW
+    if internal:
+        near |= _grazing(toothing, mate.cutter, flanks, highest)
+    tight = min(toothing.cutter.teeth, mate.cutter.teeth) < _FEW and not internal
     at = np.flatnonzero(near | tight)
     if at.size == 0:
         return result
     import shapely
 
-    # of a ring the outline bounds a hole, and the metal is outside
-    hollow = mate.turn == 1j and not mate.track.clockwise
     body = shapely.Polygon(mate_outline()).buffer(2.0 * (tolerance if hollow else -tolerance))
     shapely.prepare(body)
+    centrode = PolarCurve(mate, 0.0) if internal else None
 
     def hits(some: Ints, reach: Array) -> Mask:
         window = _WIDE if tight else _WINDOW
@@ -86,7 +96,10 @@ def highest_corners(
         other = mate.frames(phi, curved=False)
         # both tangents are one, and the outward normals opposite
         path = other.p + other.t * along
-        return np.any(shapely.contains_xy(body, path.real, path.imag) != hollow, axis=1)
+        metal = shapely.contains_xy(body, path.real, path.imag) != hollow
+        if centrode is not None:
+            metal &= (centrode.beyond(path) > 0.0) == hollow
+        return np.any(metal, axis=1)
 
     at = at[hits(at, highest[at])]
     low, high = np.zeros(at.size), highest[at]
@@ -109,6 +122,19 @@ def _paths(
     phi = toothing.track.angle(sf[:, None] + toothing.pitch * steps)
     own = toothing.frames(phi, curved=False)
     return phi, np.conj(own.t) * (corner[:, None] - own.p)
+
+
+def _grazing(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:
+    """Whether corners that end about the mate's form point run into the fillet that begins there.
+
+    There the corner's path touches the fillet. By Euler and Savary it bends less, and so goes into
+    the metal, where ``kappa - kc > sin(alpha)*rho/(l*(l - rho))`` with ``l = reach*cos(alpha)``.
+    """
+    sf, sigma = flanks
+    kappa = toothing.frames(toothing.track.angle(sf - sigma * reach)).kappa
+    far = cutter.reach * math.cos(cutter.alpha)
+    room = math.sin(cutter.alpha) * cutter.tip_radius / (far * (far - cutter.tip_radius))
+    return (reach > _ABOUT * cutter.reach) & (kappa - cutter.kc > room)
 
 
 def _deep(toothing: Toothing, cutter: Cutter, flanks: tuple[Array, Array], reach: Array) -> Mask:

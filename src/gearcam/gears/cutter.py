@@ -207,6 +207,7 @@ def ring_curvature(
             limit=most,
             nearest="the limit is the cutter that just fits",
             ways=(Way(near={"ring.cutter_teeth": most / _CONCAVE_MARGIN}),),
+            more_teeth=teeth / most,
         )
     return 2.0 / (module * teeth)
 

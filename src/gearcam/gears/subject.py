@@ -12,6 +12,7 @@ from gearcam.display import Brief
 from gearcam.findings import check
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear, GearPair
+from gearcam.gears.tip_pass import TipPass, tip_pass
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import extremes
 from gearcam.quantities import NUMBER, Param
@@ -119,6 +120,15 @@ class Subject(Brief):
     def driven(self) -> bool:
         """Whether flanks touch in every phase, both sides."""
         return all(bool(pairs.stretches[2].all()) for pairs in self.sides)
+
+    @cached_property
+    def tip_pass(self) -> TipPass | None:
+        """Where tips pass each other most closely outside the mesh of an internal pair."""
+        if not self.pair.internal:
+            return None
+        wheel, ring = self.gears
+        found = tip_pass(wheel.profile, ring.profile)
+        return found if found.margin < math.inf else None
 
     @property
     def backlash(self) -> float:

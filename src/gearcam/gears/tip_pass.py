@@ -20,18 +20,13 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline
+from gearcam.gears.polar import PolarCurve
 from gearcam.gears.tips import feet
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import bracketed_root
 
 _ROLLS = 4
 """Rolls in a pitch at which corners are looked for; they stay in a space for pitches."""
-
-_EDGE = 8
-"""Places in a pitch of the ring's addendum curve, by which corners are sorted roughly."""
-
-_FEET = 2.0
-"""Pitches to either side within which feet lie, where polar angles have told them roughly."""
 
 _ANGLE = 1e-14
 """Driver angle in turns to which a crossing is found: feet are no better."""
@@ -69,36 +64,6 @@ class _Corners(NamedTuple):
     sigma: Array
 
 
-class _Edge:
-    """The ring's addendum curve by polar angles, roughly.
-
-    Parameters
-    ----------
-    mate : Toothing
-        The ring.
-    """
-
-    def __init__(self, mate: Toothing) -> None:
-        s, reach = np.linspace(0.0, mate.length, _EDGE * mate.teeth + 1), _FEET * mate.pitch
-        self.phi, self.low, self.high = mate.track.angle(np.stack([s, s - reach, s + reach]))
-        base = mate.frames(self.phi, curved=False)
-        points = base.p + mate.cutter.addendum * mate.turn * base.t
-        self.polar, self.radii = np.unwrap(np.angle(points)), np.abs(points)
-
-    def _places(self, points: Plane) -> Array:
-        return self.polar[0] + (np.angle(points) - self.polar[0]) % (2.0 * math.pi)
-
-    def feet(self, points: Plane) -> tuple[Array, ...]:
-        """Return between which driver angles feet of points lie, and a guess, rad."""
-        places = self._places(points)
-        return tuple(np.interp(places, self.polar, v) for v in (self.low, self.high, self.phi))
-
-    def beyond(self, points: Plane) -> Array:
-        """Return how far points are among the teeth, mm; an open ring ends."""
-        radii = np.interp(self._places(points), self.polar, self.radii, right=math.inf)
-        return np.abs(points) - radii
-
-
 class _Stays(NamedTuple):
     """Stays of corners between the ring's teeth, and the ends that are seen of them.
 
@@ -124,7 +89,7 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     TipPass
         Of closed wheels the first of what repeats with the lobes.
     """
-    own, edge = wheel.toothing, _Edge(ring.toothing)
+    own, edge = wheel.toothing, PolarCurve(ring.toothing, ring.toothing.cutter.addendum)
     corners = _corners(wheel, ring.toothing)
     stays = _stays(*_follow(own, ring.toothing, corners, edge))
     margins, angles = _margins(own, ring, corners.points, edge, stays)
@@ -154,7 +119,7 @@ def _corners(wheel: Outline, mate: Toothing) -> _Corners:
 
 
 def _follow(
-    own: Toothing, mate: Toothing, corners: _Corners, edge: _Edge
+    own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve
 ) -> tuple[Array, Array]:
     """Return driver angles, rad, and how far corners are in the ring there, mm, roughly.
 
@@ -177,7 +142,7 @@ def _follow(
 
 def _stays(phi: Array, depth: Array) -> _Stays:
     """Find the stays of corners in the ring, and both ends of each that are seen."""
-    rows, columns = phi.shape
+    last = phi.shape[1] - 1
     inside = np.pad(depth > 0.0, ((0, 0), (1, 1)))
     starts, stops = (
         np.stack(np.nonzero(change), axis=1)
@@ -188,7 +153,7 @@ def _stays(phi: Array, depth: Array) -> _Stays:
         stay = depth[row, start:stop]
         # one roll further out, since the places are rough
         ends = [max(start - 2, 0)] if start > 0 else []
-        ends += [min(stop + 1, columns - 1)] if stop < columns else []
+        ends += [min(stop + 1, last)] if stop <= last else []
         for end in ends or [start + int(np.argmin(stay))]:
             corner.append(row)
             deep.append(phi[row, start + int(np.argmax(stay))])
@@ -197,14 +162,15 @@ def _stays(phi: Array, depth: Array) -> _Stays:
 
 
 def _margins(
-    own: Toothing, ring: Outline, points: Plane, edge: _Edge, stays: _Stays
+    own: Toothing, ring: Outline, points: Plane, edge: PolarCurve, stays: _Stays
 ) -> tuple[Array, Array]:
     """Return margins, mm, and driver angles, rad, of all stays, (2n,).
 
     First to the tooth that begins a space, with its flank sigma = 1, then to that which ends it.
     """
     mate, tips = ring.toothing, ring.flanks.tips
-    corner, deep, out = (np.tile(v, 2) for v in (points[stays.corner], stays.deep, stays.edge))
+    corner = np.tile(points[stays.corner], 2)
+    deep, out = np.tile(stays.deep, 2), np.tile(stays.edge, 2)
     formed, side = len(mate.numbers), np.repeat([1.0, -1.0], len(stays.corner))
 
     def seen(phi: Array) -> tuple[Array, Array]:
@@ -234,7 +200,7 @@ def _margins(
 
 
 def _feet(
-    own: Toothing, mate: Toothing, edge: _Edge, points: Plane, phi: Array
+    own: Toothing, mate: Toothing, edge: PolarCurve, points: Plane, phi: Array
 ) -> tuple[Array, Array]:
     """Return arc lengths of feet of corners on the ring's centrode, and heights, mm."""
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)

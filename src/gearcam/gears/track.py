@@ -257,6 +257,11 @@ class Track(Brief, ABC):
         """Extremes of kappa over a period: parameters, rad, and 1/mm."""
 
     @property
+    def hollow(self) -> bool:
+        """Whether the metal is outside the outline: a ring's."""
+        return self.turn == 1j and not self.clockwise
+
+    @property
     def convex(self) -> LeastRadius:
         """The least convex radius."""
         return self._least_radius(1.0)

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
+from gearcam.findings import limit_of
+from gearcam.gears.subject import KIND
 
 if TYPE_CHECKING:
     from gearcam.advice import Changes, Search
@@ -22,8 +26,17 @@ _LIKELY: Final = 1.5
 _SHARE: Final = 0.6
 """Part of the time that tooth counts may take where there are other ways."""
 
-_OF_TEETH: Final = frozenset({"contact-ratio", "undercut"})
+_OF_TEETH: Final = frozenset({"contact-ratio", "undercut", "tips-collide"})
 """Findings that more teeth or a smaller swing may lift."""
+
+_LOW: Final = 0.3
+"""Lowest addendum, in modules, that is tried where tips collide: lower ones do not mesh."""
+
+_FINE: Final = 0.005
+"""Step to which the largest one is found, in modules."""
+
+_TIMES: Final = (1, 2, 4)
+"""How many times the wheel's teeth are tried with a larger ring, if fewer do not do."""
 
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges as they are cut."""
@@ -33,13 +46,16 @@ def seek(search: Search, refusal: InfeasibleError | None) -> None:
     """Lead a `search` for remedies: tooth counts, what a `refusal` names, a milder law."""
     factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
     ways = [*(refusal.ways if refusal else ()), *_others(search, refusal, factor)]
+    last = [*_larger_ring(search)]
     if factor:
         end = search.until
-        if ways:
+        if ways or last:
             search.until = end - (1.0 - _SHARE) * (end - time.perf_counter())
         _more_teeth(search, factor)
         search.until = end
     search.follow(ways)
+    if not search.found:
+        any(search.along(way) for way in last)
 
 
 def hopeless(result: Any) -> bool:
@@ -77,6 +93,7 @@ def _more_teeth(search: Search, factor: float) -> None:
 
 def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Way]:
     """Yield ways beside more teeth and what a refusal names."""
+    yield from _usual_cutter(search)
     if refusal is None:
         yield from _of_errors(search)
     elif not refusal.ways and not factor:
@@ -84,6 +101,50 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
         yield from _EDGES
     if factor or search.result.design.pair.type == "internal":
         yield from _milder(search)
+
+
+def _larger_ring(search: Search) -> Iterator[Way]:
+    """Yield rings of the next multiple of the wheel's teeth: they give all of them more room."""
+    pair = search.result.design.pair
+    z1, z2 = pair.teeth
+    if pair.type == "internal" and z1 < z2:
+        for times in _TIMES:
+            yield Way(near={"pair.teeth": [times * z1, (z2 // z1 + 1) * times * z1]})
+
+
+def _usual_cutter(search: Search) -> Iterator[Way]:
+    """Yield the cutter that a ring has where none is given."""
+    result: Any = search.result
+    ring = result.design.ring
+    if ring.cutter_teeth is None:
+        return
+    free = replace(result.design, ring=replace(ring, cutter_teeth=None))
+    with suppress(InfeasibleError):
+        cutter = type(result)(free, result.tolerances).pair.toothings[1].cutter
+        if cutter.kc:
+            yield Way(near={"ring.cutter_teeth": round(cutter.teeth, 3)})
+
+
+def _lower(search: Search) -> Iterator[Way]:
+    """Yield the largest addendum with which tips pass each other."""
+    result: Any = search.result
+    limit = limit_of(KIND, "tips-collide", result.design.limits)
+
+    def passes(addendum: float) -> bool:
+        other = type(result)(result.design.with_({"rack.addendum": addendum}), result.tolerances)
+        try:
+            found = other.subject.tip_pass
+        except InfeasibleError:
+            return False
+        return found is None or found.margin >= limit
+
+    low, high = round(_LOW / _FINE), math.floor(result.pair.rack.addendum / _FINE)
+    if low >= high or not passes(_LOW):
+        return
+    while high - low > 1 and not search.over():
+        middle = (low + high) // 2
+        low, high = (middle, high) if passes(middle * _FINE) else (low, middle)
+    yield Way(near={"rack.addendum": low * _FINE})
 
 
 def _milder(search: Search) -> Iterator[Way]:
@@ -112,10 +173,12 @@ def _other_ratios(search: Search) -> Iterator[Way]:
 
 def _of_errors(search: Search) -> Iterator[Way]:
     """Yield the ways out of a pair's findings that are errors."""
+    addendum = value_at(search.document, "rack.addendum")
+    if "tips-collide" in search.codes:
+        yield from _lower(search)
+    elif search.codes & _OF_TEETH and addendum is not None and addendum < 1.0:
+        yield Way(far={"rack.addendum": 1.0})
     if search.codes & _OF_TEETH:
-        addendum = value_at(search.document, "rack.addendum")
-        if addendum is not None and addendum < 1.0:
-            yield Way(far={"rack.addendum": 1.0})
         if search.document["pair"]["x"]:
             yield Way(far={"pair.x": 0.0})
         yield from _EDGES

@@ -135,6 +135,7 @@ def _mesh(result: GearPairResult) -> Tree:
             shown=True,
         ),
         "rim_min_mm": _rim(subject, limit_of(KIND, "thin-rim", limits) * module),
+        "tip_pass_margin_mm": _tip_pass(result),
         "backlash_mm": Fact(max(subject.backlash, 0.0), "backlash as made", shown=True),
         "acceleration_max": Fact(
             abs(float(values[worst])),
@@ -169,6 +170,19 @@ def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tup
                 shown=not (alike and number),
             ),
         )
+
+
+def _tip_pass(result: GearPairResult) -> Fact | None:
+    found = result.subject.tip_pass
+    if found is None:
+        return None
+    return Fact(
+        found.margin,
+        "margin by which tips pass outside the mesh",
+        at_least=limit_of(KIND, "tips-collide", result.design.limits),
+        place=f"wheel 1, tooth {found.tooth}, {angle_text(found.phi1)}",
+        shown=True,
+    )
 
 
 def _rim(subject: Subject, limit: float) -> Fact | None:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
 
-_OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank")
+_OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
 """Checks that can find something else in each step of stepped wheels."""
 
 CENTRODE_POINTS = 720

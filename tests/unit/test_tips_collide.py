@@ -1,0 +1,89 @@
+"""What is said of tips that collide, and the ways out: each followed."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import gearcam
+from gearcam.findings import Finding
+from gearcam.kinds.gear_pair.build import GearPairResult
+from helpers_pairs import profile
+from helpers_rings import highest_on_circles, overlap, ring
+
+COLLIDES = (28, 33)
+PATIENCE = 60.0
+
+
+def collision(result: GearPairResult) -> Finding | None:
+    return next((one for one in result.findings if one.code == "tips-collide"), None)
+
+
+def margin(result: GearPairResult) -> float:
+    found = result.subject.tip_pass
+    assert found is not None
+    return found.margin
+
+
+def test_it_tells_tooth_angle_and_margin() -> None:
+    result = ring({"type": "constant"}, COLLIDES)
+    found, passed = collision(result), result.subject.tip_pass
+    assert found is not None
+    assert passed is not None
+    assert found.severity == "error"
+    assert found.value == passed.margin < 0.0
+    assert (found.limit, found.unit) == (0.0, "mm")
+    assert found.where.startswith("wheel 1, tooth 1, phi1 = 75.85")
+    assert "Tips collide" in found.message
+    assert overlap(result, passed.phi1) > 0.0
+
+
+def test_a_margin_below_its_limit_is_a_warning() -> None:
+    free = ring({"type": "constant"}, (28, 40))
+    assert collision(free) is None
+    found = collision(
+        ring({"type": "constant"}, (28, 40), limits={"tip_pass_mm": margin(free) + 1e-9})
+    )
+    assert found is not None
+    assert found.severity == "warning"
+    assert "pass each other" in found.message
+
+
+def test_the_fact() -> None:
+    result = ring({"type": "constant"}, (28, 40))
+    assert result.facts["mesh.tip_pass_margin_mm"] == margin(result)
+    assert "mesh.tip_pass_margin_mm" not in profile("ellipse").facts
+
+
+def test_stepped_wheels_are_looked_at_step_by_step() -> None:
+    result = ring({"type": "constant"}, COLLIDES, steps={"count": 2})
+    places = [one.where for one in result.findings if one.code == "tips-collide"]
+    assert sorted(place.split(",")[0] for place in places) == ["step 2", "wheel 1"]
+
+
+def test_the_largest_addendum_and_the_fewest_teeth_are_ways_out() -> None:
+    result = ring({"type": "constant"}, COLLIDES)
+    found = gearcam.remedies(result, patience=PATIENCE).found
+    changes = {key: value for one in found for key, value in one.changes.items()}
+    highest = highest_on_circles(*COLLIDES)
+    assert changes["rack.addendum"] == pytest.approx(math.floor(highest / 0.005) * 0.005)
+    for remedy in found:
+        other = gearcam.build(remedy.design)
+        assert isinstance(other, GearPairResult)
+        assert collision(other) is None
+        assert overlap(other) == 0.0
+        if remedy.less:
+            less = gearcam.build(result.design.with_(remedy.less))
+            assert isinstance(less, GearPairResult)
+            assert collision(less) is not None
+
+
+def test_where_teeth_and_addendum_do_not_help_the_ring_is_made_larger() -> None:
+    result = ring({"type": "formula", "ratio": "1 + 0.02*cos(5*phi1)"}, (40, 48))
+    assert collision(result) is not None
+    found = gearcam.remedies(result, patience=PATIENCE).found
+    assert [one.changes for one in found] == [{"pair.teeth": [40, 80]}]
+    other = gearcam.build(found[0].design)
+    assert isinstance(other, GearPairResult)
+    assert overlap(other) == 0.0
