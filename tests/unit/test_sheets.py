@@ -232,6 +232,20 @@ def test_a_pair_with_a_rack_has_no_centre_distance() -> None:
     assert "gear2" not in names
 
 
+def test_the_shaft_of_an_open_ring_may_lie_beside_its_outline() -> None:
+    """Its centre line is on the paper, and the height is measured left of it."""
+    ring = placed(disc_contour(20.0, 1e-3), 0.0, (90.0, 0.0))
+    parts = [part(30.0), Part(name="gear2", contours=(ring,), width=5.0)]  # type: ignore[arg-type]
+    sheet = pair_sheet(pair_drawing(parts, -60.0), -60.0, {}, "t", pitch_radius=30.0)
+    (height,) = (
+        one for one in sheet.dimensions if isinstance(one, LinearDimension) and one.vertical
+    )
+    assert height.value == pytest.approx(60.0, abs=2e-3)
+    assert sheet.corner[0] < height.line[0] < -60.0
+    lines = [one.shape for one in sheet.features if one.layer == "CENTERLINE"]
+    assert min(line.points[:, 0].min() for line in lines if isinstance(line, Path)) < -60.0
+
+
 def test_nothing_is_not_drawn() -> None:
     mark = Feature(layer="MARK", shape=Circle(center=np.zeros(2), diameter=1.0))
     with pytest.raises(ValueError, match="nothing to draw"):

@@ -1,4 +1,7 @@
-"""What basic rack, profile shift and backlash must leave: teeth with lands, roots and addenda."""
+"""What basic rack, profile shift and backlash must leave: teeth with lands, roots and addenda.
+
+What a ring asks for: more teeth than its wheel has, and metal outside its roots.
+"""
 
 from __future__ import annotations
 
@@ -216,6 +219,41 @@ def demand_clearance(
                     ),
                 ),
             )
+
+
+def demand_ring(spec: PairSpec) -> None:
+    """Refuse a ring that goes all around without more teeth than its wheel.
+
+    Parameters
+    ----------
+    spec : PairSpec
+        With the tooth counts.
+
+    Raises
+    ------
+    InfeasibleError
+        With what to give instead.
+    """
+    z1, z2 = spec.teeth
+    if spec.type != "internal" or z2 > z1:
+        return
+    if z2 == z1:
+        what, counts = "equal tooth counts have no internal pair", [z1, 2 * z1]
+        nearest = "a ring has more teeth than its wheel"
+    else:
+        what, counts = "the ring has fewer teeth than its wheel", [z2, z1]
+        nearest = (
+            f"give the ring second, teeth = {counts}, with the law's inverse: where the ratio is i "
+            "at phi1 and phi2 it is 1/i at phi2 and phi1 then"
+        )
+    raise InfeasibleError(
+        what,
+        where="pair.teeth[1]",
+        value=float(z2),
+        limit=float(z1),
+        nearest=nearest,
+        ways=(Way(near={"pair.teeth": counts}), Way(near={"pair.type": "external"})),
+    )
 
 
 def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> None:

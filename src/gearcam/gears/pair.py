@@ -369,41 +369,6 @@ def make_gear(
     return Gear(pair=pair, wheel=wheel, profile=profile)
 
 
-def demand_ring(spec: PairSpec) -> None:
-    """Refuse a ring that goes all around without more teeth than its wheel.
-
-    Parameters
-    ----------
-    spec : PairSpec
-        With the tooth counts.
-
-    Raises
-    ------
-    InfeasibleError
-        With what to give instead.
-    """
-    z1, z2 = spec.teeth
-    if spec.type != "internal" or z2 > z1:
-        return
-    if z2 == z1:
-        what, counts = "equal tooth counts have no internal pair", [z1, 2 * z1]
-        nearest = "a ring has more teeth than its wheel"
-    else:
-        what, counts = "the ring has fewer teeth than its wheel", [z2, z1]
-        nearest = (
-            f"give the ring second, teeth = {counts}, with the law's inverse: where the ratio is i "
-            "at phi1 and phi2 it is 1/i at phi2 and phi1 then"
-        )
-    raise InfeasibleError(
-        what,
-        where="pair.teeth[1]",
-        value=float(z2),
-        limit=float(z1),
-        nearest=nearest,
-        ways=(Way(near={"pair.teeth": counts}), Way(near={"pair.type": "external"})),
-    )
-
-
 def lobes_of(spec: PairSpec) -> Lobes:
     """Return the lobes of a pair's tooth counts: ``z1 : z2`` in lowest terms."""
     common = math.gcd(*spec.teeth)

@@ -72,13 +72,15 @@ def pair_sheet(
         raise ValueError(f"{drawing.name}: nothing to draw")
     outlines = _outlines(drawing)
     points = true_points(outlines)
-    low, high = points.min(axis=0), points.max(axis=0)
+    shafts = (0.0, center_distance) if center_distance else (0.0,)
+    # the shaft of an open ring lies beside its outline
+    reached = np.vstack([points, *([shaft, 0.0] for shaft in shafts)])
+    low, high = reached.min(axis=0), reached.max(axis=0)
     below = FIRST_LEVEL + LEVEL * LEVELS
     room = np.array([LEFT, below]), np.array([RIGHT, ABOVE])
     board = begin(high - low, room, low, len(facts) + 2)
-    shafts = (0.0, center_distance) if center_distance else (0.0,)
     _views(board, drawing, shafts)
-    _sizes(board, points, center_distance, pitch_radius)
+    _sizes(board, points, center_distance, pitch_radius, float(low[0]))
     place = np.array([pitch_radius, 0.0])
     board.draw(CENTERLINE, Circle(center=place, diameter=POINT * board.unit))
     board.label(place, "pitch point")
@@ -107,12 +109,14 @@ def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
     for shaft, corners in zip(shafts, boxes, strict=False):
         low, high = float(corners[:, 1].min()), float(corners[:, 1].max())
         board.line(CENTERLINE, (shaft, low - over), (shaft, high + over))
-    xs = np.concatenate(boxes)[:, 0]
+    xs = np.append(np.concatenate(boxes)[:, 0], shafts)
     board.line(CENTERLINE, (float(xs.min()) - over, 0.0), (float(xs.max()) + over, 0.0))
 
 
-def _sizes(board: Board, points: Array, center_distance: float, pitch_radius: float) -> None:
-    """Draw the linear dimensions: pitch radius, centre distance, largest sizes."""
+def _sizes(
+    board: Board, points: Array, center_distance: float, pitch_radius: float, beside: float
+) -> None:
+    """Draw the linear dimensions: pitch radius, centre distance, largest sizes left of `beside`."""
     unit = board.unit
     left, low, right, high = points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
     levels = [float(low[1]) - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
@@ -120,4 +124,4 @@ def _sizes(board: Board, points: Array, center_distance: float, pitch_radius: fl
     if center_distance:
         board.linear((0.0, 0.0), (center_distance, 0.0), levels.pop(0))
     board.linear(left, right, levels.pop(0))
-    board.linear(low, high, float(left[0]) - FIRST_LEVEL * unit, vertical=True)
+    board.linear(low, high, beside - FIRST_LEVEL * unit, vertical=True)

@@ -13,8 +13,8 @@ import numpy as np
 from gearcam.errors import InfeasibleError, Way
 from gearcam.findings import Finding, in_order, limit_of, run_checks
 from gearcam.gears.checks import KIND, Subject
-from gearcam.gears.demands import demand_rim
-from gearcam.gears.pair import Gear, GearPair, demand_ring, lobes_of, make_gear, make_pair
+from gearcam.gears.demands import demand_rim, demand_ring
+from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
 from gearcam.gears.spec import Finish
 from gearcam.gears.steps import leads, stepped
 from gearcam.gears.track import Wheel
