@@ -154,6 +154,7 @@ def test_a_mirrored_law_has_mirrored_tips() -> None:
     )
     assert other.margin == pytest.approx(one.margin, abs=1e-11)
     assert other.sigma == -one.sigma
+    assert all(0.0 <= found.phi1 < 2.0 * math.pi for found in (one, other))
     assert (other.phi1 + one.phi1 + 1e-9) % math.pi == pytest.approx(0.0, abs=2e-9)
 
 
