@@ -154,6 +154,7 @@ def test_a_mirrored_law_has_mirrored_tips() -> None:
     )
     assert other.margin == pytest.approx(one.margin, abs=1e-11)
     assert other.sigma == -one.sigma
+    assert all(0.0 <= found.phi1 < 2.0 * math.pi for found in (one, other))
     assert (other.phi1 + one.phi1 + 1e-9) % math.pi == pytest.approx(0.0, abs=2e-9)
 
 
@@ -181,3 +182,16 @@ def test_a_ring_tip_grazes_no_fillet() -> None:
     assert (own.highest < result.gear1.toothing.cutter.reach - 1e-3).any()
     assert overlap(result) == 0.0
     assert overlap(result, math.radians(85.29)) == 0.0
+
+
+def test_tips_of_the_wheel_stay_out_of_fillets_of_a_ring() -> None:
+    """A wheel flatter in places than the ring's cutter; of its flanks little is lost."""
+    law = {"type": "formula", "ratio": "1 + 0.24891*cos(phi1)"}
+    rack = {"addendum": 1.0, "dedendum": 1.02, "tip_radius": 0.1}
+    result = ring(law, (15, 45), rack=rack, output={"chord_tolerance_mm": TRACED})
+    wheel, mate = result.gear1.profile, result.pair.toothings[1]
+    free = build_outline(wheel.toothing, mate, TRACED, DEFAULT, follow=False)
+    lost = free.flanks.highest - wheel.flanks.highest
+    assert 1e-4 < lost.max() < 0.05 * mate.cutter.reach
+    assert overlap(result, outlines=(free, result.gear2.profile)) > 0.0
+    assert overlap(result) == 0.0

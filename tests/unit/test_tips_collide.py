@@ -79,6 +79,7 @@ def test_the_largest_addendum_and_the_fewest_teeth_are_ways_out() -> None:
             assert collision(less) is not None
 
 
+@pytest.mark.slow
 def test_where_teeth_and_addendum_do_not_help_the_ring_is_made_larger() -> None:
     result = ring({"type": "formula", "ratio": "1 + 0.02*cos(5*phi1)"}, (40, 48))
     assert collision(result) is not None

@@ -75,8 +75,8 @@ def highest_corners(
     if toothing.track.concave.radius == math.inf and mate.cutter.kc == 0.0:
         return result
     sf, sigma = flanks
-    hollow = mate.track.hollow
-    internal = hollow or toothing.track.hollow
+    hollow, ring = mate.track.hollow, mate.track.ring
+    internal = ring or toothing.track.ring
     near = _deep(toothing, mate.cutter, flanks, highest)
     if internal:
         near |= _grazing(toothing, mate.cutter, flanks, highest)
@@ -98,7 +98,7 @@ def highest_corners(
         path = other.p + other.t * along
         metal = shapely.contains_xy(body, path.real, path.imag) != hollow
         if centrode is not None:
-            metal &= (centrode.beyond(path) > 0.0) == hollow
+            metal &= (centrode.beyond(path) > 0.0) == ring
         return np.any(metal, axis=1)
 
     at = at[hits(at, highest[at])]

@@ -28,7 +28,9 @@ class PolarCurve:
     """
 
     def __init__(self, toothing: Toothing, height: float) -> None:
-        s = np.linspace(0.0, toothing.length, _PLACES * toothing.teeth + 1)
+        more = 0 if toothing.closed else 1  # pitches at each end, for the outer half teeth
+        count = _PLACES * (toothing.teeth + 2 * more)
+        s = toothing.pitch * (np.arange(count + 1) / _PLACES - more)
         reach = _FEET * toothing.pitch
         self._phi = toothing.track.angle(np.stack([s - reach, s + reach, s]))
         base = toothing.frames(self._phi[2], curved=False)

@@ -257,9 +257,15 @@ class Track(Brief, ABC):
         """Extremes of kappa over a period: parameters, rad, and 1/mm."""
 
     @property
+    def ring(self) -> bool:
+        """Whether its teeth point to the shaft: a ring, or a sector of one."""
+        base = self.frames(np.zeros(1), curved=False)
+        return not self.slides and bool((np.conj(base.p) * self.turn * base.t).real[0] < 0.0)
+
+    @property
     def hollow(self) -> bool:
-        """Whether the metal is outside the outline: a ring's."""
-        return self.turn == 1j and not self.clockwise
+        """Whether the outline is the edge of a hole: of a ring that goes all around."""
+        return self.ring and self.closed
 
     @property
     def convex(self) -> LeastRadius:
