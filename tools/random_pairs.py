@@ -1,4 +1,4 @@
-"""Random gear pairs: every law, closed and open, racks, stepped wheels, blanks, finishes, studies.
+"""Random gear pairs: every law, closed and open, racks, rings, stepped wheels, blanks, studies.
 
 A law's parameters are drawn so that most designs can be built. What depends on a size is drawn in
 modules, so that the module may be anything.
@@ -265,6 +265,25 @@ def _steps(d: Draw, module: float) -> dict[str, Any]:
     return steps
 
 
+def _ring(d: Draw, design: dict[str, Any], module: float) -> None:
+    """Make a pair an internal one: a ring has no bore, and stands nearer."""
+    pair = design["pair"]
+    z1, z2 = pair["teeth"]
+    pair["type"] = "internal"
+    if "center_distance_mm" in pair:
+        pair["center_distance_mm"] = short(module * (z2 - z1) / 2 * d.even(0.95, 1.05))
+    ring: dict[str, Any] = {"outer": d.pick(["round", "follow"])}
+    if d.chance(0.5):
+        ring["rim_mm"] = short(module * d.log(1, 8))
+    elif ring["outer"] == "round":
+        ring["outer_diameter_mm"] = short(module * (z2 + 2.5 + d.log(2, 30)))
+    if d.chance(0.3):
+        ring["cutter_teeth"] = short(z1 * d.even(0.6, 1.2))
+    design["ring"] = ring
+    for key in ("blank", "meshing"):
+        design.pop(key, None)
+
+
 def _study(d: Draw, design: dict[str, Any]) -> dict[str, Any]:
     study: dict[str, Any] = {"steps": d.whole(8, 60)}
     if d.chance(0.4):
@@ -319,4 +338,6 @@ def gear_pair(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict
         del design["output"]["chord_tolerance_mm"]
     if d.chance(0.2):
         design["output"]["phi1_deg"] = d.even(-400, 400)
+    if closed and not opened and z[1] > z[0] and d.chance(0.3):
+        _ring(d, design, module)
     return design

@@ -186,13 +186,10 @@ class Facts(Mapping[str, Any]):
         return _bare(self._tree)
 
     def __getitem__(self, name: str) -> Any:
-        found: Any = self.document
         try:
-            for step in name.split("."):
-                found = found[int(step) if isinstance(found, list) else step]
-        except (LookupError, TypeError, ValueError):
+            return _at(self.document, name)
+        except (LookupError, TypeError, ValueError, StopIteration):
             raise KeyError(name) from None
-        return found
 
     def __iter__(self) -> Iterator[str]:
         return (quantity.name for quantity in self.quantities())
@@ -226,6 +223,17 @@ def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     for name, item in items:
         if item is not None:
             yield from _leaves(item, f"{path}.{name}" if path else str(name))
+
+
+def _at(tree: Any, name: str) -> Any:
+    """Return what a dotted name leads to; a key may hold dots itself, as names of files do."""
+    if isinstance(tree, list):
+        step, _, rest = name.partition(".")
+        return _at(tree[int(step)], rest) if rest else tree[int(step)]
+    if name in tree:
+        return tree[name]
+    key = next(key for key in tree if name.startswith(f"{key}."))
+    return _at(tree[key], name[len(key) + 1 :])
 
 
 def _is_group(value: Any) -> bool:

@@ -250,7 +250,7 @@ def test_every_check_of_the_registry_is_tested_here() -> None:
         "remote-cutter",
     }
     assert named == {check.code for check in CHECKS.values() if check.kind == KIND}
-    assert len(named) == 17
+    assert len(named) == 18
 
 
 def test_a_pair_that_does_not_drive_is_an_error() -> None:

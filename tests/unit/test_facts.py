@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
 import gearcam
 from gearcam.facts import Fact, Facts, extent
+from helpers_pairs import profile
 
 TREE = {
     "pair": {
@@ -87,6 +89,15 @@ def test_a_name_that_is_none_is_refused_whole(name: str) -> None:
     assert name not in facts
     with pytest.raises(KeyError, match=re.escape(repr(name))):
         facts[name]
+
+
+def test_names_of_files_are_found_with_their_dots(tmp_path: Path) -> None:
+    written = profile("ellipse").write(tmp_path, files=["dxf"])
+    errors = written.facts["accuracy.dxf_mm"]
+    assert errors.keys() == {"gear1.dxf", "gear2.dxf", "pair.dxf"}
+    assert [written.facts[f"accuracy.dxf_mm.{name}"] for name in errors] == [*errors.values()]
+    assert all(name in written.facts for name in written.facts)
+    assert repr(written).startswith("Written(")
 
 
 def test_an_extent_is_both_ends_in_another_unit() -> None:

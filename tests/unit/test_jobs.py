@@ -31,7 +31,7 @@ TOP = [
 """Keys of every summary; ``solids`` comes with meshes, ``stale`` with old files."""
 
 PAIR = {"center_distance_mm", "module_mm", "teeth", "face_width_mm", "ratio", "solved"}
-PAIR |= {"x", "backlash_mm", "rack"}
+PAIR |= {"type", "x", "backlash_mm", "rack"}
 CENTRODE = {"length_mm", "min_convex_radius_mm", "max_concave_curvature_per_mm", "closed"}
 GEAR = {"cutter", "undercut_teeth", "tip_thickness_min_mm", "outline"}
 OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}

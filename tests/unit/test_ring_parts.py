@@ -12,7 +12,7 @@ import shapely
 
 import gearcam
 from gearcam.errors import DesignError, InfeasibleError
-from gearcam.gears.spec import RingSpec, StepsSpec
+from gearcam.gears.spec import Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.laws.ratio.constant import Constant
@@ -318,3 +318,13 @@ def test_what_is_told_of_a_ring() -> None:
     picture = made.gear2.picture()
     assert picture.count("Z") == 2, "the edge of the hole, and of what is shown around it"
     assert plain(Constant()).gear1.picture().count("Z") == 1
+
+
+def test_a_ring_takes_another_pinion_where_the_usual_ones_teeth_are_pointed() -> None:
+    """By rule as many teeth as the mate; where these are too deep 1/1.15 of the ring's."""
+    deep = Rack(addendum=1.25, dedendum=1.6, tip_radius=0.1)
+    for counts, rack, teeth in (((28, 48), Rack(), 28.0), ((20, 40), deep, 40 / 1.15)):
+        made = job(Constant(), counts, module=2.0, rack=rack, internal=True)
+        cutter = made.pair.toothings[1].cutter
+        assert cutter.fits
+        assert cutter.teeth == pytest.approx(teeth, rel=1e-12)

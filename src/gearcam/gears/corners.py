@@ -22,7 +22,7 @@ from gearcam.gears.flank import Toothing
 from gearcam.gears.polar import PolarCurve
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
-_WINDOW, _WIDE = 1.25, 4.0
+_WINDOW, _WIDE = 1.25, 8.0
 """Pitches of roll on either side of a flank over which its corner is followed; in tight parts."""
 
 _ROLLS = 48

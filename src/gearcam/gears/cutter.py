@@ -9,6 +9,7 @@ limit.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -121,7 +122,7 @@ def choose_cutter(
     module: float,
     concave_curvature: float,
     *,
-    kc: float | None = None,
+    pinions: Sequence[float] = (),
     shift: float = 0.0,
     backlash: float = 0.0,
     clearance: float = 0.0,
@@ -136,8 +137,9 @@ def choose_cutter(
         Module.
     concave_curvature : float, 1/mm
         Largest ``-kappa`` of the centrode; not positive for a convex one.
-    kc : float, 1/mm, optional
-        Curvature of the pinion that cuts a concave one; 1.15 times its own where left out.
+    pinions : sequence of float, 1/mm
+        Curvatures of pinions that a concave one may be cut by, of which the first counts whose
+        teeth fit, or the last; if left out, 1.15 times its own.
     shift : float
         Profile shift of this wheel, in modules.
     backlash : float, mm
@@ -150,29 +152,28 @@ def choose_cutter(
     Cutter
         The rack for a convex centrode, else a pinion; see `Cutter.fits`.
     """
-    if not concave_curvature * module > _FLAT:
-        kc = 0.0
-    elif kc is None:
-        kc = _CONCAVE_MARGIN * concave_curvature
-    cutter = Cutter(
+    straight = Cutter(
         alpha=rack.pressure_angle,
         addendum=(rack.addendum + shift) * module,
         dedendum=(rack.dedendum - shift) * module,
         tip_radius=rack.tip_radius * module,
-        kc=kc,
+        kc=0.0,
         half_space=(0.25 * math.pi - shift * math.tan(rack.pressure_angle)) * module
         + 0.25 * backlash,
         pitch=math.pi * module,
     )
-    if kc > 0.0 and cutter.offset > cutter.half_space:
-        cutter = _blunt(cutter)
-    return widened(cutter, clearance)
+    if not concave_curvature * module > _FLAT:
+        return widened(straight, clearance)
+    made = [
+        _blunt(replace(straight, kc=kc)) for kc in pinions or (_CONCAVE_MARGIN * concave_curvature,)
+    ]
+    return widened(next((one for one in made if one.fits), made[-1]), clearance)
 
 
-def ring_curvature(
+def ring_pinions(
     concave_curvature: float, mate_curvature: float, module: float, teeth: float | None
-) -> float:
-    """Return the curvature of the pinion cutter of a ring.
+) -> tuple[float, ...]:
+    """Return the curvatures of the pinion cutters of a ring, the one that is wanted first.
 
     Parameters
     ----------
@@ -187,9 +188,10 @@ def ring_curvature(
 
     Returns
     -------
-    float, 1/mm
+    tuple of float, 1/mm
         1.15 times the ring's, but at least the mate's: a cutter so large leaves fillets that the
-        mate's tips stay clear of, and gets out of the ring without cutting its tips.
+        mate's tips stay clear of, and gets out of the ring without cutting its tips. Where its
+        teeth are pointed, 1.15 times the ring's may do.
 
     Raises
     ------
@@ -197,7 +199,8 @@ def ring_curvature(
         If a cutter of so many teeth does not fit into the ring.
     """
     if teeth is None:
-        return max(_CONCAVE_MARGIN * concave_curvature, mate_curvature)
+        least = _CONCAVE_MARGIN * concave_curvature
+        return max(least, mate_curvature), least
     most = 2.0 / (module * concave_curvature)
     if not teeth < most:
         raise InfeasibleError(
@@ -209,7 +212,7 @@ def ring_curvature(
             ways=(Way(near={"ring.cutter_teeth": most / _CONCAVE_MARGIN}),),
             more_teeth=teeth / most,
         )
-    return 2.0 / (module * teeth)
+    return (2.0 / (module * teeth),)
 
 
 def widened(cutter: Cutter, by: float) -> Cutter:
@@ -237,7 +240,9 @@ def widened(cutter: Cutter, by: float) -> Cutter:
 
 
 def _blunt(cutter: Cutter) -> Cutter:
-    """Round the tip less, so that the pinion's narrower tooth keeps a land; 0 at the least."""
+    """Round the tip less where the pinion's narrower tooth has no land else; 0 at the least."""
+    if cutter.offset <= cutter.half_space:
+        return cutter
     most = largest_fitting(
         lambda radius: replace(cutter, tip_radius=radius).offset <= cutter.half_space,
         cutter.tip_radius,

@@ -12,7 +12,7 @@ from gearcam.display import Brief, Displayed
 from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Facts
 from gearcam.gears.bound import demand_cutters
-from gearcam.gears.cutter import choose_cutter, ring_curvature
+from gearcam.gears.cutter import choose_cutter, ring_pinions
 from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
 from gearcam.gears.flank_points import flank_points
@@ -305,15 +305,16 @@ def make_pair(
     demand_clearance(rack, spec, module, finish)
 
     def toothing(wheel: Wheel) -> Toothing:
-        track, kc = rolling.tracks[wheel - 1], None
+        track = rolling.tracks[wheel - 1]
+        pinions: tuple[float, ...] = ()
         if wheel == 2 and rolling.mate == RING and track.concave.radius < math.inf:
             least = float(rolling.curvature_extremes[0][1].min())
-            kc = ring_curvature(1.0 / track.concave.radius, least, module, cutter_teeth)
+            pinions = ring_pinions(1.0 / track.concave.radius, least, module, cutter_teeth)
         cutter = choose_cutter(
             rack,
             module,
             1.0 / track.concave.radius,
-            kc=kc,
+            pinions=pinions,
             shift=spec.x if wheel == 1 else -spec.x,
             backlash=spec.backlash,
             clearance=finish[wheel - 1].clearance,
