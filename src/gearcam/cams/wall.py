@@ -31,6 +31,7 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.jets import Jet
 from gearcam.numeric.sampling import Sampler
 
 CHORD_TOLERANCE = 1e-3
@@ -57,12 +58,18 @@ class PitchMotion(Brief):
         Whether the cam turns clockwise.
     tolerance : float, mm
         Chord error of contours.
+    key : str
+        What names of its files and facts end in; empty of a cam's only one.
+    called : str
+        What people call what is cut.
     """
 
     program: Program
     mechanism: Mechanism
     clockwise: bool = False
     tolerance: float = CHORD_TOLERANCE
+    key: str = ""
+    called: str = "profile"
 
     @cached_property
     def curve(self) -> CamCurve:
@@ -105,26 +112,26 @@ class PitchMotion(Brief):
         Returns
         -------
         dict of str to (n,) array
-            ``s, ds, d2s, d3s`` in mm or rad, ``pressure`` in rad, ``rho_pitch`` and
-            ``rho_profile`` in mm, infinite where straight.
+            ``s, ds, d2s, d3s`` in mm or rad, ``pressure`` in rad, ``rho_pitch`` in mm, infinite
+            where straight.
         """
         s, ds, d2s, d3s = self.program.derivatives(theta, 3)
         found = self.curve.contact(theta, 0)
-        turning = found.turning.c[0] + np.zeros_like(s)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            pitch, profile = (
-                np.where(turning == 0.0, np.inf, values.c[0] / turning)
-                for values in (found.pitch_speed, found.speed)
-            )
         return {
             "s": s,
             "ds": ds,
             "d2s": d2s,
             "d3s": d3s,
             "pressure": found.pressure.c[0] + np.zeros_like(s),
-            "rho_pitch": pitch,
-            "rho_profile": profile,
+            "rho_pitch": _radii(found.pitch_speed, found.turning) + np.zeros_like(s),
         }
+
+
+def _radii(speed: Jet, turning: Jet) -> Array:
+    """Return radii of curvature, infinite where straight."""
+    turn = turning.c[0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(turn == 0.0, np.inf, speed.c[0] / turn)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -154,6 +161,37 @@ class Wall(PitchMotion):
         """The wall's curves as the cam turns counter-clockwise: outside at a negative depth."""
         radius = self.side * self.mechanism.radius
         return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
+
+    def motion(self, theta: Array) -> dict[str, Array]:
+        """Return motion and contact at cam angles (see `PitchMotion.motion`), with own radii.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles; at a knot the values after it count.
+
+        Returns
+        -------
+        dict of str to (n,) array
+            Those, and ``rho_profile`` in mm (see `radii`).
+        """
+        return {**super().motion(theta), "rho_profile": self.radii(theta)}
+
+    def radii(self, theta: Array) -> Array:
+        """Return radii of curvature before trimming, mm.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles; at a knot the values after it count.
+
+        Returns
+        -------
+        (n,) array
+            Positive where the metal is convex, infinite where straight.
+        """
+        found = self.curve.contact(theta, 0)
+        return self.side * _radii(found.speed, found.turning) + np.zeros_like(theta)
 
     @cached_property
     def profile_radius(self) -> tuple[float, float]:

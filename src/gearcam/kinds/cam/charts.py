@@ -56,13 +56,13 @@ def _pressure_angle(result: CamResult) -> Chart:
 def _curvature(result: CamResult) -> Chart:
     table, radius = _table(result), result.mechanism.radius
     with np.errstate(divide="ignore"):
-        pitch, profile = (1.0 / table[f"rho_{name}_mm"] for name in ("pitch", "profile"))
-    largest = _TIMES * max(1.0 / radius if radius else 0.0, float(np.abs(pitch).max()))
+        lines = {label: 1.0 / rho for label, rho in result.form.curvature_lines(table).items()}
+    pitch = [np.abs(values).max() for label, values in lines.items() if label.startswith("pitch")]
+    largest = _TIMES * max(1.0 / radius if radius else 0.0, *map(float, pitch))
     tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
     limits = [Limit(label="tool at hand, concave profile", value=-2.0 / tool)] if tool else []
     if radius > 0.0:
         limits.append(Limit(label="roller, convex pitch curve", value=1.0 / radius))
-    lines = {"pitch curve": pitch, "profile before trimming": profile}
     if result.mechanism.flat:
         del lines["pitch curve"]
     return Chart(
