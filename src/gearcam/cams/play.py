@@ -25,13 +25,16 @@ from gearcam.cams.wall import Wall
 from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes
-from gearcam.numeric.roots import newton_in_bracket
+from gearcam.numeric.piecewise import places_between
+from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 _TURN = 2.0 * math.pi
 
-_ROOT = 1e-15
-"""Step of a search that has found its place, rad or in units of a jump's velocity."""
+_ROOT = 1e-13
+"""Angle, rad, to which a place is found: more than rounding makes of it in a turn."""
+
+_FLAT = 1e-9
+"""Width, rad, of a bracket about a largest play: its value is flat there."""
 
 _APART = 1e-9
 """Angle, rad, below which two ends of stretches are one."""
@@ -170,7 +173,19 @@ def largest_play(inner: Rest, outer: Rest) -> Extreme:
 
     ends = np.sort(np.mod(np.concatenate([inner.ends, outer.ends, [0.0]]), _TURN))
     kept = ends[np.append(True, np.diff(ends) > _APART)]
-    kept = kept[kept < _TURN - _APART]
-    places, values = extremes(play, np.append(kept, _TURN))
+    x = places_between(np.append(kept[kept < _TURN - _APART], _TURN))
+    values, slopes = (found.reshape(x.shape) for found in play(x.ravel()))
     best = int(values.argmax())
-    return Extreme(theta=float(places[best]) % _TURN, value=max(0.0, float(values[best])))
+    place, value = float(x.flat[best]), float(values.flat[best])
+    # a function lies below its tangents about a largest value: few cells can hold it
+    low, high, width = slopes[:, :-1], slopes[:, 1:], np.diff(x, axis=1)
+    top = np.minimum(values[:, :-1] + low * width, values[:, 1:] - high * width)
+    cells = np.nonzero((low > 0.0) & (high < 0.0) & (top > value))
+    if len(cells[0]):
+        roots = bracketed_root(
+            lambda theta: play(theta)[1], x[:, :-1][cells], x[:, 1:][cells], _FLAT
+        )
+        found = play(roots)[0]
+        if found.max() > value:
+            place, value = float(roots[found.argmax()]), float(found.max())
+    return Extreme(theta=place % _TURN, value=max(0.0, value))

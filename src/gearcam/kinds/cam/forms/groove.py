@@ -209,10 +209,7 @@ def _recesses(result: CamResult) -> tuple[Recess, ...]:
     def recess(low: float, high: float, edges: tuple[Contour, Contour], width: float) -> Recess:
         island = Opening(kind="INNER", shape=edges[0], name="island")
         ends = (thickness - high, thickness - low) if front else (low, high)
-        place = (
-            float(cam.inner.pitch_contour.vertices[0, 0]),
-            float(cam.inner.pitch_contour.vertices[0, 1]),
-        )
+        x, y = cam.inner.pitch_contour.vertices[0].tolist()
         return Recess(
             edge=edges[1],
             openings=(island,),
