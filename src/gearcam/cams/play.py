@@ -30,11 +30,14 @@ from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 _TURN = 2.0 * math.pi
 
-_ROOT = 1e-13
-"""Angle, rad, to which a place is found: more than rounding makes of it in a turn."""
+_STEP = 1e-8
+"""Last step of a search, rad or in units of a jump's velocity: its error is the square of it."""
 
-_FLAT = 1e-9
-"""Width, rad, of a bracket about a largest play: its value is flat there."""
+_ROUNDING = 1e-13
+"""Angle, rad: more than rounding makes of one in a turn."""
+
+_FLAT = 1e-6
+"""Width, rad, of a bracket about a largest play: the value there changes with its square."""
 
 _APART = 1e-9
 """Angle, rad, below which two ends of stretches are one."""
@@ -81,7 +84,9 @@ class Rest(Brief):
     def _moving(self, index: Ints, parameter: Array) -> tuple[Array, Array, Array, Array]:
         """Return angles and lifts at places of the curve of centres, with their slopes."""
         m = self.wall.mechanism
-        theta = self._centers.states(index, parameter)[0]
+        jumps = self._centers.jump[index]
+        knots = self._centers.curve.program.knots[self._centers.piece[index]]
+        theta = np.where(jumps, knots, parameter)
         centers, velocities = self._centers.moving(index, parameter)
         stands, lift, fixed = self._standing(theta, centers)
         # seen along the follower's way and across it
@@ -93,13 +98,16 @@ class Rest(Brief):
         return stands, lift, slope, rise
 
     @cached_property
+    def _starts(self) -> Array:
+        """Angles at which the pieces of that curve begin."""
+        begin = self._centers.start
+        return self._moving(np.arange(len(begin)), begin)[0]
+
+    @cached_property
     def ends(self) -> Array:
         """Angles, rad, between which the lift is smooth."""
-        centers = self._centers
-        index, places = centers.breaks
-        every = np.arange(len(centers.start))
-        found = [self._moving(every, centers.start)[0], self._moving(index, places)[0]]
-        return np.concatenate([*found, *(np.array(pair) for pair, _ in self._corners)])
+        bends = self._moving(*self._centers.breaks)[0]
+        return np.concatenate([self._starts, bends, *(np.array(pair) for pair, _ in self._corners)])
 
     @cached_property
     def _corners(self) -> Sequence[tuple[tuple[float, float], complex]]:
@@ -128,9 +136,7 @@ class Rest(Brief):
         lift, slope : (n,) arrays
             mm or rad, and per rad.
         """
-        centers = self._centers
-        every = np.arange(len(centers.start))
-        starts = np.maximum.accumulate(self._moving(every, centers.start)[0])
+        centers, starts = self._centers, np.maximum.accumulate(self._starts)
         aim = starts[0] + np.mod(theta - starts[0], _TURN)
         index = np.searchsorted(starts, aim, side="right") - 1
         low, high = centers.start[index], centers.end[index]
@@ -140,7 +146,7 @@ class Rest(Brief):
             return stands - aim, slope
 
         first = np.where(centers.jump[index], 0.5 * (low + high), np.clip(aim, low, high))
-        places = newton_in_bracket(function, low, high, first, _ROOT, _ROOT)
+        places = newton_in_bracket(function, low, high, first, _STEP, _ROUNDING)
         _, lift, slope, rise = self._moving(index, places)
         rise = rise / slope
         for inside, point in self._on_corners(theta):
@@ -183,7 +189,11 @@ def largest_play(inner: Rest, outer: Rest) -> Extreme:
     cells = np.nonzero((low > 0.0) & (high < 0.0) & (top > value))
     if len(cells[0]):
         roots = bracketed_root(
-            lambda theta: play(theta)[1], x[:, :-1][cells], x[:, 1:][cells], _FLAT
+            lambda theta: play(theta)[1],
+            x[:, :-1][cells],
+            x[:, 1:][cells],
+            _FLAT,
+            (low[cells], high[cells]),
         )
         found = play(roots)[0]
         if found.max() > value:
