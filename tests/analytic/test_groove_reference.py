@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from gearcam.cams.groove import GrooveCam, make_groove
-from gearcam.cams.play import Rest
+from gearcam.cams.lost_motion import Rest
 from helpers_cams import mechanism, there_and_back
 
 CLEARANCE = 0.1
@@ -33,7 +34,7 @@ def reference() -> GrooveCam:
     )
 
 
-def steep(**sizes: float) -> GrooveCam:
+def steep(**sizes: Any) -> GrooveCam:
     """A groove whose outer wall is the first to be undercut."""
     motion = there_and_back("3-4-5", 25.0, (50.0, 130.0, 50.0, 130.0))
     radius = sizes.pop("radius")
@@ -112,11 +113,11 @@ def test_the_play_where_the_follower_rests_is_that_of_two_circles(reference: Gro
     np.testing.assert_allclose(down, expected[1] - math.sqrt(836.0), atol=1e-12)
 
 
-def test_the_largest_play_is_the_clearance_over_the_cosine_to_first_order() -> None:
+def test_the_largest_lost_motion_is_the_clearance_over_the_cosine_to_first_order() -> None:
     alpha = math.radians(31.810726241518)
     for clearance in (1e-2, 1e-3, 1e-4):
         made = make_groove(
             there_and_back("cycloidal", 10.0), mechanism("roller, offset"), clearance=clearance
         )
-        play = made.play.value
+        play = made.lost_motion.value
         assert play / clearance == pytest.approx(1.0 / math.cos(alpha), rel=0.1 * clearance)

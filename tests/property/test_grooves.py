@@ -71,7 +71,7 @@ def demand_groove(design: Given) -> None:
         off = shapely.symmetric_difference(contour.polygon, edge).area
         assert off < 3.0 * CHORD * edge.length + 1e-9
     assert outer.polygon.contains(inner.polygon)
-    play = made.play.value
+    play = made.lost_motion.value
     assert np.isfinite(play)
     assert play >= 0.0
 

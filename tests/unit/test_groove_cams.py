@@ -7,6 +7,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from gearcam.cams.checks import KIND
 from gearcam.cams.follow import follow
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.lost import resting
-from gearcam.cams.play import Rest
+from gearcam.cams.lost_motion import Rest
 from gearcam.designs import loads
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.findings import run_checks
@@ -36,7 +37,9 @@ def read(*changes: tuple[str, str]) -> CamDesign:
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    return loads(text)
+    made = loads(text)
+    assert isinstance(made, CamDesign)
+    return made
 
 
 def refused(*changes: tuple[str, str]) -> dict[str, str]:
@@ -45,7 +48,7 @@ def refused(*changes: tuple[str, str]) -> dict[str, str]:
     return {one.key: f"{one.message}; {one.allowed}" for one in caught.value.problems}
 
 
-def groove(kind: str = "roller", **sizes: float) -> GrooveCam:
+def groove(kind: str = "roller", **sizes: Any) -> GrooveCam:
     swings = kind.startswith("swinging")
     motion = there_and_back("cycloidal", 12.0, swings=swings)
     return make_groove(motion, mechanism(kind), **sizes)
@@ -89,21 +92,21 @@ def test_play_by_dense_points(kind: str) -> None:
 
 
 def test_without_clearance_only_corners_give_play() -> None:
-    assert groove("roller, offset").play.value < 1e-13
+    assert groove("roller, offset").lost_motion.value < 1e-13
     motion = there_and_back("3-4-5", 25.0, STEEP)
     made = make_groove(motion, mechanism("roller", roller_radius=9.5))
     corner = made.outer.corners[0]
     assert made.inner.corners == ()
-    assert made.play.value == pytest.approx(made.outer.shortfall, rel=1e-12)
+    assert made.lost_motion.value == pytest.approx(made.outer.shortfall, rel=1e-12)
     theta = np.linspace(corner.before, corner.after, 400)
     rest = resting(made.outer.mechanism, corner.point, -1)(Jet.variable(theta, 0)).c[0]
     beyond = rest - motion.derivatives(theta, 0)[0]
     assert beyond.min() > -1e-12
-    assert made.play.value == pytest.approx(beyond.max(), rel=1e-4)
+    assert made.lost_motion.value == pytest.approx(beyond.max(), rel=1e-4)
 
 
 @pytest.mark.parametrize("law", ["cycloidal", "constant-velocity"])
-def test_the_largest_play_is_the_largest_of_many(law: str) -> None:
+def test_the_largest_lost_motion_is_the_largest_of_many(law: str) -> None:
     made = make_groove(
         there_and_back(law, 10.0, (60.0, 20.0, 70.0, 210.0)), mechanism("roller"), clearance=0.5
     )
@@ -111,8 +114,8 @@ def test_the_largest_play_is_the_largest_of_many(law: str) -> None:
     inner, outer = (Rest(wall=wall, radius=6.0).lift(theta)[0] for wall in made.walls)
     play = outer - inner
     assert play.min() > 0.0
-    assert play.max() <= made.play.value + 1e-12
-    assert play.max() == pytest.approx(made.play.value, rel=1e-4)
+    assert play.max() <= made.lost_motion.value + 1e-12
+    assert play.max() == pytest.approx(made.lost_motion.value, rel=1e-4)
 
 
 @pytest.mark.parametrize(("limit", "count"), [(0.0999, 1), (0.1001, 0)])
@@ -142,10 +145,12 @@ def test_two_rollers_touch_a_wall_each() -> None:
     smaller = groove("roller", clearance=0.1, radius2=5.0)
     assert smaller.relief is not None
     assert (smaller.relief.side, smaller.relief.mechanism.radius) == (-1, pytest.approx(7.05))
-    assert smaller.play.value == pytest.approx(groove("roller", clearance=0.1).play.value, rel=1e-9)
+    assert smaller.lost_motion.value == pytest.approx(
+        groove("roller", clearance=0.1).lost_motion.value, rel=1e-9
+    )
 
 
-def volume_of(design: CamDesign, gaps: Sequence[tuple[float, float]]) -> float:
+def volume_of(gaps: Sequence[tuple[float, float]]) -> float:
     """Disc less grooves of an area and a depth, and the bore."""
     bore = 0.25 * math.pi * 16.0**2
     disc = 0.25 * math.pi * 110.0**2 - bore
@@ -160,7 +165,7 @@ def test_the_solid_is_the_disc_less_its_groove(side: str) -> None:
     result = gearcam.build(read(PLAIN, ('"front"', f'"{side}"')))
     (mesh,) = result.solids.values()
     inner, outer = (wall.size.area for wall in result.cam.walls)
-    expected = volume_of(result.design, [(outer - inner, 12.0)])
+    expected = volume_of([(outer - inner, 12.0)])
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx(expected, abs=10.0)
     assert result.part.volume == pytest.approx(expected, rel=1e-9)
@@ -179,7 +184,7 @@ def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     assert cam.relief is not None
     inner, outer, wide = (wall.size.area for wall in (*cam.walls, cam.relief))
     upper = outer - wide if radius2 > 6.0 else wide - inner
-    expected = volume_of(result.design, [(outer - inner, 6.0), (upper, 6.0)])
+    expected = volume_of([(outer - inner, 6.0), (upper, 6.0)])
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx(expected, abs=12.0)
     assert result.part.volume == pytest.approx(expected, rel=1e-9)
