@@ -24,9 +24,9 @@ from gearcam.errors import DesignError, InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.numeric.jets import Jet
-from helpers_cams import angles, mechanism, there_and_back
+from helpers_cams import angles, back, mechanism, program, rise, there_and_back
 from helpers_pairs import PROFILES
-from witness.roller_bands import lift
+from witness.roller_bands import band, lift
 
 STEEP = (50.0, 130.0, 50.0, 130.0)
 FILE = (PROFILES / "groove_cam.toml").read_text("utf-8")
@@ -135,6 +135,20 @@ def test_findings_name_the_wall() -> None:
     assert len(found) == 2
     assert all(one.where.startswith("outer wall, at ") for one in found)
     assert all(one.message.startswith("The outer wall is undercut") for one in found)
+
+
+def test_an_undercut_stretch_may_end_in_a_jump_at_the_end_of_the_turn() -> None:
+    """The outer wall runs backwards before it, and the velocity rises at once there."""
+    phases = [rise("constant-velocity", angle, 4.0) for angle in (22.36, 22.36, 292.92)]
+    motion = program([*phases, back("constant-acceleration", 22.36, q=0.5)])
+    made = make_groove(motion, mechanism("roller", prime_radius=15.0, roller_radius=0.75))
+    first, last = (made.outer.undercut[k] for k in (0, -1))
+    assert first == (0.0, 0.0)
+    assert 6.28 < last[0] < last[1]
+    assert made.outer.undercut[-1][1] == pytest.approx(2.0 * math.pi)
+    region = band(made.outer.pitch_contour.vertices @ [1.0, 1.0j], 0.75)
+    off = shapely.symmetric_difference(made.outer.contour.polygon, shapely.Polygon(region.exterior))
+    assert off.area < 3.0 * made.outer.tolerance * region.length
 
 
 def test_two_rollers_touch_a_wall_each() -> None:
