@@ -7,6 +7,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from gearcam.kinds.cam.design import CamDesign
 from gearcam.numeric.jets import Jet
 from helpers_cams import angles, back, mechanism, program, rise, there_and_back
 from helpers_pairs import PROFILES
+from helpers_step_read import read_step
 from witness.roller_bands import band, lift
 
 STEEP = (50.0, 130.0, 50.0, 130.0)
@@ -203,6 +205,31 @@ def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     assert mesh.volume == pytest.approx(expected, abs=12.0)
     assert result.part.volume == pytest.approx(expected, rel=1e-9)
     assert set(result.files("tool-path")) >= {"tool_path_relief.csv", "tool_path_inner.dxf"}
+
+
+@pytest.mark.parametrize("side", ["front", "back"])
+def test_step_holds_the_groove(side: str) -> None:
+    result = gearcam.build(read(PLAIN, ('"front"', f'"{side}"')))
+    (solid,) = read_step(result.files("step")["cam.step"])
+    inner, outer = (wall.size.area for wall in result.cam.walls)
+    assert solid.volume == pytest.approx(volume_of([(outer - inner, 12.0)]), rel=1e-6)
+    middle = result.part.volume, 20.0 * (0.25 * math.pi * (110.0**2 - 16.0**2))
+    low, high = (8.0, 20.0) if side == "front" else (0.0, 12.0)
+    height = (middle[1] * 10.0 - (middle[1] - middle[0]) * 0.5 * (low + high)) / middle[0]
+    assert solid.center[2] == pytest.approx(height, abs=1e-5)
+
+
+def test_the_inner_wall_carries_the_follower(tmp_path: Path) -> None:
+    """From points and from the drawing: lower than asked by no more than the half width's rest."""
+    result = gearcam.build(FILE_DESIGN)
+    cam = result.cam
+    assert isinstance(cam, GrooveCam)
+    file = tmp_path / "cam.dxf"
+    file.write_bytes(result.files("dxf")["cam.dxf"])
+    expected = Rest(wall=cam.inner, radius=6.0).lift(result.angles)[0]
+    for profile in (cam.outline, file):
+        found = result.follow(profile).columns["s"]
+        np.testing.assert_allclose(found, expected, atol=3e-3)
 
 
 def test_files_of_a_groove() -> None:
