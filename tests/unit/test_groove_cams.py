@@ -93,6 +93,46 @@ def test_play_by_dense_points(kind: str) -> None:
             np.testing.assert_allclose(found, places, atol=3e-5)
 
 
+@pytest.mark.parametrize(
+    ("kind", "height", "prime"), [("roller", 25.0, 30.0), ("swinging roller", 22.0, 35.0)]
+)
+def test_a_roller_that_rests_touches_its_wall_and_no_more(
+    kind: str, height: float, prime: float
+) -> None:
+    """On corners too: the distance from its centre to the whole wall is its radius."""
+    swings = kind.startswith("swinging")
+    motion = there_and_back("3-4-5", height, STEEP, swings=swings)
+    follower = mechanism(kind, roller_radius=13.6, prime_radius=prime)
+    made = make_groove(motion, follower, clearance=2.0, tolerance=1e-4)
+    theta = np.linspace(0.0, 2.0 * math.pi, 721)
+    for wall in made.walls:
+        assert wall.corners
+        position = follower.start + Rest(wall=wall, radius=13.6).lift(theta)[0]
+        fixed = follower.pivot - follower.arm * np.exp(-1j * position) if swings else 1j * position
+        center = fixed * np.exp(-1j * theta)
+        places = shapely.points(center.real, center.imag)
+        away = shapely.distance(places, wall.contour.polygon.boundary)
+        np.testing.assert_allclose(away, 13.6, atol=2e-4)
+        assert np.all(shapely.contains(wall.contour.polygon, places) == (wall.side < 0))
+        wide = follower.start + Rest(wall=wall, radius=14.6).lift(theta)[0] - follower.start
+        beyond = wall.side * (motion.derivatives(theta, 0)[0] - wide)
+        assert beyond.max() == pytest.approx(wall.shortfall, rel=1e-2)
+
+
+def test_jumps_of_velocity_round_one_wall_and_cut_the_other() -> None:
+    made = make_groove(
+        there_and_back("constant-velocity", 10.0), mechanism("roller"), clearance=1.0
+    )
+    for wall in made.walls:
+        convex, concave = wall.profile_radius
+        assert convex == 0.0
+        assert concave == pytest.approx(6.5)
+    up = [rise("constant-velocity", 180.0, 10.0), back("cycloidal", 180.0)]
+    hollow = make_groove(program(up), mechanism("roller"), clearance=1.0).outer
+    assert [jump.theta > 0.0 for jump in hollow.program.hard] == [False, True]
+    assert hollow.profile_radius == (0.0, pytest.approx(6.5))
+
+
 def test_without_clearance_only_corners_give_play() -> None:
     assert groove("roller, offset").lost_motion.value < 1e-13
     motion = there_and_back("3-4-5", 25.0, STEEP)
