@@ -24,7 +24,9 @@ from gearcam.designs import loads
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.kinds.cam.design import CamDesign
+from gearcam.laws.motion_formula import MotionFormula
 from gearcam.numeric.jets import Jet
+from gearcam.tolerances import DEFAULT
 from helpers_cams import angles, back, mechanism, program, rise, there_and_back
 from helpers_pairs import PROFILES
 from helpers_step_read import read_step
@@ -127,10 +129,13 @@ def test_jumps_of_velocity_round_one_wall_and_cut_the_other() -> None:
         convex, concave = wall.profile_radius
         assert convex == 0.0
         assert concave == pytest.approx(6.5)
-    up = [rise("constant-velocity", 180.0, 10.0), back("cycloidal", 180.0)]
-    hollow = make_groove(program(up), mechanism("roller"), clearance=1.0).outer
-    assert [jump.theta > 0.0 for jump in hollow.program.hard] == [False, True]
-    assert hollow.profile_radius == (0.0, pytest.approx(6.5))
+    rises = MotionFormula(lift="10*sin(theta/2)").program(DEFAULT, oscillating=False)
+    assert [jump.after - jump.before for jump in rises.hard] == [pytest.approx(10.0)]
+    inner, outer = make_groove(rises, mechanism("roller"), clearance=1.0).walls
+    assert inner.profile_radius[0] > 1.0
+    assert inner.profile_radius[1] == pytest.approx(6.5)
+    assert outer.profile_radius[0] == 0.0
+    assert outer.profile_radius[1] == pytest.approx(inner.profile_radius[0] + 13.0)
 
 
 def test_without_clearance_only_corners_give_play() -> None:
@@ -377,6 +382,12 @@ def test_a_blank_that_the_groove_opens_is_refused_with_the_least() -> None:
     thin = [one for one in result.findings if one.code == "thin-wall"]
     assert [one.value for one in thin] == [pytest.approx(0.0, abs=2e-3)]
     assert "groove and the outline" in thin[0].message
+
+
+def test_a_remedy_for_a_blank_that_is_opened_works() -> None:
+    result = gearcam.build(read(("outer_diameter_mm = 110", "outer_diameter_mm = 90")))
+    found = gearcam.remedies(result, patience=5.0).found
+    assert any("outer_diameter_mm" in str(one.changes) for one in found)
 
 
 def test_a_thin_floor_is_told() -> None:
