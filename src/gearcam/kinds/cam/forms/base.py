@@ -63,6 +63,9 @@ class Form(Protocol):
     rows: ClassVar[tuple[str, ...]] = ()
     """Facts of its own that stand in the tables of its drawings."""
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"
+
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG002
         """Yield what else is wrong by reading with the `parts` of a design, by their titles."""
         yield from ()
