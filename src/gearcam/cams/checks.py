@@ -1,6 +1,7 @@
 """The checks of cams: pressure angles, undercut, shocks, sharp profiles, coarse rows.
 
-Importing this room registers them. A check sees a `DiscCam` and yields findings.
+Importing this room registers them. A check sees a `Cam`, looks at all its motions or walls, and
+yields findings; where there are several, the place names which.
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from gearcam.cams.disc import DiscCam
+from gearcam.cams.cam import Cam
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.spec import KIND
+from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.findings import Remark, check
 from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH, Param
@@ -28,6 +30,11 @@ def pressure_limit(mechanism: Mechanism, given: float) -> float:
     return PRESSURE[mechanism.oscillating] if math.isnan(given) else given
 
 
+def _at(motion: PitchMotion, place: str) -> str:
+    """Return a place on a motion or wall, named where a cam has several."""
+    return f"{motion.called}, {place}" if motion.key else place
+
+
 def _deg(theta: float) -> str:
     return f"{shown(math.degrees(theta))} deg"
 
@@ -41,23 +48,24 @@ def _deg(theta: float) -> str:
         math.nan,
     ),
 )
-def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Remark]:
+def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of large pressure angles on rises and returns.
 
     Looks at: the pressure angle: beyond its limit a translating follower jams in its guide.
     """
-    limit = pressure_limit(cam.mechanism, limit)
-    for kind in ("rise", "return"):
-        found = cam.pressure(kind)
-        if found is None or found.largest <= limit:
-            continue
-        worst = max(found.low, found.high, key=lambda end: abs(end.value))
-        yield Remark(
-            f"The pressure angle on the {kind} reaches {_deg(worst.value)}.",
-            f"{kind}, at {_deg(worst.theta)}",
-            math.degrees(abs(worst.value)),
-            limit=math.degrees(limit),
-        )
+    for motion in cam.motions:
+        largest = pressure_limit(motion.mechanism, limit)
+        for kind in ("rise", "return"):
+            found = motion.pressure(kind)
+            if found is None or found.largest <= largest:
+                continue
+            worst = max(found.low, found.high, key=lambda end: abs(end.value))
+            yield Remark(
+                f"The pressure angle on the {kind} reaches {_deg(worst.value)}.",
+                _at(motion, f"{kind}, at {_deg(worst.theta)}"),
+                math.degrees(abs(worst.value)),
+                limit=math.degrees(largest),
+            )
 
 
 @check(
@@ -65,32 +73,38 @@ def pressure_angle(cam: DiscCam, limit: float) -> Iterator[Remark]:
     kind=KIND,
     limit=("lost_lift", Param(LENGTH, ge=0, doc="lift that trimming may cost"), 0.01),
 )
-def undercut(cam: DiscCam, limit: float) -> Iterator[Remark]:
+def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
     """Tell where a profile is undercut, and the lift that its trimming costs.
 
     Looks at: stretches on which the follower would cut away what it needs elsewhere; they
     are trimmed.
     """
-    left = cam.undercut_ranges
-    lever = cam.mechanism.lever
-    for corner, loss in zip(cam.corners, cam.lost, strict=True):
+    for wall in cam.walls:
+        yield from _undercut(wall, limit)
+
+
+def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
+    left = wall.undercut_ranges
+    lever, swings = wall.mechanism.lever, wall.mechanism.oscillating
+    for corner, loss in zip(wall.corners, wall.lost, strict=True):
         low, high = corner.before, corner.after
         inside = [pair for pair in left if _within(pair, low, high)]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * lever
-        angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if cam.mechanism.oscillating else ""
+        angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if swings else ""
+        much = f"{shown(lost, 4)} mm{angle}"
         yield Remark(
-            f"The profile is {_stretches(inside)}. Trimmed, it has a corner on which the "
-            f"follower rests from {_deg(low)} to {_deg(high)}: it loses up to {shown(lost, 4)} mm"
-            f"{angle} of lift.",
-            f"at {_deg(loss.theta)}",
+            f"The {wall.called} is {_stretches(inside)}. Trimmed, it has a corner on which the "
+            f"follower rests from {_deg(low)} to {_deg(high)}: "
+            + (f"it loses up to {much} of lift." if wall.side > 0 else f"it goes {much} too far."),
+            _at(wall, f"at {_deg(loss.theta)}"),
             lost,
             severity="error" if lost > limit else "warning",
         )
     for pair in left:
         yield Remark(
-            f"The profile is {_stretches([pair])}, so little that trimming costs nothing.",
-            f"at {_deg(pair[0])}",
+            f"The {wall.called} is {_stretches([pair])}, so little that trimming costs nothing.",
+            _at(wall, f"at {_deg(pair[0])}"),
         )
 
 
@@ -109,18 +123,19 @@ def _stretches(pairs: list[tuple[float, float]]) -> str:
     return "undercut " + " and ".join(words)
 
 
-def _shocks(cam: DiscCam, order: int) -> Iterator[tuple[str, float, str]]:
+def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
     """Yield place, jump and unit of every knot whose derivative of this order jumps."""
-    swings = cam.mechanism.oscillating
+    lead = cam.motions[0]
+    swings = lead.mechanism.oscillating
     unit = ("deg/rad" if swings else "mm/rad") + ("2" if order == 2 else "")
-    for jump in cam.program.jumps:
+    for jump in lead.program.jumps:
         if jump.order == order:
             by = jump.after - jump.before
             yield f"at {_deg(jump.theta)}", math.degrees(by) if swings else by, unit
 
 
 @check("hard-shock", kind=KIND)
-def hard_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def hard_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of every knot where the velocity jumps.
 
     Looks at: knots where the velocity jumps.
@@ -136,7 +151,7 @@ def hard_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 
 
 @check("soft-shock", kind=KIND, severity="note")
-def soft_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def soft_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Note every knot where the acceleration jumps.
 
     Looks at: knots where the acceleration jumps.
@@ -155,30 +170,57 @@ def soft_shock(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     kind=KIND,
     limit=("profile_radius", Param(LENGTH, ge=0, doc="least convex radius of the profile"), 1.0),
 )
-def sharp_profile(cam: DiscCam, limit: float) -> Iterator[Remark]:
+def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a sharp profile.
 
     Looks at: the smallest convex radius of an untrimmed profile: sharp ones wear and pit.
     """
-    convex, _ = cam.profile_radius
-    if not cam.corners and convex < limit:
-        yield Remark(
-            f"The smallest convex radius of the profile is {shown(convex, 4)} mm.", value=convex
-        )
+    for wall in cam.walls:
+        convex, _ = wall.profile_radius
+        if not wall.corners and convex < limit:
+            yield Remark(
+                f"The smallest convex radius of the {wall.called} is {shown(convex, 4)} mm.",
+                wall.called if wall.key else "",
+                value=convex,
+            )
 
 
 @check("coarse-rows", kind=KIND, unit="mm")
-def coarse_rows(cam: DiscCam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a motion that is known less well than the profile is cut.
 
     Looks at: the estimated error of the lift between the rows of its table.
     """
-    error = cam.program.error * cam.mechanism.lever
-    if error > cam.tolerance:
+    lead = cam.motions[0]
+    error = lead.program.error * lead.mechanism.lever
+    if error > lead.tolerance:
         yield Remark(
             f"Between the rows of its table the lift is known to {shown(error, 3)} mm, the profile "
-            f"is cut to {shown(cam.tolerance, 3)} mm: the rows are coarse, or they scatter.",
+            f"is cut to {shown(lead.tolerance, 3)} mm: the rows are coarse, or they scatter.",
             "motion",
             error,
-            limit=cam.tolerance,
+            limit=lead.tolerance,
+        )
+
+
+@check(
+    "lost-motion",
+    kind=KIND,
+    limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between walls"), 0.1),
+)
+def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
+    """Warn of a follower that moves while the cam stands still.
+
+    Looks at: the largest lost motion of a follower that two walls hold: from one to the other.
+    """
+    found, mechanism = cam.lost_motion, cam.motions[0].mechanism
+    if found is None:
+        return
+    lost = found.value * mechanism.lever
+    angle = f" ({shown(math.degrees(found.value), 4)} deg)" if mechanism.oscillating else ""
+    if lost > limit:
+        yield Remark(
+            f"Between its walls the follower has {shown(lost, 4)} mm{angle} of lost motion.",
+            f"at {_deg(found.theta)}",
+            lost,
         )

@@ -3,7 +3,7 @@
 Refused: lifts that bring the follower onto the cam's axis or its arm over the line of centres,
 flat followers that swing down faster than the cam turns.
 
-Depends on wall and mechanism.
+Depends on cam, wall and mechanism.
 """
 
 from __future__ import annotations
@@ -12,11 +12,9 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
+from gearcam.cams.cam import Cam
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
-from gearcam.display import Displayed
 from gearcam.errors import InfeasibleError
 from gearcam.facts import Fact, Facts
 from gearcam.laws.program import Program
@@ -26,7 +24,7 @@ _STANDSTILL = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class DiscCam(Wall, Displayed):
+class DiscCam(Wall, Cam):
     """A disc cam, which is its own only wall (see `gearcam.cams.wall.PitchMotion`)."""
 
     @property
@@ -53,14 +51,6 @@ class DiscCam(Wall, Displayed):
             "chord_error_mm": self.contour.chord_error,
         }
         return Facts(tree, ("total_lift",), "disc cam")
-
-    def picture(self) -> str:
-        """Return a picture of profile and pitch curve, SVG, in the cam's frame."""
-        from gearcam.markup import outlines
-
-        pitch = self.pitch_contour.vertices
-        dashed = [] if self.pitch_contour is self.contour else [np.vstack([pitch, pitch[:1]])]
-        return outlines(self.facts.headline, [self.outline], dashed)
 
 
 def make_cam(

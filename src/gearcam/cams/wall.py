@@ -31,6 +31,7 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.jets import Jet
 from gearcam.numeric.sampling import Sampler
 
 CHORD_TOLERANCE = 1e-3
@@ -57,12 +58,18 @@ class PitchMotion(Brief):
         Whether the cam turns clockwise.
     tolerance : float, mm
         Chord error of contours.
+    key : str
+        What names of its files and facts end in; empty of a cam's only one.
+    called : str
+        What people call what is cut.
     """
 
     program: Program
     mechanism: Mechanism
     clockwise: bool = False
     tolerance: float = CHORD_TOLERANCE
+    key: str = ""
+    called: str = "profile"
 
     @cached_property
     def curve(self) -> CamCurve:
@@ -105,26 +112,26 @@ class PitchMotion(Brief):
         Returns
         -------
         dict of str to (n,) array
-            ``s, ds, d2s, d3s`` in mm or rad, ``pressure`` in rad, ``rho_pitch`` and
-            ``rho_profile`` in mm, infinite where straight.
+            ``s, ds, d2s, d3s`` in mm or rad, ``pressure`` in rad, ``rho_pitch`` in mm, infinite
+            where straight.
         """
         s, ds, d2s, d3s = self.program.derivatives(theta, 3)
         found = self.curve.contact(theta, 0)
-        turning = found.turning.c[0] + np.zeros_like(s)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            pitch, profile = (
-                np.where(turning == 0.0, np.inf, values.c[0] / turning)
-                for values in (found.pitch_speed, found.speed)
-            )
         return {
             "s": s,
             "ds": ds,
             "d2s": d2s,
             "d3s": d3s,
             "pressure": found.pressure.c[0] + np.zeros_like(s),
-            "rho_pitch": pitch,
-            "rho_profile": profile,
+            "rho_pitch": _radii(found.pitch_speed, found.turning) + np.zeros_like(s),
         }
+
+
+def _radii(speed: Jet, turning: Jet) -> Array:
+    """Return radii of curvature, infinite where straight."""
+    turn = turning.c[0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(turn == 0.0, np.inf, speed.c[0] / turn)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -143,8 +150,8 @@ class Wall(PitchMotion):
     Parameters
     ----------
     side : {1, -1}
-        Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; lost lift
-        and smallest radii are told of walls inside only.
+        Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; then it is
+        a follower that is pressed outwards that loses lift.
     """
 
     side: int = 1
@@ -155,6 +162,37 @@ class Wall(PitchMotion):
         radius = self.side * self.mechanism.radius
         return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
 
+    def motion(self, theta: Array) -> dict[str, Array]:
+        """Return motion and contact at cam angles (see `PitchMotion.motion`), with own radii.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles; at a knot the values after it count.
+
+        Returns
+        -------
+        dict of str to (n,) array
+            Those, and ``rho_profile`` in mm (see `radii`).
+        """
+        return {**super().motion(theta), "rho_profile": self.radii(theta)}
+
+    def radii(self, theta: Array) -> Array:
+        """Return radii of curvature before trimming, mm.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles; at a knot the values after it count.
+
+        Returns
+        -------
+        (n,) array
+            Positive where the metal is convex, infinite where straight.
+        """
+        found = self.curve.contact(theta, 0)
+        return self.side * _radii(found.speed, found.turning) + np.zeros_like(theta)
+
     @cached_property
     def profile_radius(self) -> tuple[float, float]:
         """Smallest convex and smallest concave radius of the profile, mm; a corner has radius 0.
@@ -164,12 +202,14 @@ class Wall(PitchMotion):
         if self.face_radius is not None:
             convex, concave = self.face_radius.low.value, math.inf
         else:
-            found, radius = self.pitch_curvature(), self.curve.mechanism.radius
+            found, radius = self.pitch_curvature(), self.mechanism.radius
             low, high = (found.low.value, found.high.value) if found else (0.0, 0.0)
+            if self.side < 0:
+                low, high = -high, -low
             convex = 1.0 / high - radius if high > 0.0 else math.inf
             concave = -1.0 / low + radius if low < 0.0 else math.inf
             for jump in self.program.hard:
-                if jump.after > jump.before:  # it rolls about its own centre
+                if self.side * (jump.after - jump.before) > 0.0:  # it rolls about its own centre
                     concave = min(concave, radius)
                 else:
                     convex = 0.0
@@ -224,7 +264,9 @@ class Wall(PitchMotion):
     @cached_property
     def lost(self) -> tuple[Extreme, ...]:
         """Largest lift, mm or rad, that each corner costs, with its cam angle, rad."""
-        return tuple(lost_lift(self.program, self.mechanism, corner) for corner in self.corners)
+        return tuple(
+            lost_lift(self.program, self.mechanism, corner, self.side) for corner in self.corners
+        )
 
     @cached_property
     def shortfall(self) -> float:
@@ -258,7 +300,7 @@ class Wall(PitchMotion):
         seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
         if not seen_whole and not made.polygon.is_valid:
             raise InfeasibleError(
-                "the profile crosses itself, and what is left of it cannot be told",
+                f"the {self.called} crosses itself, and what is left of it cannot be told",
                 where="[cam]",
                 nearest="no piece of it has a place in the order of the others",
             )

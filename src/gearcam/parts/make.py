@@ -13,7 +13,7 @@ import numpy as np
 from gearcam.errors import Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.body import Hub, Mark, Part
+from gearcam.parts.body import Hub, Mark, Part, Recess
 from gearcam.parts.openings import Workpiece, openings, solid_of
 from gearcam.parts.shapes import Circle
 
@@ -25,7 +25,10 @@ def make_part(
     blank: WheelBlank,
     work: Workpiece,
     marker: Callable[[], Mark] | None = None,
+    *,
     inner: Sequence[Contour] = (),
+    recesses: tuple[Recess, ...] = (),
+    room: Sequence[Contour] = (),
 ) -> Part:
     """Make the part of a wheel or a ring.
 
@@ -45,6 +48,10 @@ def make_part(
         Gives the timing mark; called only if marks are wanted.
     inner : sequence of Contour
         Of a ring: the true inner edges.
+    recesses : tuple of Recess
+        What is milled out of its faces.
+    room : sequence of Contour
+        What openings and hub keep within; the outlines where left out.
 
     Returns
     -------
@@ -55,11 +62,11 @@ def make_part(
     InfeasibleError
         If something has no room, or meets something else.
     """
-    found = openings(blank, contours, work, inner)
+    found = openings(blank, room or contours, work, inner)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
-        _demand_within(hub, contours, work)
+        _demand_within(hub, room or contours, work)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     part = Part(
         name=name,
@@ -69,6 +76,7 @@ def make_part(
         inner=tuple(inner),
         hub=hub,
         marks=marks,
+        recesses=recesses,
     )
     _demand_marks(part, blank, work)
     return part

@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.cams.checks import KIND
-from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
-from gearcam.cams.mechanism import Mechanism, make_mechanism
 from gearcam.findings import Finding, in_order, run_checks
-from gearcam.kinds.cam.design import STEM, CamDesign
+from gearcam.kinds.cam.design import CamDesign
+from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.laws.program import Program, make_program
-from gearcam.numeric.arguments import angles
+from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
@@ -28,6 +27,9 @@ from gearcam.result import Progress, Result
 from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
+    from gearcam.cams.cam import Cam
+    from gearcam.cams.mechanism import Mechanism
+    from gearcam.cams.wall import PitchMotion
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.study import Study
@@ -37,9 +39,6 @@ FOLLOWED: Final = "followed.csv"
 
 _WHOLE: Final = 1e-9
 """Part of a step by which a turn may fall short of a whole number of them: rounding."""
-
-_RIM_PART = 2.0 / 3.0
-"""Rim that lightening holes keep where the design gives none, in thicknesses."""
 
 
 class CamResult(Result):
@@ -74,29 +73,34 @@ class CamResult(Result):
             make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
             return make(self.tolerances, oscillating=swings)
 
-    @cached_property
-    def mechanism(self) -> Mechanism:
-        """The follower's numbers."""
-        return make_mechanism(self.design.follower, self.design.cam)
+    @property
+    def form(self) -> Form:
+        """What the cam's form says of it."""
+        return FORMS[self.design.cam.form]
 
     @cached_property
-    def cam(self) -> DiscCam:
+    def cam(self) -> Cam:
         """The cam; its curves and measures are computed when they are asked for."""
         program = self.program
         with self.stage("cam"):
-            return make_cam(
-                program,
-                self.mechanism,
-                clockwise=self.design.cam.clockwise,
-                tolerance=self.design.output.chord_tolerance or CHORD_TOLERANCE,
-            )
+            return self.form.make(self.design, program)
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The follower's numbers, of conjugate cams those on the first."""
+        return self.cam.motions[0].mechanism
 
     @cached_property
-    def profile(self) -> Contour:
-        """The profile, counter-clockwise, in the cam's frame."""
+    def profiles(self) -> tuple[Contour, ...]:
+        """The walls, counter-clockwise, in the cam's frame, in the order of `Cam.walls`."""
         cam = self.cam
         with self.stage("profile"):
-            return cam.contour
+            return tuple(wall.contour for wall in cam.walls)
+
+    @property
+    def profile(self) -> Contour:
+        """The first of them: of a disc cam the profile."""
+        return self.profiles[0]
 
     @property
     def angles(self) -> Array:
@@ -132,22 +136,26 @@ class CamResult(Result):
             If the cam cannot be made.
         """
         theta = self.angles if theta is None else angles("theta", theta)
-        found = self.cam.motion(theta)
+        motions, walls = self.cam.motions, self.cam.walls
+        found = motions[0].motion(theta)
         oscillating = self.design.follower.oscillating
         unit, scale = ("deg", math.degrees(1.0)) if oscillating else ("mm", 1.0)
         names = ("lift_{}", "velocity_{}_per_rad", "acceleration_{}_per_rad2", "jerk_{}_per_rad3")
-        return Columns(
-            {
-                "theta_deg": np.degrees(theta),
-                **{
-                    name.format(unit): scale * found[short]
-                    for name, short in zip(names, ("s", "ds", "d2s", "d3s"), strict=True)
-                },
-                "pressure_angle_deg": np.degrees(found["pressure"]),
-                "rho_pitch_mm": found["rho_pitch"],
-                "rho_profile_mm": found["rho_profile"],
-            }
-        )
+        columns = {
+            "theta_deg": np.degrees(theta),
+            **{
+                name.format(unit): scale * found[short]
+                for name, short in zip(names, ("s", "ds", "d2s", "d3s"), strict=True)
+            },
+        }
+        told = [found, *(one.motion(theta) for one in motions[1:])]
+        for one, values in zip(motions, told, strict=True):
+            columns[f"pressure_angle{_ending(one)}_deg"] = np.degrees(values["pressure"])
+        for one, values in zip(motions, told, strict=True):
+            columns[rho_column("pitch", one)] = values["rho_pitch"]
+        for wall in walls:
+            columns[rho_column("profile", wall)] = wall.radii(theta)
+        return Columns(columns)
 
     @property
     def ordered(self) -> bool:
@@ -157,24 +165,26 @@ class CamResult(Result):
         return self.design.blank != blank or not set(self.design.output.files) <= plain
 
     @cached_property
-    def part(self) -> Part:
-        """The cam as a part: bore, hub, holes, moved edges."""
-        from gearcam.parts.make import finished, make_part
-        from gearcam.parts.openings import RIM, Workpiece
-
-        profile, thickness = self.profile, self.design.cam.thickness
+    def parts(self) -> tuple[Part, ...]:
+        """The cam as it is made: as one part, or as several."""
+        profiles = self.profiles  # a stage of its own
         with self.stage("part"):
-            place = Workpiece(name=STEM, module=_RIM_PART * thickness / RIM)
-            blank = self.design.blank
-            return make_part(STEM, [finished(profile, blank, place)], thickness, blank, place)
+            return self.form.parts(self) if profiles else ()
 
-    def contact(self, theta: ArrayLike | None = None) -> Columns:
-        """Return where the follower touches the profile (before clearance).
+    @property
+    def part(self) -> Part:
+        """The cam as a part, of several parts the first: bore, hub, holes, moved edges."""
+        return self.parts[0]
+
+    def contact(self, theta: ArrayLike | None = None, wall: str | None = None) -> Columns:
+        """Return where the follower touches the profile, or a wall (before clearance).
 
         Parameters
         ----------
         theta : float or (n,) array, rad, optional
             Cam angles, any number of turns; those of `motion` where left out.
+        wall : str, optional
+            The key of a wall; the first where left out.
 
         Returns
         -------
@@ -188,12 +198,14 @@ class CamResult(Result):
         Raises
         ------
         DesignError
-            If `theta` is no row of finite numbers.
+            If `theta` is no row of finite numbers, or there is no such wall.
         InfeasibleError
             If the cam cannot be made.
         """
+        walls = {one.key: one for one in self.cam.walls}
+        key = next(iter(walls)) if wall is None else one_of("wall", wall, tuple(walls))
         asked = self.angles if theta is None else angles("theta", theta)
-        left, points, normals = self.cam.places_at(asked)
+        left, points, normals = walls[key].places_at(asked)
         fixed = points * np.exp((-1j if self.design.cam.clockwise else 1j) * left)
         return Columns(
             {
@@ -208,22 +220,27 @@ class CamResult(Result):
         )
 
     @cached_property
-    def parts(self) -> tuple[Part]:
-        """The cam as the only part."""
-        return (self.part,)
+    def contours(self) -> tuple[Contour, ...]:
+        """The walls as made, in the order of `Cam.walls`: with clearance."""
+        return self.form.made(self) if self.ordered else self.profiles
 
     @property
     def contour(self) -> Contour:
-        """The profile as made: with its clearance."""
-        return self.part.contour if self.ordered else self.profile
+        """The first of them: of a disc cam the profile with its clearance."""
+        return self.contours[0]
 
     @cached_property
     def part_subject(self) -> PartsSubject:
         """What the checks of parts look at."""
         from gearcam.parts.checks import PartsSubject
 
-        kerf = self.design.output.kerf
-        return PartsSubject(parts=(self.part,), names=(STEM,), kerf=kerf, uncut=(False,))
+        parts = self.parts
+        return PartsSubject(
+            parts=parts,
+            names=tuple(part.name for part in parts),
+            kerf=self.design.output.kerf,
+            uncut=(False,) * len(parts),
+        )
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
@@ -269,7 +286,7 @@ class CamResult(Result):
         if progress is not None:
             progress("follow", 1, 2)
         with self.stage("follow"):
-            columns, facts = followed(self.cam, vertices, bulges, self.angles)
+            columns, facts = followed(self.cam.motions[0], vertices, bulges, self.angles)
         return Study(
             result=self,
             file=FOLLOWED,
@@ -277,6 +294,16 @@ class CamResult(Result):
             measured={"followed": facts},
             findings=self.findings,
         )
+
+
+def _ending(one: PitchMotion) -> str:
+    """Return what follows in the names of columns of a motion or wall."""
+    return f"_{one.key}" if one.key else ""
+
+
+def rho_column(what: str, one: PitchMotion) -> str:
+    """Return the column of radii of a ``pitch`` curve or a ``profile``: `what`, of which `one`."""
+    return f"rho_{what}{_ending(one)}_mm"
 
 
 def build(design: CamDesign, tolerances: Tolerances = DEFAULT) -> CamResult:

@@ -11,6 +11,7 @@ import numpy as np
 from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
 from gearcam.findings import limit_of
+from gearcam.kinds.cam.build import rho_column
 from gearcam.numeric.columns import Columns
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
@@ -53,16 +54,27 @@ def _pressure_angle(result: CamResult) -> Chart:
     )
 
 
+def _radii(result: CamResult) -> dict[str, str]:
+    """Return the columns of radii of the motion's table, by what a chart calls them."""
+    pitches = {
+        f"pitch curve {one.key}".strip(): rho_column("pitch", one) for one in result.cam.motions
+    }
+    walls = {
+        f"{one.called} before trimming": rho_column("profile", one) for one in result.cam.walls
+    }
+    return pitches | walls
+
+
 def _curvature(result: CamResult) -> Chart:
     table, radius = _table(result), result.mechanism.radius
     with np.errstate(divide="ignore"):
-        pitch, profile = (1.0 / table[f"rho_{name}_mm"] for name in ("pitch", "profile"))
-    largest = _TIMES * max(1.0 / radius if radius else 0.0, float(np.abs(pitch).max()))
+        lines = {label: 1.0 / table[name] for label, name in _radii(result).items()}
+    pitch = [np.abs(values).max() for label, values in lines.items() if label.startswith("pitch")]
+    largest = _TIMES * max(1.0 / radius if radius else 0.0, *map(float, pitch))
     tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
     limits = [Limit(label="tool at hand, concave profile", value=-2.0 / tool)] if tool else []
     if radius > 0.0:
         limits.append(Limit(label="roller, convex pitch curve", value=1.0 / radius))
-    lines = {"pitch curve": pitch, "profile before trimming": profile}
     if result.mechanism.flat:
         del lines["pitch curve"]
     return Chart(

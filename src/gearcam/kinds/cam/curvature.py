@@ -7,20 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.cams.disc import DiscCam
+from gearcam.cams.measures import undercut
 from gearcam.cams.three_points import curvature_study
+from gearcam.cams.wall import PitchMotion
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Plane
 
 
 def curvature_columns(
-    cam: DiscCam, counts: Sequence[int]
+    motion: PitchMotion, counts: Sequence[int]
 ) -> tuple[dict[str, Array], dict[str, Any]]:
     """Return the error of three-point curvature against the spacing of the points.
 
     Parameters
     ----------
-    cam : DiscCam
+    motion : PitchMotion
         Its pitch curve is studied, of a flat follower its profile.
     counts : sequence of int
         Numbers of points, at even cam angles.
@@ -37,8 +38,8 @@ def curvature_columns(
     InfeasibleError
         If the profile has cusps, where there is no curvature.
     """
-    curve, flat = cam.curve, cam.mechanism.flat
-    if flat and cam.undercut:
+    curve, flat = motion.curve, motion.mechanism.flat
+    if flat and undercut(curve):
         raise InfeasibleError(
             "the undercut profile has cusps: their curvature cannot be studied",
             where="output.files",
@@ -46,7 +47,7 @@ def curvature_columns(
         )
 
     def points(theta: Array) -> Plane:
-        s, ds = cam.program.derivatives(theta, 1)
+        s, ds = motion.program.derivatives(theta, 1)
         return np.conj(curve.trace(theta, s, ds, 0.0)[0])  # mirrored: counter-clockwise
 
     def exact(theta: Array) -> Array:

@@ -18,6 +18,7 @@ from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
+from gearcam.kinds.cam.forms.base import form_faults, form_schema
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
@@ -33,13 +34,10 @@ if TYPE_CHECKING:
 NAME: Final = "cam"
 """As in a file."""
 
-STEM: Final = "cam"
-"""Stem of its files."""
-
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 
-LATER_FORMS: Final = ("groove", "conjugate", "cylinder", "translating")
+LATER_FORMS: Final = ("conjugate", "cylinder", "translating")
 """Forms of cams that are planned."""
 
 _OF_WHEELS: Final = ("stop_pin", "tip_rounding", "timing_marks", "mark_diameter")
@@ -192,6 +190,9 @@ def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     output, follower = document.get("output"), document.get("follower")
     yield from output_faults(output)
     yield from _tool_faults(output, follower)
+    if "cam" in found.parts:
+        owners = {"follower": FollowerSpec, "cam": CamSpec}
+        yield from form_faults(found.parts["cam"].form, found.parts, owners)
     if "follower" in found.parts and "cam" in found.parts:
         told = size_problems(found.parts["follower"], found.parts["cam"])
         yield from told_faults(told, table_of("cam", CamSpec), document["cam"], ("cam",))
@@ -209,7 +210,7 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
 
 KIND: Final = DesignKind(
     name=NAME,
-    doc="a disc cam with its follower",
+    doc="a cam with its follower",
     design=CamDesign,
     main=TITLE,
     examine_main=_examine_motion,
@@ -223,6 +224,7 @@ KIND: Final = DesignKind(
     },
     required=("follower", "cam"),
     one_of={"cam": ("prime_radius_mm", "base_radius_mm")},
+    conditions={"cam": partial(form_schema, "cam", CamSpec)},
     rules=_rules,
     later=_later,
     formats=CAM_FORMATS,

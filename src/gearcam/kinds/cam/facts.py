@@ -12,10 +12,10 @@ from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
+from gearcam.kinds.cam.wall_facts import ends_of
 from gearcam.numerals import shown
 
 if TYPE_CHECKING:
-    from gearcam.cams.measures import Range
     from gearcam.kinds.cam.build import CamResult
     from gearcam.laws.program import Program
 
@@ -89,9 +89,8 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
 
 
 def _cam(result: CamResult) -> Tree:
-    design, cam, mechanism = result.design, result.cam, result.mechanism
+    design, mechanism = result.design, result.mechanism
     given, swings = design.follower, mechanism.oscillating
-    corners, place = bool(cam.corners), cam.contact_place
     return {
         "form": design.cam.form,
         "follower": f"{given.motion} {given.type}",
@@ -106,40 +105,8 @@ def _cam(result: CamResult) -> Tree:
         "base_radius_mm": mechanism.least - mechanism.radius,
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": _pressure(result),
-        "curvature": _curvature(result),
-        "undercut": [[math.degrees(low), math.degrees(high)] for low, high in cam.undercut_ranges],
-        "start_angle_deg": math.degrees(mechanism.start) if swings else None,
-        "lost_lift_deg": math.degrees(cam.shortfall) if corners and swings else None,
-        "lost_lift_mm": cam.shortfall if corners and not swings else None,
-        "contact_mm": None
-        if place is None
-        else Fact(_ends(place), "contact along the face", shown=True),
-        "profile": _profile(result),
+        **result.form.facts(result),
     }
-
-
-def _profile(result: CamResult) -> Tree:
-    """Return the sizes of the profile as made: with clearance those of its parallel."""
-    cam, contour, clearance = result.cam, result.contour, result.design.blank.clearance
-    reach = np.hypot(*contour.vertices.T)
-    least = min(float(reach.min()), cam.nearest_flat - clearance)
-    common = {
-        "chord_error_mm": contour.chord_error,
-        "vertices": len(contour.vertices),
-        "radius_mm": extent(least, float(reach.max())),
-    }
-    if clearance:
-        return {"clearance_mm": clearance, "area_mm2": contour.moments.area, **common}
-    return {
-        "perimeter_mm": cam.size.perimeter,
-        "area_mm2": cam.size.area,
-        "least_vertices": cam.sampler.least,
-        **common,
-    }
-
-
-def _ends(found: Range, scale: float = 1.0) -> dict[str, float]:
-    return extent(found.low.value, found.high.value, scale)
 
 
 def _pressure(result: CamResult) -> Tree:
@@ -147,7 +114,7 @@ def _pressure(result: CamResult) -> Tree:
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = pressure_limit(result.mechanism, given)
     for kind in ("rise", "return"):
-        found = result.cam.pressure(kind)
+        found = result.cam.motions[0].pressure(kind)
         if found is not None:
             worst = max(found.low, found.high, key=lambda end: abs(end.value))
             made[f"{kind}_max"] = Fact(
@@ -158,43 +125,22 @@ def _pressure(result: CamResult) -> Tree:
                 unit="deg",
                 shown=found.largest > 0.0,
             )
-            made[kind] = Fact(_ends(found, math.degrees(1.0)), unit="deg")
+            made[kind] = Fact(ends_of(found, math.degrees(1.0)), unit="deg")
     return made
 
 
-def _curvature(result: CamResult) -> Tree:
-    """Smallest radii: of any sign, and of the convex and concave parts of the profile."""
-    cam = result.cam
-    convex, concave = cam.profile_radius
-    made = {"profile_min_mm": min(convex, concave)}
-    whole = cam.pitch_curvature()
-    made["pitch_min_mm"] = min(convex, concave) if whole is None else 1.0 / whole.largest
-    for kind in ("rise", "return"):
-        found = cam.pitch_curvature(kind)
-        if found is not None:
-            made[f"pitch_{kind}_min_mm"] = 1.0 / found.largest
-    made |= {"profile_convex_min_mm": convex, "profile_concave_min_mm": concave}
-    facts: Tree = {name: value for name, value in made.items() if math.isfinite(value)}
-    words = {
-        "profile_convex_min_mm": "smallest convex radius",
-        "profile_concave_min_mm": "smallest concave radius",
-    }
-    for name in words.keys() & facts.keys():
-        facts[name] = Fact(facts[name], words[name], shown=True)
-    return facts
-
-
-def _part(result: CamResult) -> Tree:
-    """Return what is known of a cam as a part, if one is ordered."""
+def _part(result: CamResult) -> Tree | list[Tree]:
+    """Return what is known of a cam as a part, or as several, if they are ordered."""
     if not result.ordered:
         return {}
-    (tools,) = result.part_subject.tools
-    return part_facts(result.part, tools, result.design.blank.density)
+    rows = zip(result.parts, result.part_subject.tools, strict=True)
+    told = [part_facts(part, tools, result.design.blank.density) for part, tools in rows]
+    return told[0] if len(told) == 1 else told
 
 
 def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
     """Error estimates, and how each was made."""
-    reach = float(np.abs(result.profile.vertices).max())
+    reach = max(float(np.abs(one.vertices).max()) for one in result.profiles)
     rounding = 16.0 * np.finfo(float).eps * reach
     rows = {"profile_mm": (rounding, "rounding of closed forms at the largest radius")}
     if result.program.error:
@@ -203,8 +149,12 @@ def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
         how = "the lift, between the places that it was computed from, and rounding"
         rows = {"profile_mm": (lever * result.program.error + rounding, how)}
     if not result.design.blank.clearance:
-        size = result.cam.size
         how = "Gauss-Legendre quadrature with half the cells, and rounding"
-        rows |= {"perimeter_mm": (size.perimeter_error, how), "area_mm2": (size.area_error, how)}
+        for wall in result.cam.walls:
+            prefix, size = f"{wall.key}_" if wall.key else "", wall.size
+            rows |= {
+                f"{prefix}perimeter_mm": (size.perimeter_error, how),
+                f"{prefix}area_mm2": (size.area_error, how),
+            }
     kerf = result.design.output.kerf
-    return accuracy(rows, result.contour.chord_error, kerf, measured)
+    return accuracy(rows, max(one.chord_error for one in result.contours), kerf, measured)

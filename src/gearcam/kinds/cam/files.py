@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
 from gearcam.export.shared import (
     STEP_PART,
     Files,
@@ -20,16 +19,15 @@ from gearcam.export.shared import (
     sheet_bytes,
     sheet_rows,
 )
-from gearcam.kinds.cam.design import STEM
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing, Shape
+    from gearcam.cams.wall import Wall
+    from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
+    from gearcam.numeric.arrays import Array
+    from gearcam.numeric.contour import Contour
 
 Measured = dict[str, Any]
-
-TOOL_PATH: Final = "tool_path"
-"""Stem of the files of a cutter's way."""
 
 _ROWS: Final = (
     "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
@@ -48,15 +46,16 @@ _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 
 
 def _dxf(result: CamResult, measured: Measured) -> Files:
-    return drawn([_cut(result)], _style(result), measured)
+    return drawn(_cut(result), _style(result), measured)
 
 
 def _cut_svg(result: CamResult, _: Measured) -> Files:
-    return cut_files([_cut(result)], result.design.name, result.design.output.kerf)
+    return cut_files(_cut(result), result.design.name, result.design.output.kerf)
 
 
 def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
-    return {f"{STEM}.{kind}": mesh_bytes(meshes([result.part], measured), kind, STEM)}
+    solids = meshes(result.parts, measured)
+    return {f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()}
 
 
 def _tables(result: CamResult, _: Measured) -> Files:
@@ -65,76 +64,35 @@ def _tables(result: CamResult, _: Measured) -> Files:
     columns = {
         _SHORT.get(name.partition("_")[0], name): values for name, values in result.motion().items()
     }
+    walls = zip(result.cam.walls, result.contours, strict=True)
     return {
-        "profile.csv": outline_bytes(result.contour.vertices),
+        **{_named("profile", wall): outline_bytes(made.vertices) for wall, made in walls},
         "motion.csv": table_bytes(columns),
     }
+
+
+def _named(stem: str, wall: Wall) -> str:
+    """Return the name of a table of a wall."""
+    return f"{stem}_{wall.key}.csv" if wall.key else f"{stem}.csv"
 
 
 def _style(result: CamResult) -> Any:
     return dxf_style(result.design.output, result.profile.tolerance)
 
 
-def _drawing(result: CamResult, *, assembled: bool = False) -> Drawing:
-    from gearcam.drawings import cam_drawing
-
-    design, cam = result.design, result.cam
-    pitch = None if cam.pitch_contour is result.part.contour else cam.pitch_contour
-    prime, side = cam.mechanism.least, -1.0 if design.cam.clockwise else 1.0
-    if not assembled:
-        return cam_drawing(result.part, pitch, prime)
-    pose = design.output.pose
-    return cam_drawing(result.part, pitch, prime, _follower(result, pose), angle=side * pose)
-
-
-def _cut(result: CamResult) -> Drawing:
-    """Return what a cutter follows: the part, or paths with the kerf."""
+def _cut(result: CamResult) -> list[Drawing]:
+    """Return what a cutter follows: the parts, or paths with the kerf."""
     from gearcam.drawings import cut_drawing
 
-    return cut_drawing(_drawing(result), result.design.output.kerf)
-
-
-def _follower(result: CamResult, theta: float) -> list[Shape]:
-    """Return the follower as it stands at a cam angle."""
-    from gearcam.drawings import Circle, Path
-
-    cam, m = result.cam, result.mechanism
-    side = -1.0 if result.design.cam.clockwise else 1.0
-    position = m.start + float(cam.program.derivatives(theta, 0)[0])
-    reach = 1.2 * float(np.hypot(*result.profile.vertices.T).max())
-
-    def path(*points: complex) -> Path:
-        return Path(points=np.array([[side * z.real, z.imag] for z in points]), closed=False)
-
-    if m.flat and m.oscillating:
-        along = np.exp(-1j * position)
-        foot = m.pivot - m.face_offset * 1j * along
-        return [
-            path(complex(m.pivot), complex(foot), complex(foot - along * (m.pivot + 0.4 * reach)))
-        ]
-    if m.flat:
-        found = cam.contact_place
-        wide = 0.2 * reach + (found.largest if found is not None else 0.0)
-        stem = complex(m.offset, position), complex(m.offset, position + 0.5 * reach)
-        return [path(complex(-wide, position), complex(wide, position)), path(*stem)]
-    if m.oscillating:
-        center = complex(m.pivot - m.arm * np.exp(-1j * position))
-        line = path(complex(m.pivot), center)
-    else:
-        center = complex(m.offset, position)
-        line = path(center, center + 0.5j * reach)
-    if m.radius == 0.0:
-        return [line]
-    middle = np.array([side * center.real, center.imag])
-    return [Circle(center=middle, diameter=2.0 * m.radius), line]
+    kerf = result.design.output.kerf
+    return [cut_drawing(one, kerf) for one in result.form.drawings(result)]
 
 
 def _picture(result: CamResult, _: Measured) -> Files:
     from gearcam.export.svg import svg_bytes
 
-    drawing = _drawing(result, assembled=True)
-    notes = result.facts.headline
-    return {f"{STEM}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
+    drawing, notes = result.form.picture(result), result.facts.headline
+    return {f"{drawing.name}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
 
 
 def _step(result: CamResult, _: Measured) -> Files:
@@ -142,65 +100,71 @@ def _step(result: CamResult, _: Measured) -> Files:
     from gearcam.export.step import step_bytes
 
     tolerance = STEP_PART * result.profile.tolerance
-    return {f"{STEM}.step": step_bytes([(result.part, UNMOVED)], STEM, tolerance)}
+    return {
+        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance)
+        for part in result.parts
+    }
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
     from gearcam.sheets import wheel_sheet
 
     other = "prime" if result.mechanism.flat else "base"
-    names = [name for name in _ROWS if name != f"cam.{other}_radius_mm"]
-    sheet = wheel_sheet(result.part, sheet_rows(result.facts, names), result.design.name)
-    return sheet_bytes(sheet, _style(result), ending)
+    names = [name for name in (*_ROWS, *result.form.rows) if name != f"cam.{other}_radius_mm"]
+    rows, style = sheet_rows(result.facts, names), _style(result)
+    files: Files = {}
+    for part in result.parts:
+        files |= sheet_bytes(wheel_sheet(part, rows, result.design.name), style, ending)
+    return files
 
 
 def _inspection(result: CamResult, _: Measured) -> Files:
     from gearcam.export.table import table_bytes
 
-    theta, points, normals = result.cam.places(result.design.output.inspection_points)
+    count = result.design.output.inspection_points
+    walls = zip(result.cam.walls, result.profiles, strict=True)
+    return {
+        _named("inspection", wall): table_bytes(_inspected(result, wall, profile, count))
+        for wall, profile in walls
+    }
+
+
+def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> dict[str, Array]:
+    theta, points, normals = wall.places(count)
     clearance = result.design.blank.clearance
     if clearance:
         from gearcam.parts.parallel import touches
 
-        kept = touches(result.profile, points, normals, -clearance)
+        kept = touches(profile, points, normals, -clearance)
         theta, points, normals = theta[kept], points[kept], normals[kept]
         points = points - clearance * normals
-    columns = {
+    return {
         "theta_deg": np.degrees(theta),
         "x_mm": points.real,
         "y_mm": points.imag,
         "nx": normals.real,
         "ny": normals.imag,
     }
-    return {"inspection.csv": table_bytes(columns)}
 
 
 def _tool_path(result: CamResult, measured: Measured) -> Files:
     from gearcam.drawings import TOOL, Drawing, Feature
     from gearcam.export.table import outline_bytes
-    from gearcam.parts.parallel import moved, sized
 
-    radius = result.design.output.tool_radius or result.mechanism.radius
-    if not radius:
-        raise InfeasibleError(
-            "the way of a cutter needs its radius",
-            where="output.tool_radius_mm",
-            nearest="a round follower's own radius counts where none is given; this one has none",
-        )
-    contour = result.part.contour
-    path = sized(
-        lambda size: moved(contour, size), radius, "output.tool_radius_mm", "radius of the cutter"
-    )
-    drawing = Drawing(name=TOOL_PATH, features=(Feature(layer=TOOL, shape=path),))
-    tables = {f"{TOOL_PATH}.csv": outline_bytes(path.vertices)}
-    return tables | drawn([drawing], _style(result), measured)
+    paths = result.form.paths(result, result.design.output.tool_radius)
+    tables = {f"{name}.csv": outline_bytes(path.vertices) for name, path in paths.items()}
+    drawings = [
+        Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))
+        for name, path in paths.items()
+    ]
+    return tables | drawn(drawings, _style(result), measured)
 
 
 def _curvature(result: CamResult, measured: Measured) -> Files:
     from gearcam.export.table import table_bytes
     from gearcam.kinds.cam.curvature import curvature_columns
 
-    columns, measured["curvature"] = curvature_columns(result.cam, _STUDY)
+    columns, measured["curvature"] = curvature_columns(result.cam.motions[0], _STUDY)
     return {"curvature.csv": table_bytes(columns)}
 
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.cams.disc import DiscCam
 from gearcam.cams.follow import follow
+from gearcam.cams.wall import PitchMotion
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Fact
 from gearcam.numerals import shown
@@ -31,8 +31,8 @@ def read_profile(file: str | Path | ArrayLike) -> tuple[Array, Array]:
     Parameters
     ----------
     file : path or (n, 2) array, mm
-        A DXF file with one closed outline (or one on the layer PROFILE or OUTLINE), or a CSV file
-        with the columns x_mm and y_mm; or the points themselves.
+        A DXF file with one closed outline (or one on the layer PROFILE, OUTLINE or INNER), or a CSV
+        file with the columns x_mm and y_mm; or the points themselves.
 
     Returns
     -------
@@ -72,13 +72,13 @@ def _open(vertices: Array) -> Array:
 
 
 def followed(
-    cam: DiscCam, vertices: Array, bulges: Array, theta: Array
+    motion: PitchMotion, vertices: Array, bulges: Array, theta: Array
 ) -> tuple[dict[str, Array], dict[str, Any]]:
     """Run a cam's follower on a profile.
 
     Parameters
     ----------
-    cam : DiscCam
+    motion : PitchMotion
         Follower, size of the cam, and the program to compare with.
     vertices : (n, 2) array, mm
         The profile in the cam's frame, as the design would draw it.
@@ -99,11 +99,11 @@ def followed(
     InfeasibleError
         If the follower cannot rest on the profile.
     """
-    outline = flatten_bulges(vertices, bulges, _SAGITTA * cam.tolerance)
-    side = np.array([-1.0 if cam.clockwise else 1.0, 1.0])
-    found = follow(outline * side, cam.mechanism, theta)
-    scale, unit = (math.degrees(1.0), "deg") if cam.mechanism.oscillating else (1.0, "mm")
-    asked = cam.program.derivatives(theta, 0)[0]
+    outline = flatten_bulges(vertices, bulges, _SAGITTA * motion.tolerance)
+    side = np.array([-1.0 if motion.clockwise else 1.0, 1.0])
+    found = follow(outline * side, motion.mechanism, theta)
+    scale, unit = (math.degrees(1.0), "deg") if motion.mechanism.oscillating else (1.0, "mm")
+    asked = motion.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
     columns = {
         "theta_deg": np.degrees(theta),

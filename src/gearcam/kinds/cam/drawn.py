@@ -1,0 +1,77 @@
+"""What drawings of cams show: the plate with its pitch curve, and the follower as it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gearcam.cams.wall import PitchMotion, Wall
+from gearcam.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
+from gearcam.parts.body import Part
+
+
+def plate(part: Part, wall: Wall, follower: Sequence[Shape] = (), *, angle: float = 0.0) -> Drawing:
+    """Return a drawing of a plate, its outline a wall, with the pitch curve (see `cam_drawing`)."""
+    pitch = None if wall.pitch_contour is part.contour else wall.pitch_contour
+    return cam_drawing(part, pitch, wall.mechanism.least, follower, angle=angle)
+
+
+def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
+    """Return a follower as it stands at a cam angle.
+
+    Parameters
+    ----------
+    motion : PitchMotion
+        What moves it.
+    theta : float, rad
+        The cam angle.
+    reach : float, mm
+        Of the cam, for the size of what is drawn.
+
+    Returns
+    -------
+    list of Shape
+        In the fixed frame.
+    """
+    m, side = motion.mechanism, -1.0 if motion.clockwise else 1.0
+    position = m.start + float(motion.program.derivatives(theta, 0)[0])
+    reach = 1.2 * reach
+
+    def path(*points: complex) -> Path:
+        return Path(points=np.array([[side * z.real, z.imag] for z in points]), closed=False)
+
+    if m.flat and m.oscillating:
+        along = np.exp(-1j * position)
+        foot = m.pivot - m.face_offset * 1j * along
+        return [
+            path(complex(m.pivot), complex(foot), complex(foot - along * (m.pivot + 0.4 * reach)))
+        ]
+    if m.flat:
+        found = motion.contact_place
+        wide = 0.2 * reach + (found.largest if found is not None else 0.0)
+        stem = complex(m.offset, position), complex(m.offset, position + 0.5 * reach)
+        return [path(complex(-wide, position), complex(wide, position)), path(*stem)]
+    if m.oscillating:
+        center = complex(m.pivot - m.arm * np.exp(-1j * position))
+        line = path(complex(m.pivot), center)
+    else:
+        center = complex(m.offset, position)
+        line = path(center, center + 0.5j * reach)
+    if m.radius == 0.0:
+        return [line]
+    middle = np.array([side * center.real, center.imag])
+    return [Circle(center=middle, diameter=2.0 * m.radius), line]
+
+
+def grooved(
+    part: Part, walls: Sequence[Wall], follower: Sequence[Shape] = (), *, angle: float = 0.0
+) -> Drawing:
+    """Return a drawing of a disc with a groove, the first wall within it (see `cam_drawing`)."""
+    pitch, least = walls[0].pitch_contour, walls[0].mechanism.least
+    drawing = cam_drawing(part, pitch, least, follower, angle=angle, outline=BLANK)
+    # a circle stays one in files
+    edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
+    blank, *others = drawing.features
+    return replace(drawing, features=(replace(blank, shape=edge), *others))

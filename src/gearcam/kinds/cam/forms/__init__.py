@@ -1,0 +1,1 @@
+"""Forms of cams: one module each, in the registry `base.FORMS`."""

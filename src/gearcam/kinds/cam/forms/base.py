@@ -1,0 +1,178 @@
+"""What a form of cams is: which keys it takes, the cam it makes, its parts, drawings and facts.
+
+A *form* is an entry of `FORMS`, loaded when a design names it. It says what is its own; everything
+else looks at the walls and motions of the cam that it has made and at its parts, in their order,
+and asks for no form's name. The disc cam (`disc`) has what fits every cam whose walls are the
+outlines of plates.
+
+Refused by reading: keys of other forms, and missing ones.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
+
+from gearcam.designs.faults import Fault, quoted, show
+from gearcam.designs.table import Table, table_of
+from gearcam.registry import Registry
+
+if TYPE_CHECKING:
+    from gearcam.cams.cam import Cam
+    from gearcam.drawings import Drawing
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.design import CamDesign
+    from gearcam.laws.program import Program
+    from gearcam.numeric.contour import Contour
+    from gearcam.parts.body import Part
+
+Keys = Mapping[str, tuple[str, ...]]
+"""Fields of parameters by the titles of their tables."""
+
+PLATE: Final[Keys] = {
+    "follower": (
+        "type", "motion", "roller_radius", "dome_radius", "offset", "arm", "pivot_distance",
+        "face_offset",
+    ),
+    "cam": ("form", "prime_radius", "base_radius", "thickness", "rotation"),
+}  # fmt: skip
+"""What a plate that turns may be given."""
+
+
+def plate_keys(cam: tuple[str, ...] = (), follower: tuple[str, ...] = ()) -> Keys:
+    """Return the keys of a plate that turns, and more of its `cam` and its `follower`."""
+    return {"follower": (*PLATE["follower"], *follower), "cam": (*PLATE["cam"], *cam)}
+
+
+class Form(Protocol):
+    """A form of cams: its name, and what is its own."""
+
+    name: str
+    """As in a design file."""
+
+    doc: str
+    """One line for people."""
+
+    takes: ClassVar[Keys] = PLATE
+    """What it may be given."""
+
+    needs: ClassVar[Keys] = {}
+    """What it must be given besides what every cam must."""
+
+    rows: ClassVar[tuple[str, ...]] = ()
+    """Facts of its own that stand in the tables of its drawings."""
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"
+
+    def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG002
+        """Yield what else is wrong by reading with the `parts` of a design, by their titles."""
+        yield from ()
+
+    @abstractmethod
+    def make(self, design: CamDesign, program: Program) -> Cam:
+        """Return the cam of a `design` and the lift that it asks for."""
+
+    @abstractmethod
+    def parts(self, result: CamResult) -> tuple[Part, ...]:
+        """Return what is made, each with all that is ordered."""
+
+    @abstractmethod
+    def made(self, result: CamResult) -> tuple[Contour, ...]:
+        """Return the walls as made on the parts, in the walls' order."""
+
+    @abstractmethod
+    def drawings(self, result: CamResult) -> tuple[Drawing, ...]:
+        """Return a drawing of each part in its own frame, as files of cutters have it."""
+
+    @abstractmethod
+    def picture(self, result: CamResult) -> Drawing:
+        """Return the assembled cam with its follower, at the angle of the design."""
+
+    @abstractmethod
+    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
+        """Return ways of the middle of a cutter of a `radius`, mm, by the stems of their files."""
+
+    @abstractmethod
+    def facts(self, result: CamResult) -> dict[str, Any]:
+        """Return what is known of the cam beyond follower, size and pressure angles."""
+
+
+FORMS: Registry[Form] = Registry(
+    "a form of cams",
+    {
+        "gearcam.kinds.cam.forms.disc": ("disc",),
+        "gearcam.kinds.cam.forms.groove": ("groove",),
+    },
+)
+"""The forms by name, each loaded when it is asked for."""
+
+
+def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type]) -> Iterator[Fault]:
+    """Yield what is wrong with the keys of a form, or else what the form itself finds.
+
+    Parameters
+    ----------
+    name : str
+        Of the form.
+    parts : mapping
+        Parameters that could be read, by the titles of their tables.
+    owners : mapping
+        Their classes.
+
+    Yields
+    ------
+    Fault
+    """
+    if not owners.keys() <= parts.keys():
+        return
+    form = FORMS[name]
+    found = [
+        fault
+        for title, owner in owners.items()
+        for fault in _key_faults(form, title, table_of(title, owner), parts[title])
+    ]
+    yield from found or form.faults(parts)
+
+
+def _key_faults(form: Form, title: str, known: Table, made: Any) -> Iterator[Fault]:
+    takes, needs = form.takes[title], form.needs.get(title, ())
+    for key, entry in known.entries.items():
+        value = getattr(made, entry.name)
+        if value is None and entry.name in needs:
+            yield Fault((title, key), f"is missing for a {form.name} cam", allowed=entry.param.doc)
+        elif value not in (None, entry.default) and entry.name not in takes:
+            value = entry.outward(value)
+            owners = [one for one in FORMS if entry.name in FORMS[one].takes[title]]
+            rule = f"with cam.form = {quoted(owners)}"
+            yield Fault((title, key), f"{show(value)}: a {form.name} cam has none", value, rule)
+
+
+def form_schema(title: str, owner: type) -> dict[str, Any]:
+    """Return what a schema says of the keys of a table, which some forms have and some need.
+
+    Parameters
+    ----------
+    title : str
+        Of the table; it has the key ``form``.
+    owner : type
+        The class of its parameters.
+
+    Returns
+    -------
+    dict
+    """
+    entries = table_of(title, owner).entries.items()
+    default = next(entry.default for _, entry in entries if entry.name == "form")
+    rules = []
+    for name, form in FORMS.items():
+        given: dict[str, Any] = {"properties": {"form": {"const": name}}}
+        if name != default:  # the form that counts where none is given
+            given["required"] = ["form"]
+        takes, needs = form.takes[title], form.needs.get(title, ())
+        required = [key for key, entry in entries if entry.name in needs]
+        foreign = [{"required": [key]} for key, entry in entries if entry.name not in takes]
+        then = {"required": required, **({"not": {"anyOf": foreign}} if foreign else {})}
+        rules.append({"if": given, "then": then})
+    return {"allOf": rules}

@@ -1,0 +1,90 @@
+"""What is known of a wall of a cam, as facts."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearcam.facts import Fact, extent
+
+if TYPE_CHECKING:
+    from gearcam.cams.measures import Range
+    from gearcam.cams.wall import Wall
+    from gearcam.numeric.contour import Contour
+
+Tree = dict[str, Any]
+
+
+def ends_of(found: Range, scale: float = 1.0) -> dict[str, float]:
+    """Return both ends of what was `found`, times a `scale`."""
+    return extent(found.low.value, found.high.value, scale)
+
+
+def size(wall: Wall, made: Contour, clearance: float = 0.0) -> Tree:
+    """Return the sizes of a wall as made: with clearance those of its parallel.
+
+    Parameters
+    ----------
+    wall : Wall
+        As it is touched.
+    made : Contour
+        As made.
+    clearance : float, mm
+        Between them.
+
+    Returns
+    -------
+    dict
+        Of facts.
+    """
+    reach = np.hypot(*made.vertices.T)
+    least = min(float(reach.min()), wall.nearest_flat - clearance)
+    common = {
+        "chord_error_mm": made.chord_error,
+        "vertices": len(made.vertices),
+        "radius_mm": extent(least, float(reach.max())),
+    }
+    if clearance:
+        return {"clearance_mm": clearance, "area_mm2": made.moments.area, **common}
+    return {
+        "perimeter_mm": wall.size.perimeter,
+        "area_mm2": wall.size.area,
+        "least_vertices": wall.sampler.least,
+        **common,
+    }
+
+
+def curvature(wall: Wall) -> Tree:
+    """Return smallest radii: of any sign, and of convex and concave parts of a `wall`."""
+    convex, concave = wall.profile_radius
+    made = {"profile_min_mm": min(convex, concave)}
+    whole = wall.pitch_curvature()
+    made["pitch_min_mm"] = min(convex, concave) if whole is None else 1.0 / whole.largest
+    for kind in ("rise", "return"):
+        found = wall.pitch_curvature(kind)
+        if found is not None:
+            made[f"pitch_{kind}_min_mm"] = 1.0 / found.largest
+    made |= {"profile_convex_min_mm": convex, "profile_concave_min_mm": concave}
+    facts: Tree = {name: value for name, value in made.items() if math.isfinite(value)}
+    which = f", {wall.called}" if wall.key else ""
+    words = {
+        "profile_convex_min_mm": f"smallest convex radius{which}",
+        "profile_concave_min_mm": f"smallest concave radius{which}",
+    }
+    for name in words.keys() & facts.keys():
+        facts[name] = Fact(facts[name], words[name], shown=True)
+    return facts
+
+
+def trimming(wall: Wall) -> Tree:
+    """Return where a `wall` is undercut, where its follower stands, what trimming costs it."""
+    mechanism, corners = wall.mechanism, bool(wall.corners)
+    swings = mechanism.oscillating
+    return {
+        "undercut": [[math.degrees(low), math.degrees(high)] for low, high in wall.undercut_ranges],
+        "start_angle_deg": math.degrees(mechanism.start) if swings else None,
+        "lost_lift_deg": math.degrees(wall.shortfall) if corners and swings else None,
+        "lost_lift_mm": wall.shortfall if corners and not swings else None,
+    }
