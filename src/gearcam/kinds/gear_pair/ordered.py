@@ -95,7 +95,7 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
         blank,
         work,
         lambda: _mark(gear, design, rim, around),
-        inner,
+        inner=inner,
     )
 
 
