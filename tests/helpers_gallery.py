@@ -17,13 +17,13 @@ Number = tuple[float, float]
 """A value and how far off it may be."""
 
 
-def length(ratio: Callable[[Any], Any], breaks: Sequence[Any]) -> float:
+def length(ratio: Callable[[Any], Any], breaks: Sequence[Any], mate: int = 1) -> float:
     """Length of the driver's centrode for A = 1, from the ratio and its numerical derivative."""
     with mp.workdps(20):
 
         def share(phi: Any) -> Any:
             value = ratio(phi)
-            return value / (1 + value)
+            return value / (1 + mate * value)
 
         def speed(phi: Any) -> Any:
             step = mp.mpf(10) ** -6
@@ -146,7 +146,28 @@ def flat_area(radius: str, away: str) -> float:
         return float(mp.pi * r**2 - r**2 * mp.acos(d / r) + d * mp.sqrt(r**2 - d**2))
 
 
+def uneven_ratio(phi: Any) -> Any:
+    """From 0.58 to 0.42 over 140 degrees and back over 220, by quintics."""
+    knot = 140 * DEGREE
+    t = phi / knot if phi < knot else (2 * mp.pi - phi) / (2 * mp.pi - knot)
+    return mp.mpf("0.58") - mp.mpf("0.16") * t**3 * (10 - 15 * t + 6 * t * t)
+
+
+UNEVEN = 40 * length(uneven_ratio, (0, 140 * DEGREE, 2 * mp.pi), -1)
+"""Length of its driver's centrode."""
+
 NUMBERS: dict[str, dict[str, Number]] = {
+    "ring_ellipse": {
+        # found in 40 digits
+        "pair.center_distance_mm": (22.87542426332165, 1e-12),
+        "pair.ratio.max": (0.58261456842243, 1e-13),
+        "gears[1].centrode.max_concave_curvature_per_mm": (0.03166779578069, 1e-13),
+    },
+    "ring_uneven": {
+        "pair.solved.ratios[1]": (0.42, 1e-14),
+        "pair.module_mm": (UNEVEN / (32 * math.pi), 1e-8),
+        "gears[1].centrode.length_mm": (2 * UNEVEN, 1e-6),
+    },
     "furnace_door": {
         # printed lengths over A, and (3.26); the driven wheel's smallest radius
         "pair.solved.knots_deg[3]": (171.65, 1e-11),

@@ -126,6 +126,23 @@ def test_a_phase_of_one_degree(z: int) -> None:
     assert built_or_refused(steep, (z, z)) is None
 
 
+def test_tips_that_meet_five_pitches_from_a_hollow_are_shortened() -> None:
+    """The driver's hollow is of 12 modules: corners are in it for pitches, as in a ring."""
+    law = Phases(
+        knots=(*degrees(0, 16, 60), "solve"),
+        ratios=(0.5, 0.5, 1.49, 1.49),
+        driven_travel=math.radians(150),
+    )
+    made = job(law, (150, 150), module=2.0, tolerance=2e-3)
+    phi = np.radians([23.2, 23.73, 24.1])
+    driven = made.law.phi2(phi)
+    for one, two in zip(phi, driven, strict=True):
+        first = made.gear1.outline @ [1, 1j] * np.exp(-1j * one)
+        second = made.gear2.outline @ [1, 1j] * np.exp(1j * two) + made.pair.center_distance
+        wheels = [shapely.Polygon(np.column_stack([z.real, z.imag])) for z in (first, second)]
+        assert wheels[0].intersection(wheels[1]).area < 2e-3
+
+
 @pytest.mark.parametrize("shape", ["cosine", "cubic"])
 @pytest.mark.parametrize("z", [40, 400])
 def test_a_ratio_that_swings_thirtyfold(shape: str, z: int) -> None:

@@ -83,6 +83,9 @@ def _pair(result: GearPairResult) -> Tree:
         "x": Fact(given.x, "profile shift", unit="modules"),
         "backlash_mm": given.backlash,
         "rack": _rack(result),
+        "assembly": Fact("along the axis", "the wheel goes into its ring", shown=True)
+        if pair.internal
+        else None,
         **own,
         "solved": {
             name: Fact(value, f"solved {name}", shown=name in pair.law.solved)
