@@ -124,7 +124,7 @@ class CamSpec:
     True
     """
 
-    form: str = param(TEXT, default="disc", choices=("disc",), doc="the form of the cam")
+    form: str = param(TEXT, default="disc", choices=("disc", "yoke"), doc="the form of the cam")
     prime_radius: float | None = _size(
         doc="from the cam's axis to the centre of a round follower at zero lift"
     )

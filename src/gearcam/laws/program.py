@@ -216,7 +216,11 @@ class Program(Brief, Displacement):
 
 
 def make_program(
-    phases: Sequence[Phase], tolerances: Tolerances, *, oscillating: bool = False
+    phases: Sequence[Phase],
+    tolerances: Tolerances,
+    *,
+    oscillating: bool = False,
+    half: bool = False,
 ) -> Program:
     """Make a program from its phases.
 
@@ -228,26 +232,31 @@ def make_program(
         Accuracy of laws that are expanded.
     oscillating : bool
         Whether lifts are angles.
+    half : bool
+        Whether the phases fill half a turn and are followed by their opposite: the first leaves
+        with the state in which the last one ends, its signs changed.
 
     Returns
     -------
     Program
-        Knots at the ends of phases and inside laws; the first is 0, the last exactly 2*pi.
+        Knots at the ends of phases and inside laws; the first is 0, the last exactly 2*pi, or pi of
+        half a turn, which is no program yet (see `gearcam.laws.half_turns`).
 
     Raises
     ------
     InfeasibleError
         If the program does not close, or a law has no value.
     """
-    for number, _, message, rule in program_problems(phases, oscillating=oscillating):
+    for number, _, message, rule in program_problems(phases, oscillating=oscillating, half=half):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    widths = angles_of(phases)
-    share = TURN / sum(widths)
+    turn = 0.5 * TURN if half else TURN
+    widths = angles_of(phases, turn)
+    share = turn / sum(widths)
     angles = np.cumsum([0.0, *(width * share for width in widths)])
-    angles[-1] = TURN
+    angles[-1] = turn
     heights = levels(phases)
-    heights[-1] = 0.0
+    heights[-1] *= half  # else within rounding of 0
     shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
@@ -265,6 +274,8 @@ def make_program(
             case DwellPhase():
                 return 0.0, 0.0
 
+    velocity, acceleration = end_state(-1)
+    around = (-velocity, -acceleration) if half else (velocity, acceleration)
     pieces: list[tuple[float, Piece]] = []
     stretches: list[PlacedPhase] = []
     cuts = np.array([])
@@ -275,7 +286,8 @@ def make_program(
                 pieces.append((place.end, Piece(polynomial, parameters=(place.start, place.base))))
             case SegmentPhase():
                 kind = "rise" if place.rise >= 0.0 else "return"
-                pieces.append((place.end, place.quintic(end_state(number - 1), phase.end[1:])))
+                start = end_state(number - 1) if number else around
+                pieces.append((place.end, place.quintic(start, phase.end[1:])))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 pieces += place.pieces(rises[phase.law])

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
@@ -16,7 +15,7 @@ from gearcam.cams.checks import KIND
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
-from gearcam.laws.program import Program, make_program
+from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -69,9 +68,7 @@ class CamResult(Result):
     def program(self) -> Program:
         """The lift over a turn."""
         with self.stage("program"):
-            motion, swings = self.design.motion, self.design.follower.oscillating
-            make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
-            return make(self.tolerances, oscillating=swings)
+            return self.form.program(self.design, self.tolerances)
 
     @property
     def form(self) -> Form:
