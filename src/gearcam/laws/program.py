@@ -256,7 +256,7 @@ def make_program(
     angles = np.cumsum([0.0, *(width * share for width in widths)])
     angles[-1] = turn
     heights = levels(phases)
-    heights[-1] *= half  # else within rounding of 0
+    heights[-1] = heights[-1] if half else 0.0
     shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
@@ -274,8 +274,6 @@ def make_program(
             case DwellPhase():
                 return 0.0, 0.0
 
-    velocity, acceleration = end_state(-1)
-    around = (-velocity, -acceleration) if half else (velocity, acceleration)
     pieces: list[tuple[float, Piece]] = []
     stretches: list[PlacedPhase] = []
     cuts = np.array([])
@@ -286,8 +284,9 @@ def make_program(
                 pieces.append((place.end, Piece(polynomial, parameters=(place.start, place.base))))
             case SegmentPhase():
                 kind = "rise" if place.rise >= 0.0 else "return"
-                start = end_state(number - 1) if number else around
-                pieces.append((place.end, place.quintic(start, phase.end[1:])))
+                around = half and number == 0
+                start = end_state(number - 1)
+                pieces.append((place.end, place.quintic(start, phase.end[1:], opposite=around)))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 pieces += place.pieces(rises[phase.law])
@@ -359,10 +358,16 @@ class _Place:
         _, velocity, acceleration = rise.function.side(*ends, 2)
         return scale * velocity / width, scale * acceleration / width**2
 
-    def quintic(self, start: tuple[float, float], end: tuple[float, float]) -> Piece:
-        """Return the quintic with given velocities and accelerations at both ends."""
+    def quintic(
+        self, start: tuple[float, float], end: tuple[float, float], *, opposite: bool
+    ) -> Piece:
+        """Return the quintic with given velocities and accelerations at both ends.
+
+        `opposite` changes the signs of those at its start.
+        """
         width = self.end - self.start
         rates = np.array([start, end]) * [width, width**2]
+        rates[0] *= -1.0 if opposite else 1.0
         ends = np.array([(0.0, 0.0, *rates[0]), (1.0, self.rise, *rates[1])])
         powers = hermite_quintics(*ends.T)[0].tolist()
         parameters = (self.start, 1.0 / width, self.base, 1.0, 0.0, *powers)

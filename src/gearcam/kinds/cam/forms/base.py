@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
-    from gearcam.numeric.arrays import Array
-    from gearcam.numeric.columns import Columns
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.tolerances import Tolerances
@@ -101,25 +99,19 @@ class Form(Protocol):
         """Return the assembled cam with its follower, at the angle of the design."""
 
     @abstractmethod
-    def paths(self, result: CamResult, radius: float) -> Mapping[str, Contour]:
+    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return ways of the middle of a cutter of a `radius`, mm, by the stems of their files."""
 
     @abstractmethod
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return what is known of the cam beyond follower, size and pressure angles."""
 
-    def curvature_lines(self, table: Columns) -> dict[str, Array]:
-        """Return the radii of a table of the motion, mm, that a chart shows, by their labels."""
-        return {
-            "pitch curve": table["rho_pitch_mm"],
-            "profile before trimming": table["rho_profile_mm"],
-        }
-
 
 FORMS: Registry[Form] = Registry(
     "a form of cams",
     {
         "gearcam.kinds.cam.forms.disc": ("disc",),
+        "gearcam.kinds.cam.forms.groove": ("groove",),
         "gearcam.kinds.cam.forms.yoke": ("yoke",),
     },
 )
