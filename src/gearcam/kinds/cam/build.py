@@ -147,7 +147,7 @@ class CamResult(Result):
         }
         told = [found, *(one.motion(theta) for one in motions[1:])]
         for one, values in zip(motions, told, strict=True):
-            columns[f"pressure_angle{_ending(one)}_deg"] = np.degrees(values["pressure"])
+            columns[pressure_column(one)] = np.degrees(values["pressure"])
         for one, values in zip(motions, told, strict=True):
             columns[rho_column("pitch", one)] = values["rho_pitch"]
         for wall in walls:
@@ -251,7 +251,13 @@ class CamResult(Result):
                 found += run_checks(PARTS_KIND, subject, self.design.limits)
         return in_order(found)
 
-    def follow(self, profile: str | Path | ArrayLike, *, progress: Progress | None = None) -> Study:
+    def follow(
+        self,
+        profile: str | Path | ArrayLike,
+        *,
+        wall: str | None = None,
+        progress: Progress | None = None,
+    ) -> Study:
         """Put the design's follower on a given profile: what motion it makes.
 
         Parameters
@@ -259,6 +265,8 @@ class CamResult(Result):
         profile : path or (n, 2) array, mm
             A DXF file with one closed outline, a CSV file with the columns x_mm and y_mm, or such
             points: a closed outline in the cam's frame.
+        wall : str, optional
+            Which of conjugate cams it is, by the key of its wall; the first where left out.
         progress : callable, optional
             Called with a stage's name, the stages done and their number.
 
@@ -277,13 +285,15 @@ class CamResult(Result):
         from gearcam.kinds.cam.follow import followed, read_profile
         from gearcam.study import Study
 
+        motions = {one.key: one for one in self.cam.motions}
+        key = next(iter(motions)) if wall is None else one_of("wall", wall, tuple(motions))
         if progress is not None:
             progress("profile", 0, 2)
         vertices, bulges = read_profile(profile)
         if progress is not None:
             progress("follow", 1, 2)
         with self.stage("follow"):
-            columns, facts = followed(self.cam.motions[0], vertices, bulges, self.angles)
+            columns, facts = followed(motions[key], vertices, bulges, self.angles)
         return Study(
             result=self,
             file=FOLLOWED,
@@ -296,6 +306,11 @@ class CamResult(Result):
 def _ending(one: PitchMotion) -> str:
     """Return what follows in the names of columns of a motion or wall."""
     return f"_{one.key}" if one.key else ""
+
+
+def pressure_column(motion: PitchMotion) -> str:
+    """Return the column of the pressure angles of a `motion`."""
+    return f"pressure_angle{_ending(motion)}_deg"
 
 
 def rho_column(what: str, one: PitchMotion) -> str:

@@ -65,6 +65,9 @@ class Form(Protocol):
     halves: ClassVar[bool] = False
     """Whether phases may fill half a turn, which their opposite follows."""
 
+    assembly: ClassVar[str] = ""
+    """Stem of the files with all parts where they stand; empty of forms with one part."""
+
     rows: ClassVar[tuple[str, ...]] = ()
     """Facts of its own that stand in the tables of its drawings."""
 
@@ -102,6 +105,14 @@ class Form(Protocol):
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return ways of the middle of a cutter of a `radius`, mm, by the stems of their files."""
 
+    def rows_of(self, number: int, rows: tuple[str, ...]) -> tuple[str, ...]:  # noqa: ARG002
+        """Return the facts for the table of a part's drawing: `rows` of all forms, and its own."""
+        return (*rows, *self.rows)
+
+    def heights(self, result: CamResult) -> tuple[float, ...]:
+        """Return the heights at which the parts stand in the assembly, mm."""
+        return (0.0,) * len(result.parts)
+
     @abstractmethod
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return what is known of the cam beyond follower, size and pressure angles."""
@@ -112,6 +123,7 @@ FORMS: Registry[Form] = Registry(
     {
         "gearcam.kinds.cam.forms.disc": ("disc",),
         "gearcam.kinds.cam.forms.groove": ("groove",),
+        "gearcam.kinds.cam.forms.conjugate": ("conjugate",),
         "gearcam.kinds.cam.forms.yoke": ("yoke",),
     },
 )

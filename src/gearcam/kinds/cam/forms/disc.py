@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
+    from gearcam.parts.blank import WheelBlank
     from gearcam.parts.body import Part
 
 STEM: Final = "cam"
@@ -32,7 +33,13 @@ RIM_PART = 2.0 / 3.0
 """Rim that lightening holes keep where the design gives none, in thicknesses."""
 
 
-def plate_part(result: CamResult, name: str, profile: Contour, thickness: float) -> Part:
+def plate_part(
+    result: CamResult,
+    name: str,
+    profile: Contour,
+    thickness: float,
+    blank: WheelBlank | None = None,
+) -> Part:
     """Return a plate as a part: bore, hub, holes, moved edges.
 
     Parameters
@@ -45,6 +52,8 @@ def plate_part(result: CamResult, name: str, profile: Contour, thickness: float)
         Its edge before clearance.
     thickness : float, mm
         Of the plate.
+    blank : WheelBlank, optional
+        That of the design where left out.
 
     Returns
     -------
@@ -54,7 +63,7 @@ def plate_part(result: CamResult, name: str, profile: Contour, thickness: float)
     from gearcam.parts.openings import RIM, Workpiece
 
     place = Workpiece(name=name, module=RIM_PART * thickness / RIM)
-    blank = result.design.blank
+    blank = blank or result.design.blank
     return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
 
 
