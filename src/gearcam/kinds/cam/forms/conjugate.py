@@ -106,25 +106,21 @@ class Conjugate(Disc):
 
     def picture(self, result: CamResult) -> Drawing:
         """Return both plates, turned, with their follower."""
-        from gearcam.drawings import CENTER, Drawing
+        from gearcam.drawings import CENTER, FOLLOWER, Drawing
         from gearcam.kinds.cam.drawn import follower, plate
 
         pose = result.design.output.pose
         reach = max(float(np.hypot(*one.vertices.T).max()) for one in result.profiles)
-        rows = list(zip(result.parts, result.cam.walls, _primes(result), strict=True))
-        features = []
-        for part, wall, prime in rows:
+        plates, others = [], []
+        for part, wall, prime in zip(result.parts, result.cam.walls, _primes(result), strict=True):
             side = -1.0 if wall.clockwise else 1.0
             shapes = follower(wall, pose, reach)
-            drawn = plate(part, wall, shapes, angle=side * pose, prime=prime)
-            last = part is rows[-1][0]
-            prefix = f"{part.name.upper()}_"
-            features += [
-                replace(one, layer=prefix + one.layer) if one.layer != CENTER else one
-                for one in drawn.features
-                if last or one.layer != CENTER
-            ]
-        return Drawing(name=self.assembly, features=tuple(features))
+            for one in plate(part, wall, shapes, angle=side * pose, prime=prime).features:
+                if one.layer in (CENTER, FOLLOWER):
+                    others.append(one)
+                else:
+                    plates.append(replace(one, layer=f"{part.name.upper()}_{one.layer}"))
+        return Drawing(name=self.assembly, features=(*plates, *others))
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return the way around each plate; a cutter is as large as its roller if none is given."""
