@@ -211,11 +211,14 @@ def fill_half(phases: Sequence[Phase]) -> bool:
     Parameters
     ----------
     phases : sequence of Phase
-        Where one of them takes the rest, they mean half a turn if they do not come back.
+        Where they fill neither half a turn nor a whole one, or one of them takes the rest, they
+        mean half a turn if they do not come back.
     """
     angles = [phase.angle for phase in phases if phase.angle != "rest"]
     if len(angles) == len(phases):
-        return math.fsum(angles) <= 0.5 * TURN + TURN_MISS
+        for turn in (0.5 * TURN, TURN):
+            if abs(math.fsum(angles) - turn) <= TURN_MISS:
+                return turn < TURN
     found = levels(phases)
     return abs(found[-1]) > _LIFT_MISS * max(map(abs, found))
 
