@@ -203,7 +203,7 @@ def test_follow_finds_it_within_the_chords(made: ConjugateCam) -> None:
 
 def test_the_second_roller_by_its_distance_or_angle() -> None:
     for made, given in ((sliding(6.0), sliding), (swinging(), swinging)):
-        extra = {"offset": 6.0} if given is sliding else {}
+        extra: dict[str, Any] = {"offset": 6.0} if given is sliding else {}
         again = given(**extra, prime=None, apart=made.apart)
         assert again.prime2 == pytest.approx(made.prime2, abs=1e-12)
         assert again.second.outline == pytest.approx(made.second.outline, abs=1e-10)

@@ -133,7 +133,7 @@ def test_both_bodies_and_where_they_stand() -> None:
 
     files = result.files("stl")
     assert set(files) == {"cam1.stl", "cam2.stl", "cams.stl"}
-    both = trimesh.load(io.BytesIO(files["cams.stl"]), file_type="stl")
+    both: Any = trimesh.load(io.BytesIO(files["cams.stl"]), file_type="stl")
     levels = sorted({round(float(z), 6) for z in both.vertices[:, 2]})
     assert levels == [0.0, 12.0, 14.0, 26.0]
     assert both.volume == pytest.approx(volume(result, 0) + volume(result, 1), abs=16.0)

@@ -53,7 +53,7 @@ angle_deg = 30
 [follower]"""
 
 
-def test_a_whole_turn_of_two_opposite_halves_is_the_same_cam() -> None:
+def test_a_whole_turn_of_two_opposite_half_turns_is_the_same_cam() -> None:
     half, whole = (gearcam.build(read(*change)) for change in ((), ((LAST, WHOLE),)))
     assert isinstance(whole.cam, YokeCam)
     assert whole.cam.breadth == pytest.approx(100.0, abs=1e-12)
@@ -107,7 +107,7 @@ def test_a_yoke_slides_on_the_axis() -> None:
     assert read((ROLLER[0], 'type = "flat"\noffset_mm = 3')).follower.offset == 3.0
 
 
-def test_halves_that_are_not_opposite_are_refused_with_a_half_that_is() -> None:
+def test_half_turns_that_are_not_opposite_are_refused_with_a_half_that_is() -> None:
     """Rise 120, dwell 30, return 150, dwell 60."""
     text = FILE.replace('[[motion]]\ntype = "dwell"\nangle_deg = 30\n', "", 1)
     text = text.replace(LAST, LAST.replace("[follower]", "") + (
@@ -142,7 +142,7 @@ def test_halves_that_are_not_opposite_are_refused_with_a_half_that_is() -> None:
 def test_half_turns_that_agree() -> None:
     def degrees(*phases: Any) -> list[tuple[str, float]]:
         return [
-            (type(one).__name__[:-5], round(math.degrees(one.angle), 9))
+            (type(one).__name__[:-5], round(math.degrees(float(one.angle)), 9))
             for one in agreeing(phases)
         ]  # fmt: skip
 
@@ -155,7 +155,7 @@ def test_half_turns_that_agree() -> None:
     assert not fill_half([up, down, dwell(140)])
 
 
-def test_tables_and_formulas_of_a_turn_need_opposite_halves_too() -> None:
+def test_tables_and_formulas_of_a_turn_need_opposite_half_turns_too() -> None:
     start = FILE.index("[[motion]]")
     rest = FILE[FILE.index("[follower]") :]
     good = f'{FILE[:start]}[motion]\nlift = "10*(1 - cos(theta)) + sin(3*theta)"\n\n{rest}'

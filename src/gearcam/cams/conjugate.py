@@ -209,7 +209,8 @@ def _swinging(mechanism: Mechanism, roller: SecondRoller, lowest: float, highest
     if not low < below < high:
         shift = highest - roller.squeeze
         given = (roller.apart or 0.0, low + shift, max(high, low) + shift)
-        raise _out_of_place(_ANGLE, *map(math.degrees, given), "deg")
+        value, near, far = map(math.degrees, given)
+        raise _out_of_place(_ANGLE, value, near, far, "deg")
     return below
 
 

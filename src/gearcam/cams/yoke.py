@@ -53,7 +53,7 @@ def make_yoke(
     Parameters
     ----------
     program : Program
-        The lift, of two opposite halves.
+        The lift, of two opposite half turns.
     mechanism : Mechanism
         The follower that rises with it, translating and without an offset.
     clockwise : bool

@@ -1,4 +1,4 @@
-"""Lift programs of two opposite halves: ``s(theta) + s(theta + pi)`` is the same all around.
+"""Lift programs of two opposite half turns: ``s(theta) + s(theta + pi)`` is the same all around.
 
 What holds a cam between two faces or rollers moves both by the same lift, one up, one down, half a
 turn apart. Half the program decides the other half, which begins where the first one ends and takes
@@ -80,7 +80,7 @@ def completed(half: Program) -> Program:
 
 
 def miss(program: Program) -> Deviation:
-    """Return how far two halves of a program are from being opposite, at worst.
+    """Return how far two half turns of a program are from being opposite, at worst.
 
     Parameters
     ----------

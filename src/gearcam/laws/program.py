@@ -284,8 +284,7 @@ def make_program(
                 pieces.append((place.end, Piece(polynomial, parameters=(place.start, place.base))))
             case SegmentPhase():
                 kind = "rise" if place.rise >= 0.0 else "return"
-                around = half and number == 0
-                start = end_state(number - 1)
+                start, around = end_state(number - 1), half and number == 0
                 pieces.append((place.end, place.quintic(start, phase.end[1:], opposite=around)))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"

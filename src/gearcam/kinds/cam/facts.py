@@ -111,7 +111,20 @@ def _cam(result: CamResult) -> Tree:
 
 
 def pressure(result: CamResult, motion: PitchMotion) -> Tree:
-    """Return pressure angles of a `motion` on rises and returns, as facts."""
+    """Return pressure angles on rises and returns.
+
+    Parameters
+    ----------
+    result : CamResult
+        With the limits.
+    motion : PitchMotion
+        One of its cam.
+
+    Returns
+    -------
+    dict
+        Of facts.
+    """
     made: Tree = {}
     whose = f", {motion.called}" if motion.key else ""
     given = limit_of(KIND, "pressure-angle", result.design.limits)

@@ -109,7 +109,7 @@ def examine_motion(
     else:
         before = len(found.faults)
         phases = [_phase((TITLE, k), item, oscillating, found, home) for k, item in enumerate(raw)]
-        _examine_program(phases, raw, oscillating, found, halves=form_of(document).halves)
+        _examine_program(phases, raw, oscillating, found, half=form_of(document).half_turns)
         if len(found.faults) == before:
             found.parts[TITLE] = tuple(phases)
 
@@ -215,13 +215,12 @@ def _examine_program(
     oscillating: bool | None,
     found: Examined,
     *,
-    halves: bool,
+    half: bool,
 ) -> None:
     if oscillating is None:
         return
     readable = [_UNREADABLE if phase is None else phase for phase in phases]
-    half = halves and fill_half(readable)
-    told = program_problems(readable, oscillating=oscillating, half=half)
+    told = program_problems(readable, oscillating=oscillating, half=half and fill_half(readable))
     for number, name, message, rule in told:
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))

@@ -62,7 +62,7 @@ class Form(Protocol):
     needs: ClassVar[Keys] = {}
     """What it must be given besides what every cam must."""
 
-    halves: ClassVar[bool] = False
+    half_turns: ClassVar[bool] = False
     """Whether phases may fill half a turn, which their opposite follows."""
 
     assembly: ClassVar[str] = ""

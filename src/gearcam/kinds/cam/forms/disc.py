@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
+from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.errors import InfeasibleError
 from gearcam.facts import Fact
@@ -15,6 +15,7 @@ from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, trimming
 
 if TYPE_CHECKING:
+    from gearcam.cams.cam import Cam
     from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
@@ -73,7 +74,7 @@ class Disc(Form):
     name = "disc"
     doc = "a plate that is touched at its edge"
 
-    def make(self, design: CamDesign, program: Program) -> DiscCam:
+    def make(self, design: CamDesign, program: Program) -> Cam:
         """Return the cam."""
         return make_cam(
             program,

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gearcam.tolerances import Tolerances
 
 _MISS: Final = 1e-6
-"""Largest miss of two halves of a turn from being opposite, mm: typed digits."""
+"""Largest miss of two half turns from being opposite, mm: typed digits."""
 
 
 class Yoke(Disc):
@@ -39,7 +39,7 @@ class Yoke(Disc):
 
     name = "yoke"
     doc = "a plate between two faces or rollers, of constant breadth or diameter"
-    halves = True
+    half_turns = True
     rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
 
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
@@ -55,7 +55,7 @@ class Yoke(Disc):
             yield Fault(("follower", "offset_mm"), message, follower.offset, rule)
 
     def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
-        """Return the lift over a turn: half of it and its opposite, or two opposite halves."""
+        """Return the lift over a turn: half of it and its opposite, or two opposite half turns."""
         motion = design.motion
         if isinstance(motion, Sequence) and fill_half(motion):
             return completed(make_program(motion, tolerances, half=True))
@@ -113,12 +113,12 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
     if half:
         from gearcam.kinds.cam.motion import motion_of
 
-        phases = motion_of(half, oscillating=False)
+        phases: Any = motion_of(half, oscillating=False)
         told = ", ".join(f"{one['type']} {shown(one['angle_deg'])} deg" for one in phases)
         rule += f", and these agree with the first half as far as they can: {told}"
         ways = (Way(near={"motion": phases}),)
     raise InfeasibleError(
-        "a yoke cannot follow both halves of the turn: their lifts do not add up",
+        "a yoke cannot follow both half turns: their lifts do not add up",
         where=f"motion, at {shown(math.degrees(off.theta))} deg",
         value=off.value,
         limit=_MISS,
