@@ -255,8 +255,7 @@ def make_program(
     share = turn / sum(widths)
     angles = np.cumsum([0.0, *(width * share for width in widths)])
     angles[-1] = turn
-    heights = levels(phases)
-    heights[-1] = heights[-1] if half else 0.0
+    heights = levels(phases) if half else [*levels(phases)[:-1], 0.0]
     shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
