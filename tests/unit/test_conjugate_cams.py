@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
-from pathlib import Path
+from pathlib import Path as File
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from gearcam.cams.conjugate import ConjugateCam
 from gearcam.cams.follow import follow
 from gearcam.cli import main
 from gearcam.designs import loads
+from gearcam.drawings import Path
 from gearcam.errors import DesignError, InfeasibleError
 from helpers_pairs import PROFILES
 
@@ -70,20 +71,21 @@ def refusal(*changes: tuple[str, str], file: str = FILE) -> tuple[Any, Infeasibl
     return design, caught.value
 
 
-BY_DISTANCE = [PRIME2, (ROLLERS, "roller_distance_mm = {}")]
-BY_ANGLE = [PRIME2, (ROLLERS, "arms_angle_deg = {}")]
+BY_DISTANCE = [PRIME2, (ROLLERS, "preload_mm = 0.5\nroller_distance_mm = {}")]
+BY_ANGLE = [PRIME2, (ROLLERS, "preload_mm = 0.5\narms_angle_deg = {}")]
+SQUEEZE = math.degrees(0.5 / 85.0)
 
 
 @pytest.mark.parametrize(
     ("file", "changes", "value", "limit", "key"),
     [
-        # hypot of nothing: a centred roller stands off the shaft by its own radius
-        (SLIDING, BY_DISTANCE, 67.9, 40 + 20 + 8, "follower.roller_distance_mm"),
+        # a centred roller stands off the shaft by its own radius
+        (SLIDING, BY_DISTANCE, 67.4, 40 + 20 + 8 - 0.5, "follower.roller_distance_mm"),
         (SLIDING, [("= 38 ", "= {} ")], 7.5, 8.0, "cam.prime_radius2_mm"),
         (FILE, [("= 38 ", "= {} ")], 14.9, 15.0, "cam.prime_radius2_mm"),
         (FILE, [("= 38 ", "= {} ")], 184.0, None, "cam.prime_radius2_mm"),
         (FILE, BY_ANGLE, 43.0, None, "follower.arms_angle_deg"),
-        (FILE, BY_ANGLE, 204.0, 180 + 23.5564643091, "follower.arms_angle_deg"),
+        (FILE, BY_ANGLE, 204.0, 180 + 23.5564643091 - SQUEEZE, "follower.arms_angle_deg"),
     ],
 )
 def test_a_second_roller_without_a_place_is_refused_with_one(
@@ -170,6 +172,13 @@ def test_files() -> None:
     assert result.chart("curvature").lines
 
 
+def test_the_follower_goes_on_beyond_both_rollers() -> None:
+    result = gearcam.build(read(file=SLIDING))
+    shapes = [one.shape for one in result.form.picture(result).features if one.layer == "FOLLOWER"]
+    up, down = (shape.points[:, 1] for shape in shapes if isinstance(shape, Path))
+    assert up[1] > up[0] > 0.0 > down[0] > down[1]
+
+
 def test_the_drawing_of_each_tells_its_own_sizes() -> None:
     files = gearcam.build(read()).files("drawing-svg")
     assert set(files) == {"cam1_drawing.svg", "cam2_drawing.svg"}
@@ -194,7 +203,7 @@ def test_step_files_hold_both() -> None:
 
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 @pytest.mark.parametrize("file", [FILE, SLIDING])
-def test_each_follows_its_own_file(file: str, rotation: str, tmp_path: Path) -> None:
+def test_each_follows_its_own_file(file: str, rotation: str, tmp_path: File) -> None:
     turned = ('form = "conjugate"', f'form = "conjugate"\nrotation = "{rotation}"')
     result = gearcam.build(read(turned, file=file))
     written = result.write(tmp_path, files=["csv", "dxf"])
@@ -206,7 +215,7 @@ def test_each_follows_its_own_file(file: str, rotation: str, tmp_path: Path) -> 
         result.follow(written.directory / "profile_1.csv", wall="3")
 
 
-def test_the_command_follows_either(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_follows_either(tmp_path: File, capsys: pytest.CaptureFixture[str]) -> None:
     written = gearcam.build(read()).write(tmp_path, files=["csv"])
     profile = str(written.directory / "profile_2.csv")
     assert main(["follow", str(PATH), profile, "--wall", "2", "-o", str(tmp_path)]) == 0
