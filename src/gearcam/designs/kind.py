@@ -77,6 +77,8 @@ class DesignKind:
         Titles that a file must give.
     one_of : mapping of str to tuple of str
         Keys of which a table has exactly one, by its title.
+    conditions : mapping of str to callable
+        What returns more of the JSON schema of a table, by its title.
     rules : callable
         ``rules(document, found)`` yields faults between the tables.
     later : callable
@@ -105,6 +107,7 @@ class DesignKind:
     tables: Mapping[str, Callable[[], Table]]
     required: tuple[str, ...]
     one_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    conditions: Mapping[str, Callable[[], dict[str, Any]]] = field(default_factory=dict)
     rules: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]

@@ -140,6 +140,8 @@ def _titled(kind: DesignKind, title: str) -> Schema:
     made = table_schema(kind.table(title))
     if title in kind.one_of:
         made["oneOf"] = [{"required": [key]} for key in kind.one_of[title]]
+    if title in kind.conditions:
+        made |= kind.conditions[title]()
     if title == "output":
         made["properties"]["files"]["uniqueItems"] = True
     return made

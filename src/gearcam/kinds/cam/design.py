@@ -18,7 +18,7 @@ from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
-from gearcam.kinds.cam.forms.base import form_faults
+from gearcam.kinds.cam.forms.base import form_faults, form_schema
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
@@ -224,6 +224,7 @@ KIND: Final = DesignKind(
     },
     required=("follower", "cam"),
     one_of={"cam": ("prime_radius_mm", "base_radius_mm")},
+    conditions={"cam": partial(form_schema, "cam", CamSpec)},
     rules=_rules,
     later=_later,
     formats=CAM_FORMATS,
