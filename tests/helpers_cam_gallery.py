@@ -63,6 +63,20 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "cam.pressure_angle_deg.return_max": (31.810726, 5e-7),
         "cam.groove.inner.radius_mm.min": (30 - 6.025, 1e-12),
     },
+    "yoke_cam": {
+        # Barbier: pi times the breadth of 2*40 + 20
+        "cam.profile.perimeter_mm": (math.pi * 100, 1e-12),
+        "cam.breadth_mm": (100.0, 1e-12),
+        "cam.face_width_mm": (2 * 2 * 20 / (2 * math.pi / 3), 1e-12),
+        "cam.profile.area_mm2": (7795.0873093058, 1e-9),
+    },
+    "conjugate_cams": {
+        # arms 90 and 85 at prime radii 40 and 38, a lift of 20 deg between them; 0.02 mm on an arm
+        "cam.arms_angle_deg": (65.386022742032 - DEG * 0.02 / 85, 1e-10),
+        "cam.cam2.profile.radius_mm.min": (38 - 8, 1e-12),
+        "cam.cam2.pressure_angle_deg.return_max": (31.8045503326, 1e-9),
+        "cam.pressure_angle_deg.rise_max": (33.5573097724, 1e-9),
+    },
     "plate_cam_oscillating": {
         "cam.start_angle_deg": (DEG * math.acos((100**2 + 90**2 - 40**2) / 18000), 1e-12),
         # modified sine has the lower peak acceleration, 3-4-5 the higher peak velocity

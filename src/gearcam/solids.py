@@ -62,11 +62,21 @@ class Mesh:
         twice = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
         return float(np.dot(twice, z[a] + z[b] + z[c])) / 6
 
-    def placed(self, angle: float, offset: tuple[float, float]) -> Mesh:
-        """Return the mesh turned about z by `angle`, rad, then shifted by `offset` (2,), mm."""
+    def placed(self, angle: float, offset: tuple[float, float], height: float = 0.0) -> Mesh:
+        """Return the mesh turned about z by `angle`, rad, and shifted.
+
+        Parameters
+        ----------
+        angle : float, rad
+            Counter-clockwise.
+        offset : (2,) tuple, mm
+            Shift after the turn.
+        height : float, mm
+            Shift along z.
+        """
         cosine, sine = math.cos(angle), math.sin(angle)
         x, y, z = self.vertices.T
-        moved = [cosine * x - sine * y + offset[0], sine * x + cosine * y + offset[1], z]
+        moved = [cosine * x - sine * y + offset[0], sine * x + cosine * y + offset[1], z + height]
         return Mesh(vertices=np.stack(moved, axis=1), triangles=self.triangles)
 
     @cached_property

@@ -43,6 +43,11 @@ class Cam(Displayed):
         return None
 
     @property
+    def face_width(self) -> float | None:
+        """Least width of the faces, mm, of a follower that needs two; None of others."""
+        return None
+
+    @property
     def outline(self) -> Array:
         """Vertices of the first wall, (n, 2), mm, counter-clockwise, in the cam's frame."""
         return self.walls[0].outline

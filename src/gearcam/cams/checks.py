@@ -224,3 +224,18 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
             f"at {_deg(found.theta)}",
             lost,
         )
+
+
+@check("face-width", kind=KIND, severity="note")
+def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note how wide the faces of a yoke must be.
+
+    Looks at: how far off its middle a face of a yoke is touched, either way.
+    """
+    if cam.face_width is not None:
+        yield Remark(
+            f"Each face is touched up to {shown(0.5 * cam.face_width, 4)} mm off its middle: it "
+            f"is wider than {shown(cam.face_width, 4)} mm.",
+            value=cam.face_width,
+            unit="mm",
+        )

@@ -171,7 +171,7 @@ class ProfileSegments(Brief):
     @property
     def backward(self) -> Mask:
         """Which are jumps that run backwards: about a corner of the pitch curve on their side."""
-        return self.jump & ((self.end - self.start) * (-1.0 if self.inset < 0.0 else 1.0) < 0.0)
+        return self.jump & ((self.end - self.start) * self.curve.mechanism.away < 0.0)
 
     @property
     def breaks(self) -> tuple[Ints, Array]:

@@ -22,7 +22,7 @@ Source: derived anew; conventions as in `mechanism`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -89,6 +89,10 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
         If the points are no closed profile around the axis, or the follower cannot rest on it.
     """
     profile = profile_points(points)
+    if mechanism.below:  # seen in a mirror below the axis, where the cam turns the other way
+        above = replace(mechanism, start=-mechanism.start)
+        seen = follow(np.conj(profile.points), above, -np.asarray(theta, dtype=float))
+        return replace(seen, theta=-seen.theta, lift=-seen.lift, contact=np.conj(seen.contact))
     _demand_clear_pivot(profile, mechanism)
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
     noise = _NOISE * (1.0 if mechanism.oscillating else profile.size + mechanism.radius)

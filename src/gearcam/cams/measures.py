@@ -107,8 +107,7 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
         return []
     knots, cuts, survey = curve.program.knots, curve.program.cuts, curve.program.survey
-    side = -1.0 if curve.mechanism.radius < 0.0 else 1.0
-    hard = curve.program.hard
+    side, hard = curve.mechanism.away, curve.program.hard
     back = (jump.theta for jump in hard if side * (jump.after - jump.before) < 0.0)
     found = [(theta, theta) for theta in back]
 

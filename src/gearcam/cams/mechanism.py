@@ -12,6 +12,9 @@ oscillating round    ``Psi0 = arccos((d^2 + l^2 - prime^2)/(2*d*l))``
 oscillating flat     ``Psi0 = arcsin((base + f)/d)``, the face f nearer the cam
 ==================== ==========================================================
 
+A roller *below* the axis, the second on one follower, has a negative position; all formulas of the
+first hold for it as they stand.
+
 Refused: followers that cannot touch the cam at zero lift.
 
 Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28).
@@ -61,6 +64,19 @@ class Mechanism(Brief):
     def lever(self) -> float:
         """What turns a lift into millimetres: 1, or the arm (of a flat face the pivot's way)."""
         return (self.arm or self.pivot) if self.oscillating else 1.0
+
+    @property
+    def below(self) -> bool:
+        """Whether a round follower stands below the axis, and comes nearer as it rises."""
+        return not self.flat and self.start < 0.0
+
+    @property
+    def away(self) -> int:
+        """Whether a rise moves it away from the metal (1) or to it (-1).
+
+        To it at a wall outside the pitch curve, whose radius is negative, or below the axis.
+        """
+        return -1 if self.below != (self.radius < 0.0) else 1
 
     @property
     def least(self) -> float:
@@ -124,12 +140,24 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
     if not low < size < high:
         what, parts = "the arm cannot reach the prime circle", "arm and pivot"
         raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high)
+    return Mechanism(start=swing(pivot, arm, size), arm=arm, pivot=pivot, **kind)
+
+
+def swing(pivot: float, arm: float, size: float) -> float:
+    """Return Psi, rad, at which an arm's end stands at a distance from the cam's axis.
+
+    Parameters
+    ----------
+    pivot, arm, size : float, mm
+        From the axis to the pivot, from there to the arm's end, from this to the axis: sides of a
+        triangle.
+    """
     # half the angle from the sides: exact where the triangle is nearly flat
     half = math.atan2(
         math.sqrt((size - pivot + arm) * (size + pivot - arm)),
         math.sqrt((pivot + arm - size) * (pivot + arm + size)),
     )
-    return Mechanism(start=2.0 * half, arm=arm, pivot=pivot, **kind)
+    return 2.0 * half
 
 
 def _out_of_reach(

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 from gearcam.display import Brief
 from gearcam.numerals import shown
-from gearcam.quantities import LENGTH, TEXT, param
+from gearcam.quantities import ANGLE, LENGTH, TEXT, param
 
 KIND: Final = "cams"
 """The checks of cams."""
@@ -64,7 +64,8 @@ class FollowerSpec(Brief):
     )
     roller_radius: float | None = _size(doc="radius of the roller")
     roller2_radius: float | None = _size(
-        doc="radius of a second roller on the same pin, for the outer wall of a groove"
+        doc="radius of a second roller: on the same pin, for the outer wall of a groove, or on the "
+        "second of conjugate cams; that of the first when left out"
     )
     dome_radius: float | None = _size(doc="radius of a domed face")
     offset: float = _aside(
@@ -72,6 +73,26 @@ class FollowerSpec(Brief):
     )
     arm: float | None = _size(doc="from the pivot to the roller's centre")
     pivot_distance: float | None = _size(doc="from the cam's axis to the pivot")
+    arm2: float | None = _size(
+        doc="from the pivot to the roller on the second of conjugate cams; as arm when left out"
+    )
+    roller_distance: float | None = _size(
+        doc="between both rollers of a translating follower on conjugate cams"
+    )
+    arms_angle: float | None = param(
+        ANGLE,
+        default=None,
+        gt=0,
+        lt=360,
+        doc="between both arms of an oscillating follower on conjugate cams",
+    )
+    preload: float | None = param(
+        LENGTH,
+        default=None,
+        ge=0,
+        le=10,
+        doc="by how much conjugate cams press their rollers apart; 0 when left out",
+    )
     face_offset: float = _aside(
         doc="of an oscillating flat follower: how far its face stands off the pivot to the cam"
     )
@@ -127,7 +148,12 @@ class CamSpec(Brief):
     True
     """
 
-    form: str = param(TEXT, default="disc", choices=("disc", "groove"), doc="the form of the cam")
+    form: str = param(
+        TEXT,
+        default="disc",
+        choices=("disc", "groove", "conjugate", "yoke"),
+        doc="the form of the cam",
+    )
     prime_radius: float | None = _size(
         doc="from the cam's axis to the centre of a round follower at zero lift"
     )
@@ -141,6 +167,12 @@ class CamSpec(Brief):
         default="ccw",
         choices=("ccw", "cw"),
         doc="direction in which the cam turns; cw gives the mirror image of ccw",
+    )
+    prime_radius2: float | None = _size(
+        doc="from the axis to the second roller's centre at the highest lift, of conjugate cams"
+    )
+    gap: float | None = param(
+        LENGTH, default=None, ge=0, le=1e5, doc="between conjugate cams; 0 when left out"
     )
     outer_diameter: float | None = _size(doc="diameter of the disc that a groove is cut into")
     groove_depth: float | None = _size(doc="depth of a groove, below the thickness")

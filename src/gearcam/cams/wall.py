@@ -209,7 +209,9 @@ class Wall(PitchMotion):
             convex = 1.0 / high - radius if high > 0.0 else math.inf
             concave = -1.0 / low + radius if low < 0.0 else math.inf
             for jump in self.program.hard:
-                if self.side * (jump.after - jump.before) > 0.0:  # it rolls about its own centre
+                if (
+                    self.curve.mechanism.away * (jump.after - jump.before) > 0.0
+                ):  # it rolls about its own centre
                     concave = min(concave, radius)
                 else:
                     convex = 0.0
@@ -264,8 +266,9 @@ class Wall(PitchMotion):
     @cached_property
     def lost(self) -> tuple[Extreme, ...]:
         """Largest lift, mm or rad, that each corner costs, with its cam angle, rad."""
+        side = self.curve.mechanism.away
         return tuple(
-            lost_lift(self.program, self.mechanism, corner, self.side) for corner in self.corners
+            lost_lift(self.program, self.mechanism, corner, side) for corner in self.corners
         )
 
     @cached_property

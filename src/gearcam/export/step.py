@@ -53,6 +53,7 @@ def step_bytes(
     name: str,
     tolerance: float,
     made: dict[Part, Any] | None = None,
+    heights: Sequence[float] = (),
 ) -> bytes:
     """Write parts as STEP.
 
@@ -66,6 +67,8 @@ def step_bytes(
         Largest distance of the faces from the dense points of the outlines.
     made : dict, optional
         The parts' solids to that tolerance, as far as they have been made; new ones are kept in it.
+    heights : sequence of float, mm
+        By which the items are lifted; none where left out.
 
     Returns
     -------
@@ -90,7 +93,11 @@ def step_bytes(
     with _silent(), _document() as document:
         made = {} if made is None else made
         made |= {p: _joined(solids_of(p, tolerance)) for p in parts if p not in made}
-        _fill(document, items, {part: made[part] for part in parts}, tokens[name], tokens)
+        lifted = [
+            (part, (*place, height))
+            for (part, place), height in zip(items, heights or [0.0] * len(items), strict=True)
+        ]
+        _fill(document, lifted, {part: made[part] for part in parts}, tokens[name], tokens)
         written = _write(document, tokens[f"{name}.step"])
     return _normal(written.decode("ascii"), tokens).encode("ascii")
 
@@ -152,7 +159,7 @@ def _joined(solids: Sequence[Any]) -> Any:
 
 def _fill(
     document: Any,
-    items: Sequence[tuple[Part, Placement]],
+    items: Sequence[tuple[Part, tuple[float, tuple[float, float], float]]],
     shapes: Mapping[Part, Any],
     name: str,
     names: Mapping[str, str],
@@ -176,10 +183,10 @@ def _fill(
     tool.UpdateAssemblies()
 
 
-def _motion(angle: float, offset: tuple[float, float]) -> Any:
+def _motion(angle: float, offset: tuple[float, float], height: float) -> Any:
     turn, shift = occt.gp_Trsf(), occt.gp_Trsf()
     turn.SetRotation(occt.gp_Ax1(occt.gp_Pnt(0.0, 0.0, 0.0), occt.gp_Dir(0.0, 0.0, 1.0)), angle)
-    shift.SetTranslation(occt.gp_Vec(*offset, 0.0))
+    shift.SetTranslation(occt.gp_Vec(*offset, height))
     return shift * turn
 
 

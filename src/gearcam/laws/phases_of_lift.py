@@ -5,7 +5,8 @@ which (``lift_mm``, ``lift_deg``). A *rise* goes up by its lift after a law on t
 *return* comes down after one (by all that was risen, if it gives no lift), a *dwell* stands still,
 and a *segment* goes from the state in which the phase before it ends to a lift with a velocity and
 an acceleration, so that phases join without a dwell. The angle of one phase may be
-``"rest"``: what the others leave of the turn.
+``"rest"``: what the others leave of the turn. Of some cams the phases may fill *half a turn*, after
+which the program goes on with the opposite of what it has done.
 
 Refused by reading: phases that do not fill a turn, a rest that is none, programs that end at
 another lift than they begin with.
@@ -158,20 +159,22 @@ _ASKED: Final[dict[type, str]] = {RisePhase: "lift", SegmentPhase: "to"}
 """What a phase must say."""
 
 
-def angles_of(phases: Sequence[Phase]) -> list[float]:
+def angles_of(phases: Sequence[Phase], turn: float = TURN) -> list[float]:
     """Return the cam angle of each phase, rad; ``"rest"`` becomes what the others leave.
 
     Parameters
     ----------
     phases : sequence of Phase
-        Of a turn; at most one takes the rest.
+        Of a turn, or half of it; at most one takes the rest.
+    turn : float, rad
+        What they fill.
 
     Returns
     -------
     list of float
         The rest is 0 or less where they leave nothing.
     """
-    rest = TURN - math.fsum(phase.angle for phase in phases if phase.angle != "rest")
+    rest = turn - math.fsum(phase.angle for phase in phases if phase.angle != "rest")
     return [rest if phase.angle == "rest" else phase.angle for phase in phases]
 
 
@@ -202,15 +205,37 @@ def levels(phases: Sequence[Phase]) -> list[float]:
     return found
 
 
-def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[Problem]:
+def fill_half(phases: Sequence[Phase]) -> bool:
+    """Return whether phases are meant to fill half a turn: by their angles, or by their lift.
+
+    Parameters
+    ----------
+    phases : sequence of Phase
+        Where they fill neither half a turn nor a whole one, or one of them takes the rest, they
+        mean half a turn if they do not come back.
+    """
+    angles = [phase.angle for phase in phases if phase.angle != "rest"]
+    if len(angles) == len(phases):
+        for turn in (0.5 * TURN, TURN):
+            if abs(math.fsum(angles) - turn) <= TURN_MISS:
+                return turn < TURN
+    found = levels(phases)
+    return abs(found[-1]) > _LIFT_MISS * max(map(abs, found))
+
+
+def program_problems(
+    phases: Sequence[Phase], *, oscillating: bool, half: bool = False
+) -> Iterator[Problem]:
     """Yield what is wrong with a program by reading.
 
     Parameters
     ----------
     phases : sequence of Phase
-        Of a turn.
+        Of a turn, or half of it.
     oscillating : bool
         Whether lifts are angles.
+    half : bool
+        Whether they fill half a turn.
 
     Yields
     ------
@@ -225,12 +250,12 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
             clean = False
             yield number, asked, "is missing", f"a lift in {unit}"
     if clean:
-        yield from _closure_problems(phases, unit)
+        yield from _closure_problems(phases, unit, half=half)
 
 
-def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
-    angles = angles_of(phases)
-    miss = TURN - sum(angles)
+def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
+    angles, whole = angles_of(phases, turn), shown(math.degrees(turn))
+    miss = turn - sum(angles)
     rests = [number for number, phase in enumerate(phases) if phase.angle == "rest"]
     for number in rests[1:]:
         rule = f"an angle: motion[{rests[0]}] takes the rest"
@@ -238,18 +263,18 @@ def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     if rests:
         left = angles[rests[0]]
         if left <= TURN_MISS:
-            others = shown(math.degrees(TURN - left), 10)
+            others = shown(math.degrees(turn - left), 10)
             message = f"the other phases take {others} deg, which leaves nothing"
-            yield rests[0], "angle", message, "less than 360 deg in the others"
+            yield rests[0], "angle", message, f"less than {whole} deg in the others"
     elif abs(miss) > TURN_MISS:
         last = math.degrees(miss + angles[-1])
         hint = f"; the last phase would take {shown(last, 10)} deg" if last > 0 else ""
-        message = f"the phases take {shown(math.degrees(TURN - miss), 10)} deg"
-        yield None, "", message, f'360 deg in all, or "rest" for one of them{hint}'
+        message = f"the phases take {shown(math.degrees(turn - miss), 10)} deg"
+        yield None, "", message, f'{whole} deg in all, or "rest" for one of them{hint}'
 
 
-def _closure_problems(phases: Sequence[Phase], unit: str) -> Iterator[Problem]:
-    yield from _turn_problems(phases)
+def _closure_problems(phases: Sequence[Phase], unit: str, *, half: bool) -> Iterator[Problem]:
+    yield from _turn_problems(phases, 0.5 * TURN if half else TURN)
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
@@ -257,6 +282,10 @@ def _closure_problems(phases: Sequence[Phase], unit: str) -> Iterator[Problem]:
     largest = max(map(abs, found))
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"
+    elif half:
+        if abs(found[-1]) <= _LIFT_MISS * largest:
+            rule = "another lift than at its beginning, or phases of a whole turn, 360 deg"
+            yield None, "", "the half turn ends at the lift at which it begins", rule
     elif abs(found[-1]) > _LIFT_MISS * largest:
         end = math.degrees(found[-1]) if unit == "deg" else found[-1]
         rule = "the lift at the end of the turn is that at its beginning, 0"

@@ -216,7 +216,11 @@ class Program(Brief, Displacement):
 
 
 def make_program(
-    phases: Sequence[Phase], tolerances: Tolerances, *, oscillating: bool = False
+    phases: Sequence[Phase],
+    tolerances: Tolerances,
+    *,
+    oscillating: bool = False,
+    half: bool = False,
 ) -> Program:
     """Make a program from its phases.
 
@@ -228,26 +232,30 @@ def make_program(
         Accuracy of laws that are expanded.
     oscillating : bool
         Whether lifts are angles.
+    half : bool
+        Whether the phases fill half a turn and are followed by their opposite: the first leaves
+        with the state in which the last one ends, its signs changed.
 
     Returns
     -------
     Program
-        Knots at the ends of phases and inside laws; the first is 0, the last exactly 2*pi.
+        Knots at the ends of phases and inside laws; the first is 0, the last exactly 2*pi, or pi of
+        half a turn, which is no program yet (see `gearcam.laws.half_turns`).
 
     Raises
     ------
     InfeasibleError
         If the program does not close, or a law has no value.
     """
-    for number, _, message, rule in program_problems(phases, oscillating=oscillating):
+    for number, _, message, rule in program_problems(phases, oscillating=oscillating, half=half):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    widths = angles_of(phases)
-    share = TURN / sum(widths)
+    turn = 0.5 * TURN if half else TURN
+    widths = angles_of(phases, turn)
+    share = turn / sum(widths)
     angles = np.cumsum([0.0, *(width * share for width in widths)])
-    angles[-1] = TURN
-    heights = levels(phases)
-    heights[-1] = 0.0
+    angles[-1] = turn
+    heights = levels(phases) if half else [*levels(phases)[:-1], 0.0]
     shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
@@ -275,7 +283,8 @@ def make_program(
                 pieces.append((place.end, Piece(polynomial, parameters=(place.start, place.base))))
             case SegmentPhase():
                 kind = "rise" if place.rise >= 0.0 else "return"
-                pieces.append((place.end, place.quintic(end_state(number - 1), phase.end[1:])))
+                start, around = end_state(number - 1), half and number == 0
+                pieces.append((place.end, place.quintic(start, phase.end[1:], opposite=around)))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 pieces += place.pieces(rises[phase.law])
@@ -347,10 +356,16 @@ class _Place:
         _, velocity, acceleration = rise.function.side(*ends, 2)
         return scale * velocity / width, scale * acceleration / width**2
 
-    def quintic(self, start: tuple[float, float], end: tuple[float, float]) -> Piece:
-        """Return the quintic with given velocities and accelerations at both ends."""
+    def quintic(
+        self, start: tuple[float, float], end: tuple[float, float], *, opposite: bool
+    ) -> Piece:
+        """Return the quintic with given velocities and accelerations at both ends.
+
+        `opposite` changes the signs of those at its start.
+        """
         width = self.end - self.start
         rates = np.array([start, end]) * [width, width**2]
+        rates[0] *= -1.0 if opposite else 1.0
         ends = np.array([(0.0, 0.0, *rates[0]), (1.0, self.rise, *rates[1])])
         powers = hermite_quintics(*ends.T)[0].tolist()
         parameters = (self.start, 1.0 / width, self.base, 1.0, 0.0, *powers)

@@ -29,8 +29,11 @@ def hopeless(_: Result) -> bool:
 
 def _sizes(document: Mapping[str, Any]) -> Iterator[Way]:
     """Yield ways to a cam that is larger for its follower and its lifts."""
-    sizes = (("cam.prime_radius_mm", _LARGER), ("cam.base_radius_mm", _LARGER))
-    for key, factor in (*sizes, ("follower.roller_radius_mm", _SMALLER)):
+    larger = ("cam.prime_radius_mm", "cam.base_radius_mm", "cam.prime_radius2_mm")
+    larger += ("follower.roller_distance_mm",)
+    smaller = ("follower.roller_radius_mm", "follower.roller2_radius_mm")
+    sizes = dict.fromkeys(larger, _LARGER) | dict.fromkeys(smaller, _SMALLER)
+    for key, factor in sizes.items():
         given = value_at(document, key)
         if given:
             # a larger cam needs a larger blank

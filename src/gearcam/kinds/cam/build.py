@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
@@ -16,7 +15,7 @@ from gearcam.cams.checks import KIND
 from gearcam.findings import Finding, in_order, run_checks
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
-from gearcam.laws.program import Program, make_program
+from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -69,9 +68,7 @@ class CamResult(Result):
     def program(self) -> Program:
         """The lift over a turn."""
         with self.stage("program"):
-            motion, swings = self.design.motion, self.design.follower.oscillating
-            make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
-            return make(self.tolerances, oscillating=swings)
+            return self.form.program(self.design, self.tolerances)
 
     @property
     def form(self) -> Form:
@@ -150,7 +147,7 @@ class CamResult(Result):
         }
         told = [found, *(one.motion(theta) for one in motions[1:])]
         for one, values in zip(motions, told, strict=True):
-            columns[f"pressure_angle{_ending(one)}_deg"] = np.degrees(values["pressure"])
+            columns[pressure_column(one)] = np.degrees(values["pressure"])
         for one, values in zip(motions, told, strict=True):
             columns[rho_column("pitch", one)] = values["rho_pitch"]
         for wall in walls:
@@ -254,7 +251,13 @@ class CamResult(Result):
                 found += run_checks(PARTS_KIND, subject, self.design.limits)
         return in_order(found)
 
-    def follow(self, profile: str | Path | ArrayLike, *, progress: Progress | None = None) -> Study:
+    def follow(
+        self,
+        profile: str | Path | ArrayLike,
+        *,
+        wall: str | None = None,
+        progress: Progress | None = None,
+    ) -> Study:
         """Put the design's follower on a given profile: what motion it makes.
 
         Parameters
@@ -262,6 +265,8 @@ class CamResult(Result):
         profile : path or (n, 2) array, mm
             A DXF file with one closed outline, a CSV file with the columns x_mm and y_mm, or such
             points: a closed outline in the cam's frame.
+        wall : str, optional
+            Which of conjugate cams it is, by the key of its wall; the first where left out.
         progress : callable, optional
             Called with a stage's name, the stages done and their number.
 
@@ -280,13 +285,15 @@ class CamResult(Result):
         from gearcam.kinds.cam.follow import followed, read_profile
         from gearcam.study import Study
 
+        motions = {one.key: one for one in self.cam.motions}
+        key = next(iter(motions)) if wall is None else one_of("wall", wall, tuple(motions))
         if progress is not None:
             progress("profile", 0, 2)
         vertices, bulges = read_profile(profile)
         if progress is not None:
             progress("follow", 1, 2)
         with self.stage("follow"):
-            columns, facts = followed(self.cam.motions[0], vertices, bulges, self.angles)
+            columns, facts = followed(motions[key], vertices, bulges, self.angles)
         return Study(
             result=self,
             file=FOLLOWED,
@@ -299,6 +306,11 @@ class CamResult(Result):
 def _ending(one: PitchMotion) -> str:
     """Return what follows in the names of columns of a motion or wall."""
     return f"_{one.key}" if one.key else ""
+
+
+def pressure_column(motion: PitchMotion) -> str:
+    """Return the column of the pressure angles of a `motion`."""
+    return f"pressure_angle{_ending(motion)}_deg"
 
 
 def rho_column(what: str, one: PitchMotion) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
 from gearcam.findings import limit_of
-from gearcam.kinds.cam.build import rho_column
+from gearcam.kinds.cam.build import pressure_column, rho_column
 from gearcam.numeric.columns import Columns
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
@@ -49,7 +49,11 @@ def _pressure_angle(result: CamResult) -> Chart:
         title="Pressure angle",
         x=_ANGLE,
         y="pressure angle, deg",
-        lines=(Line(label="pressure angle", x=table["theta_deg"], y=table["pressure_angle_deg"]),),
+        lines=tuple(
+            Line(label=f"pressure angle {one.key}".strip(), x=table["theta_deg"], y=table[column])
+            for one in result.cam.motions
+            for column in (pressure_column(one),)
+        ),
         limits=(Limit(label="limit", value=limit), Limit(label="limit", value=-limit)),
     )
 

@@ -16,6 +16,8 @@ from gearcam.written import Written
 def _arguments(parser: argparse.ArgumentParser) -> None:
     words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
     parser.add_argument("profile", metavar="PROFILE", help=words)
+    words = "which of conjugate cams it is, 1 or 2; the first if left out"
+    parser.add_argument("--wall", metavar="KEY", help=words)
 
 
 def _adapt(design: Design, _: Mapping[str, Any]) -> Design:
@@ -25,7 +27,8 @@ def _adapt(design: Design, _: Mapping[str, Any]) -> Design:
 def _run(
     result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
 ) -> Written:
-    return result.follow(options["profile"], progress=progress).write(output)
+    study = result.follow(options["profile"], wall=options["wall"], progress=progress)
+    return study.write(output)
 
 
 COMMANDS: Final = (

@@ -37,7 +37,7 @@ NAME: Final = "cam"
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 
-LATER_FORMS: Final = ("conjugate", "cylinder", "translating")
+LATER_FORMS: Final = ("cylinder", "translating")
 """Forms of cams that are planned."""
 
 _OF_WHEELS: Final = ("stop_pin", "tip_rounding", "timing_marks", "mark_diameter")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -12,10 +13,18 @@ from gearcam.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
 from gearcam.parts.body import Part
 
 
-def plate(part: Part, wall: Wall, follower: Sequence[Shape] = (), *, angle: float = 0.0) -> Drawing:
+def plate(
+    part: Part,
+    wall: Wall,
+    follower: Sequence[Shape] = (),
+    *,
+    angle: float = 0.0,
+    prime: float | None = None,
+) -> Drawing:
     """Return a drawing of a plate, its outline a wall, with the pitch curve (see `cam_drawing`)."""
+    prime = wall.mechanism.least if prime is None else prime
     pitch = None if wall.pitch_contour is part.contour else wall.pitch_contour
-    return cam_drawing(part, pitch, wall.mechanism.least, follower, angle=angle)
+    return cam_drawing(part, pitch, prime, follower, angle=angle)
 
 
 def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
@@ -58,7 +67,7 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
         line = path(complex(m.pivot), center)
     else:
         center = complex(m.offset, position)
-        line = path(center, center + 0.5j * reach)
+        line = path(center, center + math.copysign(0.5, position) * 1j * reach)
     if m.radius == 0.0:
         return [line]
     middle = np.array([side * center.real, center.imag])

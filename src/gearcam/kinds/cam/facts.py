@@ -16,6 +16,7 @@ from gearcam.kinds.cam.wall_facts import ends_of
 from gearcam.numerals import shown
 
 if TYPE_CHECKING:
+    from gearcam.cams.wall import PitchMotion
     from gearcam.kinds.cam.build import CamResult
     from gearcam.laws.program import Program
 
@@ -104,22 +105,37 @@ def _cam(result: CamResult) -> Tree:
         "prime_radius_mm": mechanism.least,
         "base_radius_mm": mechanism.least - mechanism.radius,
         "thickness_mm": design.cam.thickness,
-        "pressure_angle_deg": _pressure(result),
+        "pressure_angle_deg": pressure(result, result.cam.motions[0]),
         **result.form.facts(result),
     }
 
 
-def _pressure(result: CamResult) -> Tree:
+def pressure(result: CamResult, motion: PitchMotion) -> Tree:
+    """Return pressure angles on rises and returns.
+
+    Parameters
+    ----------
+    result : CamResult
+        With the limits.
+    motion : PitchMotion
+        One of its cam.
+
+    Returns
+    -------
+    dict
+        Of facts.
+    """
     made: Tree = {}
+    whose = f", {motion.called}" if motion.key else ""
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = pressure_limit(result.mechanism, given)
     for kind in ("rise", "return"):
-        found = result.cam.motions[0].pressure(kind)
+        found = motion.pressure(kind)
         if found is not None:
             worst = max(found.low, found.high, key=lambda end: abs(end.value))
             made[f"{kind}_max"] = Fact(
                 math.degrees(found.largest),
-                f"pressure angle, {kind}",
+                f"pressure angle, {kind}{whose}",
                 at_most=math.degrees(limit),
                 place=f"at {shown(math.degrees(worst.theta), scale=360.0)} deg",
                 unit="deg",

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
+    from gearcam.parts.body import Part
 
 Measured = dict[str, Any]
 
@@ -54,8 +55,18 @@ def _cut_svg(result: CamResult, _: Measured) -> Files:
 
 
 def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
+    from gearcam.drawings import UNMOVED
+
     solids = meshes(result.parts, measured)
-    return {f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()}
+    files = {
+        f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
+    }
+    whole = result.form.assembly
+    if whole:
+        heights = dict(zip(solids, result.form.heights(result), strict=True))
+        placed = {name: mesh.placed(*UNMOVED, heights[name]) for name, mesh in solids.items()}
+        files[f"{whole}.{kind}"] = mesh_bytes(placed, kind, whole)
+    return files
 
 
 def _tables(result: CamResult, _: Measured) -> Files:
@@ -100,20 +111,28 @@ def _step(result: CamResult, _: Measured) -> Files:
     from gearcam.export.step import step_bytes
 
     tolerance = STEP_PART * result.profile.tolerance
-    return {
-        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance)
+    made: dict[Part, Any] = {}
+    files = {
+        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance, made)
         for part in result.parts
     }
+    whole = result.form.assembly
+    if whole:
+        items = [(part, UNMOVED) for part in result.parts]
+        heights = result.form.heights(result)
+        files[f"{whole}.step"] = step_bytes(items, whole, tolerance, made, heights)
+    return files
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
     from gearcam.sheets import wheel_sheet
 
     other = "prime" if result.mechanism.flat else "base"
-    names = [name for name in (*_ROWS, *result.form.rows) if name != f"cam.{other}_radius_mm"]
-    rows, style = sheet_rows(result.facts, names), _style(result)
+    style, facts = _style(result), result.facts
     files: Files = {}
-    for part in result.parts:
+    for number, part in enumerate(result.parts):
+        names = result.form.rows_of(number, _ROWS)
+        rows = sheet_rows(facts, [one for one in names if not one.endswith(f"{other}_radius_mm")])
         files |= sheet_bytes(wheel_sheet(part, rows, result.design.name), style, ending)
     return files
 

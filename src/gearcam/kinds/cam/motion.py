@@ -17,7 +17,8 @@ from gearcam.designs.kind import Examined, made_of, told_faults
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
-from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, program_problems
+from gearcam.kinds.cam.forms.base import form_of
+from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
 from gearcam.laws.rises.base import RISES
 from gearcam.registry import name_of
 
@@ -108,7 +109,7 @@ def examine_motion(
     else:
         before = len(found.faults)
         phases = [_phase((TITLE, k), item, oscillating, found, home) for k, item in enumerate(raw)]
-        _examine_program(phases, raw, oscillating, found)
+        _examine_program(phases, raw, oscillating, found, half=form_of(document).half_turns)
         if len(found.faults) == before:
             found.parts[TITLE] = tuple(phases)
 
@@ -213,11 +214,13 @@ def _examine_program(
     raw: Sequence[Any],
     oscillating: bool | None,
     found: Examined,
+    *,
+    half: bool,
 ) -> None:
     if oscillating is None:
         return
     readable = [_UNREADABLE if phase is None else phase for phase in phases]
-    told = program_problems(readable, oscillating=oscillating)
+    told = program_problems(readable, oscillating=oscillating, half=half and fill_half(readable))
     for number, name, message, rule in told:
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))

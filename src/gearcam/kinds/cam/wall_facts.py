@@ -74,7 +74,8 @@ def curvature(wall: Wall) -> Tree:
         "profile_concave_min_mm": f"smallest concave radius{which}",
     }
     for name in words.keys() & facts.keys():
-        facts[name] = Fact(facts[name], words[name], shown=True)
+        meaning = f"{words[name]}, {wall.called}" if wall.key else words[name]
+        facts[name] = Fact(facts[name], meaning, shown=True)
     return facts
 
 

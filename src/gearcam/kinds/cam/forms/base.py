@@ -11,11 +11,13 @@ Refused by reading: keys of other forms, and missing ones.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
 
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.table import Table, table_of
+from gearcam.laws.program import Program, make_program
 from gearcam.registry import Registry
 
 if TYPE_CHECKING:
@@ -23,9 +25,9 @@ if TYPE_CHECKING:
     from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
-    from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
+    from gearcam.tolerances import Tolerances
 
 Keys = Mapping[str, tuple[str, ...]]
 """Fields of parameters by the titles of their tables."""
@@ -60,6 +62,12 @@ class Form(Protocol):
     needs: ClassVar[Keys] = {}
     """What it must be given besides what every cam must."""
 
+    half_turns: ClassVar[bool] = False
+    """Whether phases may fill half a turn, which their opposite follows."""
+
+    assembly: ClassVar[str] = ""
+    """Stem of the files with all parts where they stand; empty of forms with one part."""
+
     rows: ClassVar[tuple[str, ...]] = ()
     """Facts of its own that stand in the tables of its drawings."""
 
@@ -69,6 +77,12 @@ class Form(Protocol):
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG002
         """Yield what else is wrong by reading with the `parts` of a design, by their titles."""
         yield from ()
+
+    def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
+        """Return the lift over a turn that a `design` asks for, to `tolerances`."""
+        motion, swings = design.motion, design.follower.oscillating
+        make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
+        return make(tolerances, oscillating=swings)
 
     @abstractmethod
     def make(self, design: CamDesign, program: Program) -> Cam:
@@ -94,6 +108,14 @@ class Form(Protocol):
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return ways of the middle of a cutter of a `radius`, mm, by the stems of their files."""
 
+    def rows_of(self, number: int, rows: tuple[str, ...]) -> tuple[str, ...]:  # noqa: ARG002
+        """Return the facts for the table of a part's drawing: `rows` of all forms, and its own."""
+        return (*rows, *self.rows)
+
+    def heights(self, result: CamResult) -> tuple[float, ...]:
+        """Return the heights at which the parts stand in the assembly, mm."""
+        return (0.0,) * len(result.parts)
+
     @abstractmethod
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return what is known of the cam beyond follower, size and pressure angles."""
@@ -104,9 +126,18 @@ FORMS: Registry[Form] = Registry(
     {
         "gearcam.kinds.cam.forms.disc": ("disc",),
         "gearcam.kinds.cam.forms.groove": ("groove",),
+        "gearcam.kinds.cam.forms.conjugate": ("conjugate",),
+        "gearcam.kinds.cam.forms.yoke": ("yoke",),
     },
 )
 """The forms by name, each loaded when it is asked for."""
+
+
+def form_of(document: Mapping[str, Any]) -> Form:
+    """Return the form that a `document` names; the disc where it names none that there is."""
+    cam = document.get("cam")
+    name = cam.get("form") if isinstance(cam, Mapping) else None
+    return FORMS[name if isinstance(name, str) and name in FORMS else "disc"]
 
 
 def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type]) -> Iterator[Fault]:

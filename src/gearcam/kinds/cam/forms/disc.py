@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
+from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.errors import InfeasibleError
 from gearcam.facts import Fact
@@ -15,11 +15,13 @@ from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, trimming
 
 if TYPE_CHECKING:
+    from gearcam.cams.cam import Cam
     from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
+    from gearcam.parts.blank import WheelBlank
     from gearcam.parts.body import Part
 
 STEM: Final = "cam"
@@ -32,7 +34,13 @@ RIM_PART = 2.0 / 3.0
 """Rim that lightening holes keep where the design gives none, in thicknesses."""
 
 
-def plate_part(result: CamResult, name: str, profile: Contour, thickness: float) -> Part:
+def plate_part(
+    result: CamResult,
+    name: str,
+    profile: Contour,
+    thickness: float,
+    blank: WheelBlank | None = None,
+) -> Part:
     """Return a plate as a part: bore, hub, holes, moved edges.
 
     Parameters
@@ -45,6 +53,8 @@ def plate_part(result: CamResult, name: str, profile: Contour, thickness: float)
         Its edge before clearance.
     thickness : float, mm
         Of the plate.
+    blank : WheelBlank, optional
+        That of the design where left out.
 
     Returns
     -------
@@ -54,7 +64,7 @@ def plate_part(result: CamResult, name: str, profile: Contour, thickness: float)
     from gearcam.parts.openings import RIM, Workpiece
 
     place = Workpiece(name=name, module=RIM_PART * thickness / RIM)
-    blank = result.design.blank
+    blank = blank or result.design.blank
     return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
 
 
@@ -64,7 +74,7 @@ class Disc(Form):
     name = "disc"
     doc = "a plate that is touched at its edge"
 
-    def make(self, design: CamDesign, program: Program) -> DiscCam:
+    def make(self, design: CamDesign, program: Program) -> Cam:
         """Return the cam."""
         return make_cam(
             program,

@@ -1,0 +1,232 @@
+"""Conjugate cams: two discs on one shaft, each with a roller of its own on one follower.
+
+The first is a disc cam. The second roller stands across the axis: of a translating follower at a
+fixed distance below the first, of an oscillating one on a second arm at a fixed angle from the
+first. Its position is that of the first less the distance, or less the angle between the arms:
+negative, and the formulas of a disc cam hold for it as they stand, in the same frame:
+
+==================== =====================================================
+translating          ``s0 + s - Dist``
+oscillating          ``Psi0 + s - gamma``
+==================== =====================================================
+
+The second cam is smallest at the highest lift, where its prime radius is told.
+
+Refused: what disc cams refuse, of either cam; a second roller on the shaft, arms across the line
+of centres.
+
+Depends on cam, disc, wall and mechanism.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from gearcam.cams.cam import Cam
+from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
+from gearcam.cams.mechanism import Mechanism, swing
+from gearcam.cams.wall import Wall
+from gearcam.display import Brief
+from gearcam.errors import InfeasibleError, Way
+from gearcam.facts import Fact, Facts
+from gearcam.laws.program import Program
+from gearcam.numerals import shown
+
+_PRIME2 = "cam.prime_radius2_mm"
+_DISTANCE = "follower.roller_distance_mm"
+_ANGLE = "follower.arms_angle_deg"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SecondRoller:
+    """The second roller of a follower.
+
+    Parameters
+    ----------
+    radius : float, mm
+        Of the roller.
+    arm : float, mm
+        Of an oscillating follower.
+    prime : float or None, mm
+        From the axis to its centre at the highest lift; None where `apart` is given.
+    apart : float or None, mm or rad
+        Of a translating follower the distance of the rollers, of an oscillating one the angle
+        between its arms, before preload.
+    preload : float, mm
+        By how much the follower holds the rollers nearer together than the cams do; of an
+        oscillating one along the second roller's arc.
+    """
+
+    radius: float
+    arm: float = 0.0
+    prime: float | None = None
+    apart: float | None = None
+    preload: float = 0.0
+
+    @property
+    def squeeze(self) -> float:
+        """The preload as `apart` counts it, mm or rad."""
+        return self.preload / self.arm if self.arm else self.preload
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ConjugateCam(Brief, Cam):
+    """Conjugate cams, in one frame.
+
+    Parameters
+    ----------
+    first, second : Wall
+        Their profiles; both have the follower's lift.
+    roller : SecondRoller
+        As given.
+    """
+
+    first: Wall
+    second: Wall
+    roller: SecondRoller
+
+    @property
+    def walls(self) -> tuple[Wall, ...]:
+        """Both profiles; each has a motion of its own."""
+        return self.first, self.second
+
+    @property
+    def apart(self) -> float:
+        """Distance of the rollers, mm, or angle between the arms, rad: on the follower."""
+        return self.first.mechanism.start - self.second.mechanism.start - self.roller.squeeze
+
+    @cached_property
+    def prime2(self) -> float:
+        """From the axis to the second roller's centre at the highest lift, mm."""
+        m = self.second.mechanism
+        return replace(m, start=m.start + self.second.program.range[1]).least
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What the cams know of themselves; the facts of their result tell more."""
+        low, high = self.first.program.range
+        swings = self.first.mechanism.oscillating
+        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+        tree = {
+            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "prime_radius_mm": self.first.mechanism.least,
+            "prime_radius2_mm": self.prime2,
+            **{
+                f"cam{wall.key}": {"perimeter_mm": wall.size.perimeter, "area_mm2": wall.size.area}
+                for wall in self.walls
+            },
+        }
+        return Facts(tree, ("total_lift",), "conjugate cams")
+
+
+def make_conjugate(
+    program: Program,
+    mechanism: Mechanism,
+    roller: SecondRoller,
+    *,
+    clockwise: bool = False,
+    tolerance: float = CHORD_TOLERANCE,
+) -> ConjugateCam:
+    """Return conjugate cams after proving that their follower can stand wherever the lift puts it.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    mechanism : Mechanism
+        The follower on the first cam.
+    roller : SecondRoller
+        Its second roller.
+    clockwise : bool
+        Whether the cams turn clockwise.
+    tolerance : float, mm
+        Chord error of their contours.
+
+    Returns
+    -------
+    ConjugateCam
+
+    Raises
+    ------
+    InfeasibleError
+        If it cannot.
+    """
+    make_cam(program, mechanism)
+    common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
+    lowest, highest = (mechanism.start + lift for lift in program.range)
+    place = _swinging if mechanism.oscillating else _sliding
+    apart = highest + place(mechanism, roller, lowest, highest)
+    other = replace(mechanism, start=mechanism.start - apart, radius=roller.radius, arm=roller.arm)
+
+    def wall(own: Mechanism, key: str) -> Wall:
+        return Wall(mechanism=own, key=key, called=f"profile of cam {key}", **common)
+
+    return ConjugateCam(first=wall(mechanism, "1"), second=wall(other, "2"), roller=roller)
+
+
+def _sliding(mechanism: Mechanism, roller: SecondRoller, _: float, highest: float) -> float:
+    """Return how far below the axis the second roller stands at the highest lift, mm."""
+    aside = abs(mechanism.offset)
+    least = max(aside, roller.radius)
+    if roller.prime is not None:
+        if not roller.prime > least:
+            raise _on_shaft(_PRIME2, roller.prime, least)
+        return math.sqrt((roller.prime - aside) * (roller.prime + aside))
+    below = (roller.apart or 0.0) + roller.squeeze - highest
+    room = math.sqrt((least - aside) * (least + aside))
+    if not below > room:
+        raise _on_shaft(_DISTANCE, roller.apart or 0.0, highest + room - roller.squeeze)
+    return below
+
+
+def _on_shaft(key: str, value: float, limit: float) -> InfeasibleError:
+    return InfeasibleError(
+        "the second roller stands on the cam's axis at the highest lift",
+        where=key,
+        value=value,
+        limit=limit,
+        unit="mm",
+        nearest="the limit, excluded, is the least",
+        ways=(Way(near={key: limit}, far={key: limit + 2.0 * max(limit, value)}),),
+    )
+
+
+def _swinging(mechanism: Mechanism, roller: SecondRoller, lowest: float, highest: float) -> float:
+    """Return the angle of the second arm from the line of centres at the highest lift, rad."""
+    pivot, arm = mechanism.pivot, roller.arm
+    near = max(abs(pivot - arm), roller.radius)
+    if near >= pivot + arm:
+        raise _out_of_place("follower.roller2_radius_mm", roller.radius, 0.0, pivot + arm, "mm")
+    low, high = swing(pivot, arm, near), math.pi - (highest - lowest)
+    if roller.prime is not None:
+        far = replace(mechanism, arm=arm, start=max(high, low)).least
+        if not near < roller.prime < far:
+            raise _out_of_place(_PRIME2, roller.prime, near, far, "mm")
+        return swing(pivot, arm, roller.prime)
+    below = (roller.apart or 0.0) + roller.squeeze - highest
+    if not low < below < high:
+        shift = highest - roller.squeeze
+        given = (roller.apart or 0.0, low + shift, max(high, low) + shift)
+        value, near, far = map(math.degrees, given)
+        raise _out_of_place(_ANGLE, value, near, far, "deg")
+    return below
+
+
+def _out_of_place(key: str, value: float, near: float, far: float, unit: str) -> InfeasibleError:
+    """Return the refusal of a second arm that does not stand across the axis at every lift."""
+    ways: tuple[Way, ...] = ()
+    nearest = "no such size is: the arm swings too far"
+    if near < far:
+        ways = (Way(near={key: near if value <= near else far}, far={key: 0.5 * (near + far)}),)
+        nearest = f"{shown(near)} to {shown(far)} {unit} are allowed, both excluded"
+    return InfeasibleError(
+        "the second roller stands on the cam's axis, or its arm passes the line of centres",
+        where=key,
+        value=value,
+        limit=near if value <= near else far,
+        unit=unit,
+        nearest=nearest,
+        ways=ways,
+    )

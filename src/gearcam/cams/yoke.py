@@ -1,0 +1,74 @@
+"""A yoke cam: a disc between two flat faces, or two rollers, of one follower.
+
+Both are touched at every angle where the lifts half a turn apart add up to the same (see
+`gearcam.laws.half_turns`): the cam then has a constant *breadth* between faces, or its pitch curve
+a constant *diameter* through the axis, the distance of the rollers. One profile is its only wall;
+the second face is touched by it half a turn later.
+
+Refused: what disc cams refuse.
+
+Depends on disc.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
+from gearcam.cams.mechanism import Mechanism
+from gearcam.laws.program import Program
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class YokeCam(DiscCam):
+    """A disc cam whose follower goes around it (see the module)."""
+
+    @property
+    def breadth(self) -> float:
+        """Distance of both faces, or of the rollers' centres, mm."""
+        return 2.0 * self.mechanism.start + sum(self.program.range)
+
+    @property
+    def face_width(self) -> float | None:
+        """Least width of a flat face, mm, without a margin: as far as it is touched, either way."""
+        place = self.contact_place
+        return None if place is None else 2.0 * place.largest
+
+    @property
+    def least_base_radius(self) -> float | None:
+        """Least base radius that is not undercut under a flat face, mm."""
+        radius = self.face_radius
+        return None if radius is None else self.mechanism.start - radius.low.value
+
+
+def make_yoke(
+    program: Program,
+    mechanism: Mechanism,
+    *,
+    clockwise: bool = False,
+    tolerance: float = CHORD_TOLERANCE,
+) -> YokeCam:
+    """Return a yoke cam after proving that its follower can stand wherever the lift puts it.
+
+    Parameters
+    ----------
+    program : Program
+        The lift, of two opposite half turns.
+    mechanism : Mechanism
+        The follower that rises with it, translating and without an offset.
+    clockwise : bool
+        Whether the cam turns clockwise.
+    tolerance : float, mm
+        Chord error of its contours.
+
+    Returns
+    -------
+    YokeCam
+
+    Raises
+    ------
+    InfeasibleError
+        If it cannot.
+    """
+    make_cam(program, mechanism)
+    return YokeCam(program=program, mechanism=mechanism, clockwise=clockwise, tolerance=tolerance)

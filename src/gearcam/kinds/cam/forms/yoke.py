@@ -1,0 +1,131 @@
+"""The yoke cam: a plate between two faces or rollers, of constant breadth or diameter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.cams.disc import CHORD_TOLERANCE
+from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.yoke import YokeCam, make_yoke
+from gearcam.designs.faults import Fault, show
+from gearcam.drawings import FOLLOWER, Feature, placed
+from gearcam.errors import InfeasibleError, Way
+from gearcam.facts import Fact
+from gearcam.kinds.cam.forms.base import FORMS
+from gearcam.kinds.cam.forms.disc import Disc
+from gearcam.laws.half_turns import agreeing, completed, miss
+from gearcam.laws.phases_of_lift import fill_half
+from gearcam.laws.program import Program, make_program
+from gearcam.numerals import shown
+
+if TYPE_CHECKING:
+    from gearcam.drawings import Drawing
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.design import CamDesign
+    from gearcam.kinds.cam.motion import Motion
+    from gearcam.tolerances import Tolerances
+
+_MISS: Final = 1e-6
+"""Largest miss of two half turns from being opposite, mm: typed digits."""
+
+
+class Yoke(Disc):
+    """A plate with one wall that is touched on both sides of its axis."""
+
+    name = "yoke"
+    doc = "a plate between two faces or rollers, of constant breadth or diameter"
+    half_turns = True
+    rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
+
+    def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield faults of a follower that one cam cannot move from both sides."""
+        follower = parts["follower"]
+        if follower.oscillating:
+            message = f"{show(follower.motion)}: a yoke slides"
+            rule = '"translating"'
+            yield Fault(("follower", "motion"), message, follower.motion, rule)
+        if follower.offset and not follower.flat:
+            message = f"{show(follower.offset)}: one cam cannot carry two rollers aside of its axis"
+            rule = "0"
+            yield Fault(("follower", "offset_mm"), message, follower.offset, rule)
+
+    def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
+        """Return the lift over a turn: half of it and its opposite, or two opposite half turns."""
+        motion = design.motion
+        if isinstance(motion, Sequence) and fill_half(motion):
+            return completed(make_program(motion, tolerances, half=True))
+        made = super().program(design, tolerances)
+        _demand_opposite(made, motion)
+        return made
+
+    def make(self, design: CamDesign, program: Program) -> YokeCam:
+        """Return the cam."""
+        return make_yoke(
+            program,
+            make_mechanism(design.follower, design.cam),
+            clockwise=design.cam.clockwise,
+            tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
+        )
+
+    def picture(self, result: CamResult) -> Drawing:
+        """Return the plate, turned, between both sides of its follower."""
+        from gearcam.kinds.cam.drawn import follower
+
+        (wall,), pose = result.cam.walls, result.design.output.pose
+        reach = float(np.hypot(*result.profile.vertices.T).max())
+        other = follower(wall, pose + math.pi, reach)
+        drawing = super().picture(result)
+        second = (
+            Feature(layer=FOLLOWER, shape=placed(shape, math.pi, (0.0, 0.0))) for shape in other
+        )
+        return replace(drawing, features=(*drawing.features, *second))
+
+    def facts(self, result: CamResult) -> dict[str, Any]:
+        """Return those of a disc cam, and what is between both sides of the follower."""
+        cam, flat = result.cam, result.mechanism.flat
+        if not isinstance(cam, YokeCam):
+            raise TypeError(f"{cam!r} is no yoke cam")
+        return {
+            **super().facts(result),
+            "breadth_mm": Fact(cam.breadth, "from face to face", shown=True) if flat else None,
+            "face_width_mm": cam.face_width and Fact(cam.face_width, "least width of a face"),
+            "least_base_radius_mm": cam.least_base_radius,
+            "roller_distance_mm": None
+            if flat
+            else Fact(cam.breadth, "from centre to centre of the rollers", shown=True),
+        }
+
+
+def _demand_opposite(program: Program, motion: Motion) -> None:
+    """Refuse a turn whose second half is not the opposite of the first."""
+    off = miss(program)
+    if abs(off.value) <= _MISS:
+        return
+    rule = "half a turn on, a yoke stands as far below its highest place as it stood above its "
+    rule += "lowest; phases of half a turn, 180 deg, are enough"
+    ways: tuple[Way, ...] = ()
+    half = agreeing(motion) if isinstance(motion, Sequence) else ()
+    if half:
+        from gearcam.kinds.cam.motion import motion_of
+
+        phases: Any = motion_of(half, oscillating=False)
+        told = ", ".join(f"{one['type']} {shown(one['angle_deg'])} deg" for one in phases)
+        rule += f", and these agree with the first half as far as they can: {told}"
+        ways = (Way(near={"motion": phases}),)
+    raise InfeasibleError(
+        "a yoke cannot follow both half turns: their lifts do not add up",
+        where=f"motion, at {shown(math.degrees(off.theta))} deg",
+        value=off.value,
+        limit=_MISS,
+        unit="mm",
+        nearest=rule,
+        ways=ways,
+    )
+
+
+FORMS.register(Yoke())
