@@ -1,4 +1,4 @@
-"""Random cams: every rise, every follower, segments, whole turns, both directions, blanks.
+"""Random cams: every form, rise and follower, segments, whole turns, both directions, blanks.
 
 Lifts and sizes are drawn in radii of the cam, so that the radius may be anything.
 """
@@ -168,6 +168,80 @@ def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str,
     return follower, cam
 
 
+def _groove(d: Draw, design: dict[str, Any], size: float) -> None:
+    """Mill a groove around the pitch curve into a disc."""
+    given, radius = design["cam"], design["follower"]["roller_radius_mm"]
+    reach = size + 2 * radius + _height(design)
+    given |= {
+        "form": "groove",
+        "outer_diameter_mm": short(2 * reach * d.even(1.05, 1.6)),
+        "groove_depth_mm": short(given["thickness_mm"] * d.even(0.2, 0.9)),
+    }
+    if d.chance(0.6):
+        given["roller_clearance_mm"] = short(radius * d.log(1e-3, 0.05))
+    if d.chance(0.5):
+        given["side"] = d.pick(["front", "back"])
+    if d.chance(0.3):
+        design["follower"]["roller2_radius_mm"] = short(radius * d.even(0.6, 1.5))
+
+
+def _conjugate(d: Draw, design: dict[str, Any], size: float) -> None:
+    """Set a second disc beside the first, which brings the follower back."""
+    follower, given = design["follower"], design["cam"]
+    radius, swings = follower["roller_radius_mm"], follower.get("motion") == "oscillating"
+    given["form"] = "conjugate"
+    prime = size + radius
+    way = d.pick(["prime_radius2_mm", "between"])
+    if way != "between":
+        given[way] = short(prime * d.even(0.8, 1.3))
+    elif swings:
+        follower["arms_angle_deg"] = d.even(40, 140)
+    else:
+        follower["roller_distance_mm"] = short((2 * prime + _height(design)) * d.even(0.9, 1.2))
+    if swings and d.chance(0.5):
+        follower["arm2_mm"] = short(follower["arm_mm"] * d.even(0.8, 1.2))
+    for table, key, value in (
+        (given, "gap_mm", size * d.log(1e-3, 0.1)),
+        (follower, "roller2_radius_mm", radius * d.even(0.6, 1.4)),
+        (follower, "preload_mm", size * d.log(1e-5, 1e-3)),
+    ):
+        if d.chance(0.5):
+            table[key] = short(value)
+
+
+def _height(design: dict[str, Any]) -> float:
+    """Return about the lift of a follower, mm."""
+    motion, follower = design["motion"], design["follower"]
+    phases = motion if isinstance(motion, list) else [motion]
+    lifts = [value for phase in phases for key, value in phase.items() if key.startswith("lift_mm")]
+    highest = [max(value) if isinstance(value, list) else value for value in lifts]
+    return float(sum(highest)) if highest else 0.3 * follower.get("arm_mm", 0.0)
+
+
+def _yoke(d: Draw, design: dict[str, Any], size: float) -> None:
+    """Put the cam between two faces or rollers: half a turn decides the other half."""
+    law, lift = d.pick(["cycloidal", "3-4-5", "modified-sine"]), short(size * d.log(0.01, 0.3))
+    first, second = short(d.even(5, 60)), short(d.even(5, 60))
+    rise = {"type": "rise", "law": law, "angle_deg": 180 - first - second, "lift_mm": lift}
+    dwells = [{"type": "dwell", "angle_deg": angle} for angle in (first, second)]
+    design["motion"] = [dwells[0], rise, dwells[1]]
+    design["follower"].pop("offset_mm", None)
+    design["cam"]["form"] = "yoke"
+
+
+def _another_form(d: Draw, design: dict[str, Any], size: float) -> None:
+    """Make a disc cam one of another form that has such a follower."""
+    follower = design["follower"]
+    forms: list[Callable[[Draw, dict[str, Any], float], None]] = []
+    if follower["type"] == "roller":
+        forms += [_groove, _conjugate]
+    if follower["type"] in ("roller", "flat") and "motion" not in follower:
+        forms.append(_yoke)
+    if forms:
+        d.pick(forms)(d, design, size)
+        design.pop("blank", None)
+
+
 def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
     """Return a cam; rises and followers take turns.
 
@@ -207,4 +281,6 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         design["motion"] = _turn(d, lift, unit)
     elif d.chance(0.1):
         d.pick(phases)["angle_deg"] = "rest"
+    if d.chance(0.35):
+        _another_form(d, design, size)
     return design | {"output": output}
