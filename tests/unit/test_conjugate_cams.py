@@ -236,6 +236,9 @@ def test_facts() -> None:
     assert facts["cam2"]["roller_radius_mm"] == 8.0
     assert facts["cam2"]["arm_mm"] == 85.0
     assert facts["cam1"]["curvature"]["pitch_min_mm"] > 0.0
+    words = [one.meaning for one in result.facts.quantities()]
+    assert "smallest convex radius, profile of cam 2" in words
+    assert "pressure angle, rise, profile of cam 1" in words
     parts = result.facts.document["part"]
     assert len(parts) == 2
 

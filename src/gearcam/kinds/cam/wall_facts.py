@@ -74,8 +74,7 @@ def curvature(wall: Wall) -> Tree:
         "profile_concave_min_mm": f"smallest concave radius{which}",
     }
     for name in words.keys() & facts.keys():
-        meaning = f"{words[name]}, {wall.called}" if wall.key else words[name]
-        facts[name] = Fact(facts[name], meaning, shown=True)
+        facts[name] = Fact(facts[name], words[name], shown=True)
     return facts
 
 
