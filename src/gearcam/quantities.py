@@ -80,6 +80,8 @@ class Param:
         Whether Python functions may stand for a text.
     angular : Param or None
         The same where lifts are angles: a file then has another key for it.
+    sliding : Param or None
+        The same where the cam slides: a file then has another key for it.
     """
 
     quantity: Quantity = NUMBER
@@ -94,6 +96,7 @@ class Param:
     both: bool = False
     function: bool = False
     angular: Param | None = None
+    sliding: Param | None = None
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""

@@ -1,14 +1,16 @@
 """Phases of a lift program: what a design says of each stretch of a cam's turn.
 
 The *lift* is a length for translating followers and an angle for oscillating ones; a file says
-which (``lift_mm``, ``lift_deg``). A *rise* goes up by its lift after a law on the unit square, a
+which (``lift_mm``, ``lift_deg``). What a phase takes is an angle of a cam that turns and a length,
+its *way*, of one that slides (``angle_deg``, ``way_mm``). A *rise* goes up by its lift after a law on the unit square, a
 *return* comes down after one (by all that was risen, if it gives no lift), a *dwell* stands still,
 and a *segment* goes from the state in which the phase before it ends to a lift with a velocity and
 an acceleration, so that phases join without a dwell. The angle of one phase may be
 ``"rest"``: what the others leave of the turn.
 
 Refused by reading: phases that do not fill a turn, a rest that is none, programs that end at
-another lift than they begin with.
+another lift than they begin with. A cam that slides has no turn: its program is *open*, and its
+phases fill whatever way they take.
 
 Depends on quantities only.
 """
@@ -46,7 +48,12 @@ Problem = tuple[int | None, str, str, str]
 TURN: Final = 2.0 * math.pi
 """A turn of the cam, rad."""
 
-_ANGLE: Final = "cam angle that it takes, or what the others leave"
+_WAY: Final = Param(LENGTH, word="way", gt=0, le=1e6, doc="way of a sliding cam that it takes")
+
+_SPAN: Final[dict[str, Any]] = {
+    "gt": 0, "le": 360, "doc": "cam angle that it takes, or what the others leave", "sliding": _WAY,
+}  # fmt: skip
+"""What a phase takes of a turn, or of a way."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +67,7 @@ class DwellPhase:
     DwellPhase(angle='rest')
     """
 
-    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    angle: float | Literal["rest"] = param(ANGLE, **_SPAN)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,6 +78,8 @@ class RisePhase(Brief):
     ----------
     law : object
         Parameters of a law, such as `gearcam.rises.Cycloidal`.
+    angle : float or "rest"
+        What it takes of a turn, in rad; of a cam that slides its way, in mm.
     lift : float or None
         In mm, or in rad where the follower oscillates.
 
@@ -81,7 +90,7 @@ class RisePhase(Brief):
     RisePhase(angle=2, lift=10, law=Cycloidal)
     """
 
-    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    angle: float | Literal["rest"] = param(ANGLE, **_SPAN)
     law: Any
     lift: float | None = param(
         LENGTH,
@@ -124,7 +133,7 @@ class SegmentPhase(Brief):
     SegmentPhase(angle=1, to=4, velocity=-2)
     """
 
-    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    angle: float | Literal["rest"] = param(ANGLE, **_SPAN)
     to: float | None = param(
         LENGTH,
         default=None,
@@ -202,7 +211,9 @@ def levels(phases: Sequence[Phase]) -> list[float]:
     return found
 
 
-def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[Problem]:
+def program_problems(
+    phases: Sequence[Phase], *, oscillating: bool, closed: bool = True
+) -> Iterator[Problem]:
     """Yield what is wrong with a program by reading.
 
     Parameters
@@ -211,6 +222,8 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
         Of a turn.
     oscillating : bool
         Whether lifts are angles.
+    closed : bool
+        Whether they fill a turn, at whose end the lift is that at its beginning.
 
     Yields
     ------
@@ -225,7 +238,8 @@ def program_problems(phases: Sequence[Phase], *, oscillating: bool) -> Iterator[
             clean = False
             yield number, asked, "is missing", f"a lift in {unit}"
     if clean:
-        yield from _closure_problems(phases, unit)
+        yield from _turn_problems(phases) if closed else _way_problems(phases)
+        yield from _closure_problems(phases, unit, closed)
 
 
 def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
@@ -248,8 +262,13 @@ def _turn_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
         yield None, "", message, f'360 deg in all, or "rest" for one of them{hint}'
 
 
-def _closure_problems(phases: Sequence[Phase], unit: str) -> Iterator[Problem]:
-    yield from _turn_problems(phases)
+def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
+    for number, phase in enumerate(phases):
+        if phase.angle == "rest":
+            yield number, "angle", "no turn is there to be filled", "a length above 0"
+
+
+def _closure_problems(phases: Sequence[Phase], unit: str, closed: bool) -> Iterator[Problem]:
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
@@ -257,7 +276,7 @@ def _closure_problems(phases: Sequence[Phase], unit: str) -> Iterator[Problem]:
     largest = max(map(abs, found))
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"
-    elif abs(found[-1]) > _LIFT_MISS * largest:
+    elif closed and abs(found[-1]) > _LIFT_MISS * largest:
         end = math.degrees(found[-1]) if unit == "deg" else found[-1]
         rule = "the lift at the end of the turn is that at its beginning, 0"
         yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule

@@ -1,8 +1,9 @@
-"""Lift programs: the displacement of a follower over a turn of the cam.
+"""Lift programs: the displacement of a follower over a turn of the cam, or over its way.
 
 A program is made from phases. Every phase is scaled from the unit square; a segment is the quintic
 that leaves with the state in which the phase before it ends. The program repeats every turn, and
-says at which knots its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps.
+says at which knots its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps. That of
+a cam that slides is *open*; its whole way counts as one turn, 2*pi rad.
 
 Source: 000 section 3.3, eqs. (3.3)-(3.5).
 """
@@ -105,6 +106,8 @@ class Program(Brief, Displacement):
         Estimated error of the lift beyond rounding.
     deviation : Deviation, optional
         What smoothing took off rows.
+    open : bool
+        Whether it ends where its turn does.
     """
 
     lift: Piecewise
@@ -112,6 +115,12 @@ class Program(Brief, Displacement):
     cuts: Array
     error: float = 0.0
     deviation: Deviation | None = None
+    open: bool = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is repeated every turn."""
+        return not self.open
 
     @property
     def knots(self) -> Array:
@@ -202,6 +211,7 @@ class Program(Brief, Displacement):
                 after=float(survey.after[knot, order]),
             )
             for knot in np.flatnonzero(jumping.any(axis=1)).tolist()
+            if knot or not self.open
         )
 
     @property
@@ -216,7 +226,11 @@ class Program(Brief, Displacement):
 
 
 def make_program(
-    phases: Sequence[Phase], tolerances: Tolerances, *, oscillating: bool = False
+    phases: Sequence[Phase],
+    tolerances: Tolerances,
+    *,
+    oscillating: bool = False,
+    closed: bool = True,
 ) -> Program:
     """Make a program from its phases.
 
@@ -228,6 +242,8 @@ def make_program(
         Accuracy of laws that are expanded.
     oscillating : bool
         Whether lifts are angles.
+    closed : bool
+        Whether it is repeated; else its phases take parts of a way, which counts as a turn.
 
     Returns
     -------
@@ -239,15 +255,18 @@ def make_program(
     InfeasibleError
         If the program does not close, or a law has no value.
     """
-    for number, _, message, rule in program_problems(phases, oscillating=oscillating):
+    for number, _, message, rule in program_problems(
+        phases, oscillating=oscillating, closed=closed
+    ):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    widths = angles_of(phases)
+    widths = angles_of(phases) if closed else [phase.angle for phase in phases]
     share = TURN / sum(widths)
     angles = np.cumsum([0.0, *(width * share for width in widths)])
     angles[-1] = TURN
     heights = levels(phases)
-    heights[-1] = 0.0
+    if closed:
+        heights[-1] = 0.0
     shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
@@ -257,6 +276,8 @@ def make_program(
 
     def end_state(number: int) -> tuple[float, float]:
         """Velocity and acceleration at the end of a phase: its law fixes them by itself."""
+        if number < 0 and not closed:
+            return 0.0, 0.0
         match phases[number]:
             case SegmentPhase() as phase:
                 return phase.end[1:]
@@ -289,6 +310,7 @@ def make_program(
         stretches=tuple(stretches),
         cuts=np.union1d(lift.knots, cuts),
         error=swing * max((rise.error for rise in rises.values()), default=0.0),
+        open=not closed,
     )
 
 
