@@ -3,7 +3,8 @@
 A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the kind of
 what they hold: OUTLINE, BORE, HOLE, SLOT, INNER (inner teeth), MARK, CENTRODE, CENTER; a pair's
 layers begin with the wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME
-and FOLLOWER show what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name.
+and FOLLOWER show what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name. A
+groove has its walls on INNER and OUTER, and the edge of the disc that it is cut into on BLANK.
 *Placing* turns and shifts shapes without changing them otherwise.
 
 What a cutter burns away, its *kerf*, is nothing of the part's: it moves the paths of a drawing to
@@ -36,6 +37,8 @@ BORE: Final = "BORE"
 HOLE: Final = "HOLE"
 SLOT: Final = "SLOT"
 INNER: Final = "INNER"
+OUTER_WALL: Final = "OUTER"
+BLANK: Final = "BLANK"
 MARK: Final = "MARK"
 CENTRODE: Final = "CENTRODE"
 CENTER: Final = "CENTER"
@@ -46,7 +49,7 @@ FOLLOWER: Final = "FOLLOWER"
 TOOL: Final = "TOOL"
 LABEL: Final = "LABEL"
 
-OUTER: Final = (OUTLINE, PROFILE)
+OUTER: Final = (OUTLINE, PROFILE, BLANK)
 THROUGH: Final = (BORE, HOLE, SLOT, INNER)
 """Kinds that are cut: around the part, and right through it."""
 
@@ -56,7 +59,14 @@ DASHED: Final = (CENTRODE, PITCH, PRIME)
 KERF: Final = "_KERF"
 """End of layers that hold paths of a cutter, not edges of the part."""
 
-CLOSED: Final = (*OUTER, INNER, PITCH, TOOL, *(kind + KERF for kind in (*OUTER, BORE, SLOT, INNER)))
+CLOSED: Final = (
+    *OUTER,
+    INNER,
+    OUTER_WALL,
+    PITCH,
+    TOOL,
+    *(kind + KERF for kind in (*OUTER, BORE, SLOT, INNER)),
+)
 """Ends of layers whose closed curves are contours."""
 
 CROSS_SIZE: Final = 0.04
@@ -89,10 +99,11 @@ UNMOVED: Final[Placement] = (0.0, (0.0, 0.0))
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Feature(Brief):
-    """A shape on a layer."""
+    """A `shape` on a `layer`; `metal` where the part lies within it, as within an outline."""
 
     layer: str
     shape: Shape
+    metal: bool = False
 
     @property
     def kind(self) -> str:
@@ -182,18 +193,25 @@ def place(
 ) -> tuple[Feature, ...]:
     """Return features placed (see `placed`), a prefix before their layers."""
     return tuple(
-        Feature(layer=prefix + feature.layer, shape=placed(feature.shape, angle, offset))
+        replace(feature, layer=prefix + feature.layer, shape=placed(feature.shape, angle, offset))
         for feature in features
     )
 
 
 def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Feature, ...]:
-    """Return the `outline` of a `step`, openings and marks of a `part`, in its own frame."""
+    """Return the `outline` of a `step`, openings and pockets of a `part`, in its own frame."""
     layer = part.steps[step]
+    walls: dict[int, Feature] = {}  # one below the other may share an edge
+    for recess in part.recesses:
+        walls[id(recess.edge)] = Feature(layer=OUTER_WALL, shape=recess.edge)
+    for recess in part.recesses:
+        for one in recess.openings:
+            walls[id(one.shape)] = Feature(layer=INNER, shape=one.shape, metal=True)
     return (
         Feature(layer=outline, shape=layer.edge),
+        *walls.values(),
         *(Feature(layer=opening.kind, shape=opening.shape) for opening in layer.openings),
-        *(Feature(layer=MARK, shape=pocket.edge) for pocket in part.pockets),
+        *(Feature(layer=MARK, shape=mark.circle) for mark in part.marks),
     )
 
 
@@ -323,6 +341,7 @@ def cam_drawing(
     follower: Sequence[Shape] = (),
     *,
     angle: float = 0.0,
+    outline: str = PROFILE,
 ) -> Drawing:
     """Draw a cam with its pitch curve and prime circle, turned, below its follower.
 
@@ -338,13 +357,15 @@ def cam_drawing(
         Where it stands; may be empty.
     angle : float, rad
         Turn of the cam, counter-clockwise.
+    outline : str
+        Layer of the part's outline.
 
     Returns
     -------
     Drawing
         Named as the part.
     """
-    turning = list(part_features(part, outline=PROFILE))
+    turning = list(part_features(part, outline=outline))
     if pitch is not None:
         turning.append(Feature(layer=PITCH, shape=pitch))
     features = list(place(turning, angle, (0.0, 0.0)))

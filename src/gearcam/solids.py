@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 OVERSHOOT: Final = 1.0
-"""How far a mark's cutter stands above the face, in depths of the mark: faces must not coincide."""
+"""How far a pocket's cutter stands out of the face, in its depths: faces must not coincide."""
 
 ROUNDING: Final = 1e-8
 """The library keeps flat outlines on a grid of this step, mm."""
@@ -114,6 +114,8 @@ def _(part: Part) -> Mesh:
         made = manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
     for mark in part.marks:
         made = made - _cutter(manifold3d, mark, part)
+    for recess in part.cutters(OVERSHOOT):
+        made = made - _slab(manifold3d, recess, part.tolerance)
     mesh = _mesh(made)
     if not mesh.watertight:
         raise SolidError(f"{part.name}: the solid came out empty or open")

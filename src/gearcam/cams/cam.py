@@ -14,9 +14,11 @@ Depends on wall.
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import cached_property
 
 import numpy as np
 
+from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.display import Displayed
 from gearcam.numeric.arrays import Array
@@ -34,6 +36,11 @@ class Cam(Displayed):
     def motions(self) -> tuple[PitchMotion, ...]:
         """What the walls are of, at least one motion; the first has the lift asked for."""
         return self.walls
+
+    @cached_property
+    def play(self) -> Extreme | None:
+        """Largest play of the follower between walls, mm or rad; None where nothing holds it."""
+        return None
 
     @property
     def outline(self) -> Array:

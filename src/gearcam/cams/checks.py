@@ -200,3 +200,27 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
             error,
             limit=lead.tolerance,
         )
+
+
+@check(
+    "lost-motion",
+    kind=KIND,
+    limit=("lost_motion", Param(LENGTH, ge=0, doc="play of a follower between two walls"), 0.1),
+)
+def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
+    """Warn of a follower that moves while the cam stands still.
+
+    Looks at: the largest play of a follower that two walls hold: what it moves from one to the
+    other.
+    """
+    found, mechanism = cam.play, cam.motions[0].mechanism
+    if found is None:
+        return
+    play = found.value * mechanism.lever
+    angle = f" ({shown(math.degrees(found.value), 4)} deg)" if mechanism.oscillating else ""
+    if play > limit:
+        yield Remark(
+            f"Between its walls the follower has {shown(play, 4)} mm{angle} of play.",
+            f"at {_deg(found.theta)}",
+            play,
+        )

@@ -27,7 +27,7 @@ _NARROWEST = 1e-9
 """Width, rad, below which both sides of a corner may seem to have changed places."""
 
 
-def resting(mechanism: Mechanism, point: complex) -> Callable[[Jet], Jet]:
+def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Jet], Jet]:
     """Return the lift of a follower that rests on a point of the cam.
 
     Parameters
@@ -36,6 +36,8 @@ def resting(mechanism: Mechanism, point: complex) -> Callable[[Jet], Jet]:
         The follower.
     point : complex, mm
         In the cam's frame, turning counter-clockwise.
+    side : {1, -1}
+        Whether a round follower stands above the point or is pressed against it from below.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def resting(mechanism: Mechanism, point: complex) -> Callable[[Jet], Jet]:
         if m.flat:
             return y - m.start
         aside = x - m.offset
-        return y + sqrt(m.radius**2 - aside * aside) - m.start
+        return y + side * sqrt(m.radius**2 - aside * aside) - m.start
 
     def swinging(theta: Jet) -> Jet:
         x, y = place(theta)
@@ -71,12 +73,12 @@ def resting(mechanism: Mechanism, point: complex) -> Callable[[Jet], Jet]:
         if m.flat:
             return seen + asin(m.face_offset / sqrt(square)) - m.start
         reach = (square + (m.arm**2 - m.radius**2)) / (2.0 * m.arm * sqrt(square))
-        return seen + acos(reach) - m.start
+        return seen + side * acos(reach) - m.start
 
     return swinging if m.oscillating else sliding
 
 
-def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme:
+def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int = 1) -> Extreme:
     """Return the largest lift that a corner costs, and where.
 
     Parameters
@@ -87,13 +89,15 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme
         The follower.
     corner : Corner
         Of the trimmed profile, turning counter-clockwise.
+    side : {1, -1}
+        Whether the profile is within the pitch curve or beyond it.
 
     Returns
     -------
     Extreme
         Cam angle, rad, and lift, mm or rad, never negative.
     """
-    rest, start, end = resting(mechanism, corner.point), corner.before, corner.after
+    rest, start, end = resting(mechanism, corner.point, side), corner.before, corner.after
     if end < start:
         end += _TURN
     if end == start or end - start > _TURN - _NARROWEST:
@@ -102,7 +106,7 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner) -> Extreme
     def missing(theta: Array) -> list[Array]:
         with np.errstate(invalid="ignore"):
             given = rest(Jet.variable(theta, 1)).derivatives()
-        return list(np.subtract(program.derivatives(theta, 1), given))
+        return list(side * np.subtract(program.derivatives(theta, 1), given))
 
     places, values = extremes(missing, program.cuts_between(start, end))
     best = int(np.nanargmax(values))

@@ -63,6 +63,9 @@ class FollowerSpec(Brief):
         TEXT, default="translating", choices=("translating", "oscillating"), doc="how it moves"
     )
     roller_radius: float | None = _size(doc="radius of the roller")
+    roller2_radius: float | None = _size(
+        doc="radius of a second roller on the same pin, for the outer wall of a groove"
+    )
     dome_radius: float | None = _size(doc="radius of a domed face")
     offset: float = _aside(
         doc="of a translating follower's axis from the cam's; positive makes the rise easier"
@@ -124,7 +127,7 @@ class CamSpec:
     True
     """
 
-    form: str = param(TEXT, default="disc", choices=("disc",), doc="the form of the cam")
+    form: str = param(TEXT, default="disc", choices=("disc", "groove"), doc="the form of the cam")
     prime_radius: float | None = _size(
         doc="from the cam's axis to the centre of a round follower at zero lift"
     )
@@ -139,6 +142,16 @@ class CamSpec:
         choices=("ccw", "cw"),
         doc="direction in which the cam turns; cw gives the mirror image of ccw",
     )
+    outer_diameter: float | None = _size(doc="diameter of the disc that a groove is cut into")
+    groove_depth: float | None = _size(doc="depth of a groove, below the thickness")
+    roller_clearance: float | None = param(
+        LENGTH, default=None, ge=0, le=100,
+        doc="width of a groove less the roller's diameter; 0 when left out",
+    )  # fmt: skip
+    side: str | None = param(
+        TEXT, default=None, choices=("front", "back"),
+        doc="the face that a groove is cut into: front is +z, as when left out",
+    )  # fmt: skip
 
     @property
     def clockwise(self) -> bool:

@@ -150,8 +150,8 @@ class Wall(PitchMotion):
     Parameters
     ----------
     side : {1, -1}
-        Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; lost lift
-        and smallest radii are told of walls inside only.
+        Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; then it is
+        a follower that is pressed outwards that loses lift.
     """
 
     side: int = 1
@@ -202,12 +202,14 @@ class Wall(PitchMotion):
         if self.face_radius is not None:
             convex, concave = self.face_radius.low.value, math.inf
         else:
-            found, radius = self.pitch_curvature(), self.curve.mechanism.radius
+            found, radius = self.pitch_curvature(), self.mechanism.radius
             low, high = (found.low.value, found.high.value) if found else (0.0, 0.0)
+            if self.side < 0:
+                low, high = -high, -low
             convex = 1.0 / high - radius if high > 0.0 else math.inf
             concave = -1.0 / low + radius if low < 0.0 else math.inf
             for jump in self.program.hard:
-                if jump.after > jump.before:  # it rolls about its own centre
+                if self.side * (jump.after - jump.before) > 0.0:  # it rolls about its own centre
                     concave = min(concave, radius)
                 else:
                     convex = 0.0
@@ -267,7 +269,9 @@ class Wall(PitchMotion):
     @cached_property
     def lost(self) -> tuple[Extreme, ...]:
         """Largest lift, mm or rad, that each corner costs, with its cam angle, rad."""
-        return tuple(lost_lift(self.program, self.mechanism, corner) for corner in self.corners)
+        return tuple(
+            lost_lift(self.program, self.mechanism, corner, self.side) for corner in self.corners
+        )
 
     @cached_property
     def shortfall(self) -> float:
@@ -301,7 +305,7 @@ class Wall(PitchMotion):
         seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
         if not seen_whole and not made.polygon.is_valid:
             raise InfeasibleError(
-                "the profile crosses itself, and what is left of it cannot be told",
+                f"the {self.called} crosses itself, and what is left of it cannot be told",
                 where="[cam]",
                 nearest="no piece of it has a place in the order of the others",
             )

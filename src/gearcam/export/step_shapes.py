@@ -137,7 +137,7 @@ def _explained(part: Part, tolerance: float) -> float:
     """Return the volume between the true outlines and curves within the tolerance, mm^3."""
     return sum(
         edge.length * tolerance * layer.height
-        for layer in part.steps
+        for layer in (*part.steps, *part.recesses)
         for edge in (layer.edge, *(opening.shape for opening in layer.openings))
         if isinstance(edge, Contour)
     )
@@ -159,7 +159,9 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
     high = max(layer.high for layer in part.layers) + CLEARANCE
     cutters = [Layer(edge=opening.shape, low=low, high=high) for opening in late]
     if topmost:
-        cutters += [replace(one, high=one.high + OVERSHOOT * one.height) for one in part.pockets]
+        marks = part.pockets[: len(part.marks)]
+        cutters += [replace(one, high=one.high + OVERSHOOT * one.height) for one in marks]
+        cutters += part.cutters(OVERSHOOT)
     tools = [_prism(cutter, tolerance) for cutter in cutters]
     return _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
 

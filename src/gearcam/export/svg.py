@@ -75,7 +75,7 @@ def _element(feature: Feature, pixel: float) -> str:
     wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == drawings.FOLLOWER else 0
     ink, fill = INKS[wheel], FILLS[wheel]
     fills = {drawings.MARK: ink, **dict.fromkeys((*drawings.OUTER, drawings.FOLLOWER), fill)}
-    inside = fills.get(feature.kind, GROUND)
+    inside = fill if feature.metal else fills.get(feature.kind, GROUND)
     line, dashed = f'stroke="{ink}"', feature.kind in drawings.DASHED
     if dashed:
         dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"

@@ -8,7 +8,7 @@ A *part* is a body of layers, in its wheel's frame: its toothed plate from z = 0
 beyond. A *stepped* part has several outlines, one above the other, each of the same height.
 *Openings* go right through, those within the hub through it too; each step may have an *inner*
 edge of its own, such as the teeth of a ring. *Pockets* are taken out of one face: a *mark* is a
-shallow round one, engraved in the upper face.
+shallow round one, engraved in the upper face, a *recess* is milled out of either face.
 
 Refused: a contour that is not counter-clockwise, a width that is not positive.
 
@@ -17,7 +17,7 @@ Depends on numeric; shapely only inside `Part.region`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -102,6 +102,25 @@ class Layer(Brief):
         return self.edge.moments - sum(through, start=Moments())
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Recess(Layer):
+    """What is milled out of a face, such as a groove: the prism within its edge but for islands.
+
+    Parameters
+    ----------
+    width : float, mm
+        Diameter of the largest round tool that reaches every place.
+    place : (float, float), mm
+        A place where no larger one goes.
+    front : bool
+        Whether it is open to the upper face, or to the lower one.
+    """
+
+    width: float
+    place: tuple[float, float]
+    front: bool = True
+
+
 @dataclass(frozen=True, kw_only=True)
 class Hub:
     """A round boss about the axis: its `diameter`, how far it stands out in `front` and `back`."""
@@ -156,6 +175,8 @@ class Part(Brief, Displayed):
         Within the roots.
     marks : tuple of Mark
         Engraved in the face z = width.
+    recesses : tuple of Recess
+        Milled out of either face; those below one another do not overlap.
 
     Raises
     ------
@@ -171,6 +192,7 @@ class Part(Brief, Displayed):
     inner: tuple[Contour, ...] = ()
     hub: Hub | None = None
     marks: tuple[Mark, ...] = ()
+    recesses: tuple[Recess, ...] = ()
 
     def __post_init__(self) -> None:
         if not all(contour.area > 0 for contour in (*self.contours, *self.inner)):
@@ -208,8 +230,12 @@ class Part(Brief, Displayed):
         from gearcam.markup import outlines
 
         loops = [opening.shape.points(self.tolerance) for opening in self.steps[0].openings]
-        marks = [pocket.edge.points(self.tolerance) for pocket in self.pockets]
-        return outlines(self.facts.headline, [self.outline, *loops, *marks])
+        edges = [
+            edge.points(self.tolerance)
+            for pocket in self.pockets
+            for edge in (pocket.edge, *(island.shape for island in pocket.openings))
+        ]
+        return outlines(self.facts.headline, [self.outline, *loops, *edges])
 
     @property
     def outline(self) -> Array:
@@ -257,10 +283,20 @@ class Part(Brief, Displayed):
 
     @cached_property
     def pockets(self) -> tuple[Layer, ...]:
-        """What is taken out of layers, from their upper face down."""
-        return tuple(
+        """What is taken out of layers, from one of their faces."""
+        marks = (
             Layer(edge=mark.circle, low=self.width - mark.depth, high=self.width)
             for mark in self.marks
+        )
+        return (*marks, *self.recesses)
+
+    def cutters(self, overshoot: float) -> tuple[Layer, ...]:
+        """Return the recesses as they are cut: beyond their face by `overshoot`, in heights."""
+        return tuple(
+            replace(one, high=self.width + overshoot * one.height)
+            if one.front
+            else replace(one, low=-overshoot * one.height)
+            for one in self.recesses
         )
 
     @cached_property

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 from gearcam.display import Brief
 from gearcam.findings import Remark, check
@@ -42,15 +43,24 @@ class PartsSubject(Brief):
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
-        """The largest tools for the outlines; of stepped parts for their lowest."""
-        return tuple(tool_limits(part.contour) for part in self.parts)
+        """The largest tools for outlines, of stepped parts for their lowest, and for recesses."""
+        return tuple(_tools(part) for part in self.parts)
+
+
+def _tools(part: Part) -> ToolLimits:
+    found = [tool_limits(part.contour)]
+    for one in part.recesses:
+        width, place = one.width, one.place
+        found.append(ToolLimits(inner_radius=inf, inner_place=None, slot=width, slot_place=place))
+    return min(found, key=lambda limits: limits.diameter)
 
 
 @check("thin-wall", kind=KIND, limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0))
 def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
     """Warn of thin walls.
 
-    Looks at: walls between openings, and between openings and the outline or the hub's edge.
+    Looks at: walls between openings, and between openings and the outline or the hub's edge;
+    between a groove and the outline, and below its floor.
     """
     for name, part in zip(subject.names, subject.parts, strict=True):
         walls = list(_walls(part))
@@ -82,6 +92,16 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
             yield max(wall, 0.0), f"{opening.name} and the {name.name}"
         for edge, what in edges:
             yield max(float(ring.distance(edge)) - radius, 0.0), f"{opening.name} and the {what}"
+    for recess in part.recesses:
+        rim = LinearRing(recess.edge.points(part.tolerance))
+        yield float(rim.distance(edges[0][0])), "groove and the outline"
+        floor = recess.low if recess.front else part.width - recess.high
+        yield floor, "groove's floor and the other face"
+        islands = [LinearRing(one.shape.points(part.tolerance)) for one in recess.openings]
+        for opening, (ring, radius) in zip(part.openings, rings, strict=True):
+            for island in islands:
+                wall = float(ring.distance(island)) - radius
+                yield max(wall, 0.0), f"{opening.name} and the groove"
 
 
 @check("wide-kerf", kind=KIND, unit="mm")

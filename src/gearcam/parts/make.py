@@ -12,7 +12,7 @@ import numpy as np
 from gearcam.errors import Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.body import Hub, Mark, Part
+from gearcam.parts.body import Hub, Mark, Part, Recess
 from gearcam.parts.openings import Workpiece, openings
 
 
@@ -23,6 +23,9 @@ def make_part(
     blank: WheelBlank,
     work: Workpiece,
     marker: Callable[[], Mark] | None = None,
+    *,
+    recesses: tuple[Recess, ...] = (),
+    room: Sequence[Contour] = (),
 ) -> Part:
     """Make the part of a wheel.
 
@@ -40,6 +43,10 @@ def make_part(
         Which wheel.
     marker : callable, optional
         Gives the timing mark; called only if marks are wanted.
+    recesses : tuple of Recess
+        What is milled out of its faces.
+    room : sequence of Contour
+        What openings and hub keep within; the outlines where left out.
 
     Returns
     -------
@@ -50,14 +57,20 @@ def make_part(
     InfeasibleError
         If something has no room, or meets something else.
     """
-    found = openings(blank, contours, work)
+    found = openings(blank, room or contours, work)
     hub = None
     if blank.hub_diameter:
         hub = Hub(diameter=blank.hub_diameter, front=blank.hub_front, back=blank.hub_back)
-        _demand_within(hub, contours, work)
+        _demand_within(hub, room or contours, work)
     marks = (marker(),) if marker is not None and blank.timing_marks else ()
     part = Part(
-        name=name, contours=tuple(contours), width=width, openings=found, hub=hub, marks=marks
+        name=name,
+        contours=tuple(contours),
+        width=width,
+        openings=found,
+        hub=hub,
+        marks=marks,
+        recesses=recesses,
     )
     _demand_marks(part, work)
     return part

@@ -87,6 +87,13 @@ class Circle(Brief):
         spokes = np.column_stack([np.cos(angle), np.sin(angle)])
         return self.center + 0.5 * self.diameter * spokes
 
+    def contour(self, tolerance: float) -> Contour:
+        """Return the circle as a contour within a `tolerance`, mm, of four runs."""
+        spokes = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+        vertices = self.center + 0.5 * self.diameter * spokes
+        quarter = np.full(4, math.tan(math.pi / 8.0))
+        return Loop(vertices=vertices, bulges=quarter).contour(tolerance)
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Loop(Brief):

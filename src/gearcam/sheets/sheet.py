@@ -17,7 +17,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from gearcam.drawings import OUTLINE, THROUGH, Feature
+from gearcam.drawings import OUTER_WALL, OUTLINE, THROUGH, Feature
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 
@@ -32,7 +32,7 @@ FRAME: Final = "FRAME"
 EDGE: Final = "EDGE"
 """Layers beside those of drawings; EDGE holds visible edges that no cutter follows."""
 
-HEAVY: Final = (OUTLINE, *THROUGH, EDGE)
+HEAVY: Final = (OUTLINE, OUTER_WALL, *THROUGH, EDGE)
 """Kinds that are drawn thick."""
 
 THICK: Final = 0.5

@@ -116,7 +116,9 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     keyed = wheel.bore if isinstance(wheel.bore, Loop) else None
     shown = 2.0 * wheel.bore_radius if keyed else 0.0
     size = wheel.high - wheel.low + [part.thickness + shown, 0.0]
-    levels = 1 + len(part.bosses) + (part.hub is not None)  # below the side view
+    levels = (
+        1 + len(part.bosses) + (part.hub is not None) + len(part.recesses)
+    )  # below the side view
     below = FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if keyed else 0.0)
     rows = len(facts) + len(part.openings) + 2
@@ -140,8 +142,14 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
 
 def _front_view(board: Board, wheel: _Wheel) -> None:
     part = wheel.part
+    behind = {
+        id(edge)
+        for one in part.recesses
+        if not one.front
+        for edge in (one.edge, *(island.shape for island in one.openings))
+    }
     for feature in part_features(part, -1):
-        board.draw(feature.layer, feature.shape)
+        board.draw(HIDDEN if id(feature.shape) in behind else feature.layer, feature.shape)
     if part.hub is not None:
         circle = Circle(center=np.zeros(2), diameter=part.hub.diameter)
         board.draw(EDGE if part.hub.front > 0.0 else HIDDEN, circle)
@@ -168,6 +176,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
         for opening in layer.openings:
             for y in _span(opening.shape) if opening.kind == INNER else ():
                 board.line(HIDDEN, (low, y), (high, y))
+    _recesses(board, part, back)
     if wheel.turns:
         over = OVERHANG * unit
         board.line(CENTERLINE, (left - over, 0.0), (end + over, 0.0))
@@ -178,8 +187,10 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     lengths = [(back, back + part.width)]
     lengths += [(back + boss.low, back + boss.high) for boss in part.bosses]
     lengths += [(left, end)] if part.hub is not None else []
+    lengths += [(back + one.low, back + one.high) for one in part.recesses]
+    hidden = base if part.recesses else -0.5 * hub.diameter
     for level, (low, high) in enumerate(lengths):
-        y = [base if (x in (back, back + part.width)) else -0.5 * hub.diameter for x in (low, high)]
+        y = [base if (x in (back, back + part.width)) else hidden for x in (low, high)]
         at = base - (FIRST_LEVEL + LEVEL * level) * unit
         board.linear((low, y[0]), (high, y[1]), at)
     level = 0
@@ -192,6 +203,17 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
         x = end if front else left
         at = end + (FIRST_LEVEL + LEVEL * level) * unit if front else left - FIRST_LEVEL * unit
         board.linear((x, -radius), (x, radius), at, vertical=True, prefix="Ø")
+
+
+def _recesses(board: Board, part: Part, back: float) -> None:
+    """Draw the hidden edges of what is milled out of faces into the side view."""
+    for recess in part.recesses:
+        low, high = back + recess.low, back + recess.high
+        bottom, top = _span(recess.edge)
+        for y in (bottom, top):
+            board.line(HIDDEN, (low, y), (high, y))
+        floor = low if recess.front else high
+        board.line(HIDDEN, (floor, bottom), (floor, top))
 
 
 def _span(edge: Edge) -> tuple[float, float]:

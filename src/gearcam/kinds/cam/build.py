@@ -152,9 +152,9 @@ class CamResult(Result):
         for one, values in zip(motions, told, strict=True):
             columns[f"pressure_angle{_ending(one)}_deg"] = np.degrees(values["pressure"])
         for one, values in zip(motions, told, strict=True):
-            columns[f"rho_pitch{_ending(one)}_mm"] = values["rho_pitch"]
+            columns[rho_column("pitch", one)] = values["rho_pitch"]
         for wall in walls:
-            columns[f"rho_profile{_ending(wall)}_mm"] = wall.radii(theta)
+            columns[rho_column("profile", wall)] = wall.radii(theta)
         return Columns(columns)
 
     @property
@@ -299,6 +299,11 @@ class CamResult(Result):
 def _ending(one: PitchMotion) -> str:
     """Return what follows in the names of columns of a motion or wall."""
     return f"_{one.key}" if one.key else ""
+
+
+def rho_column(what: str, one: PitchMotion) -> str:
+    """Return the column of radii of a ``pitch`` curve or a ``profile``: `what`, of which `one`."""
+    return f"rho_{what}{_ending(one)}_mm"
 
 
 def build(design: CamDesign, tolerances: Tolerances = DEFAULT) -> CamResult:

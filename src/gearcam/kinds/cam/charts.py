@@ -11,6 +11,7 @@ import numpy as np
 from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
 from gearcam.findings import limit_of
+from gearcam.kinds.cam.build import rho_column
 from gearcam.numeric.columns import Columns
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
@@ -53,10 +54,21 @@ def _pressure_angle(result: CamResult) -> Chart:
     )
 
 
+def _radii(result: CamResult) -> dict[str, str]:
+    """Return the columns of radii of the motion's table, by what a chart calls them."""
+    pitches = {
+        f"pitch curve {one.key}".strip(): rho_column("pitch", one) for one in result.cam.motions
+    }
+    walls = {
+        f"{one.called} before trimming": rho_column("profile", one) for one in result.cam.walls
+    }
+    return pitches | walls
+
+
 def _curvature(result: CamResult) -> Chart:
     table, radius = _table(result), result.mechanism.radius
     with np.errstate(divide="ignore"):
-        lines = {label: 1.0 / rho for label, rho in result.form.curvature_lines(table).items()}
+        lines = {label: 1.0 / table[name] for label, name in _radii(result).items()}
     pitch = [np.abs(values).max() for label, values in lines.items() if label.startswith("pitch")]
     largest = _TIMES * max(1.0 / radius if radius else 0.0, *map(float, pitch))
     tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)

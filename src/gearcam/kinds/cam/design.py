@@ -37,7 +37,7 @@ NAME: Final = "cam"
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 
-LATER_FORMS: Final = ("groove", "conjugate", "cylinder", "translating")
+LATER_FORMS: Final = ("conjugate", "cylinder", "translating")
 """Forms of cams that are planned."""
 
 _OF_WHEELS: Final = ("stop_pin", "tip_rounding", "timing_marks", "mark_diameter")
@@ -210,7 +210,7 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
 
 KIND: Final = DesignKind(
     name=NAME,
-    doc="a disc cam with its follower",
+    doc="a cam with its follower",
     design=CamDesign,
     main=TITLE,
     examine_main=_examine_motion,

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from gearcam.cams.wall import PitchMotion, Wall
-from gearcam.drawings import Circle, Drawing, Path, Shape, cam_drawing
+from gearcam.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
 from gearcam.parts.body import Part
 
 
@@ -62,3 +63,15 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
         return [line]
     middle = np.array([side * center.real, center.imag])
     return [Circle(center=middle, diameter=2.0 * m.radius), line]
+
+
+def grooved(
+    part: Part, walls: Sequence[Wall], follower: Sequence[Shape] = (), *, angle: float = 0.0
+) -> Drawing:
+    """Return a drawing of a disc with a groove, the first wall within it (see `cam_drawing`)."""
+    pitch, least = walls[0].pitch_contour, walls[0].mechanism.least
+    drawing = cam_drawing(part, pitch, least, follower, angle=angle, outline=BLANK)
+    # a circle stays one in files
+    edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
+    blank, *others = drawing.features
+    return replace(drawing, features=(replace(blank, shape=edge), *others))

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
 from gearcam.export.shared import (
     STEP_PART,
     Files,
@@ -152,14 +151,7 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
     from gearcam.drawings import TOOL, Drawing, Feature
     from gearcam.export.table import outline_bytes
 
-    radius = result.design.output.tool_radius or result.mechanism.radius
-    if not radius:
-        raise InfeasibleError(
-            "the way of a cutter needs its radius",
-            where="output.tool_radius_mm",
-            nearest="a round follower's own radius counts where none is given; this one has none",
-        )
-    paths = result.form.paths(result, radius)
+    paths = result.form.paths(result, result.design.output.tool_radius)
     tables = {f"{name}.csv": outline_bytes(path.vertices) for name, path in paths.items()}
     drawings = [
         Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
-    from gearcam.numeric.arrays import Array
-    from gearcam.numeric.columns import Columns
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
 
@@ -90,25 +88,19 @@ class Form(Protocol):
         """Return the assembled cam with its follower, at the angle of the design."""
 
     @abstractmethod
-    def paths(self, result: CamResult, radius: float) -> Mapping[str, Contour]:
+    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return ways of the middle of a cutter of a `radius`, mm, by the stems of their files."""
 
     @abstractmethod
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return what is known of the cam beyond follower, size and pressure angles."""
 
-    def curvature_lines(self, table: Columns) -> dict[str, Array]:
-        """Return the radii of a table of the motion, mm, that a chart shows, by their labels."""
-        return {
-            "pitch curve": table["rho_pitch_mm"],
-            "profile before trimming": table["rho_profile_mm"],
-        }
-
 
 FORMS: Registry[Form] = Registry(
     "a form of cams",
     {
         "gearcam.kinds.cam.forms.disc": ("disc",),
+        "gearcam.kinds.cam.forms.groove": ("groove",),
     },
 )
 """The forms by name, each loaded when it is asked for."""

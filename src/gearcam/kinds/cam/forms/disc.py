@@ -9,6 +9,7 @@ import numpy as np
 
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.mechanism import make_mechanism
+from gearcam.errors import InfeasibleError
 from gearcam.facts import Fact
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, trimming
@@ -27,7 +28,7 @@ STEM: Final = "cam"
 TOOL_PATH: Final = "tool_path"
 """Stem of the files of a cutter's way."""
 
-_RIM_PART = 2.0 / 3.0
+RIM_PART = 2.0 / 3.0
 """Rim that lightening holes keep where the design gives none, in thicknesses."""
 
 
@@ -52,7 +53,7 @@ def plate_part(result: CamResult, name: str, profile: Contour, thickness: float)
     from gearcam.parts.make import finished, make_part
     from gearcam.parts.openings import RIM, Workpiece
 
-    place = Workpiece(name=name, module=_RIM_PART * thickness / RIM)
+    place = Workpiece(name=name, module=RIM_PART * thickness / RIM)
     blank = result.design.blank
     return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
 
@@ -96,9 +97,18 @@ class Disc(Form):
         side = -1.0 if wall.clockwise else 1.0
         return plate(part, wall, follower(wall, pose, reach), angle=side * pose)
 
-    def paths(self, result: CamResult, radius: float) -> Mapping[str, Contour]:
+    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return the way around the plate."""
         from gearcam.parts.parallel import moved, sized
+
+        radius = radius or result.mechanism.radius
+        if not radius:
+            raise InfeasibleError(
+                "the way of a cutter needs its radius",
+                where="output.tool_radius_mm",
+                nearest="a round follower's own radius counts where none is given; this one has "
+                "none",
+            )
 
         (part,), where = result.parts, "output.tool_radius_mm"
         path = sized(lambda size: moved(part.contour, size), radius, where, "radius of the cutter")

@@ -1,0 +1,185 @@
+"""A groove cam: a disc with a groove that holds a roller from both sides.
+
+Both walls are parallels of one pitch curve, each trimmed its own way: the groove is the union of
+all discs along it. Without clearance a roller fills the groove; the clearance is the groove's width
+less the roller's diameter. Two rollers on one pin, one above the other, may touch a wall each:
+the first that within the pitch curve, the second that beyond it; then each wall has its own half
+width, and where the larger roller passes, the wall that it must not touch stands back by as much as
+the smaller one is clear of its own.
+
+Refused: what disc cams refuse, of the widest roller, and blanks that the groove would open.
+
+Depends on cam, disc, play, wall and mechanism.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from gearcam.cams.cam import Cam
+from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
+from gearcam.cams.measures import Extreme
+from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.play import Rest, largest_play
+from gearcam.cams.wall import PitchMotion, Wall
+from gearcam.display import Brief
+from gearcam.errors import InfeasibleError, Way
+from gearcam.facts import Fact, Facts
+from gearcam.laws.program import Program
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GrooveCam(Brief, Cam):
+    """A groove cam.
+
+    Parameters
+    ----------
+    motion : PitchMotion
+        Of the roller that touches the inner wall.
+    inner, outer : Wall
+        Within and beyond the pitch curve; their followers are as wide as the groove.
+    radius2 : float, mm
+        Of the roller that touches the outer wall.
+    relief : Wall or None
+        In place of the wall that the larger of two rollers must not touch, where it passes.
+    """
+
+    motion: PitchMotion
+    inner: Wall
+    outer: Wall
+    radius2: float
+    relief: Wall | None = None
+
+    @property
+    def walls(self) -> tuple[Wall, ...]:
+        """The inner and the outer wall."""
+        return self.inner, self.outer
+
+    @property
+    def motions(self) -> tuple[PitchMotion, ...]:
+        """The one motion of both."""
+        return (self.motion,)
+
+    @property
+    def width(self) -> float:
+        """Of the groove, mm: where it is narrowest if it has two."""
+        return self.inner.mechanism.radius + self.outer.mechanism.radius
+
+    @property
+    def reach(self) -> float:
+        """Largest distance of the groove from the axis, mm."""
+        walls = (self.outer, self.relief or self.outer)
+        radius = max(wall.mechanism.radius for wall in walls if wall.side < 0)
+        return _farthest(self.motion) + radius
+
+    @cached_property
+    def play(self) -> Extreme:
+        """Largest lost motion, mm or rad: what the follower moves while the cam stands still."""
+        return largest_play(
+            Rest(wall=self.inner, radius=self.motion.mechanism.radius),
+            Rest(wall=self.outer, radius=self.radius2),
+        )
+
+    @cached_property
+    def facts(self) -> Facts:
+        """What the cam knows of itself; the facts of its result tell more."""
+        low, high = self.motion.program.range
+        swings = self.motion.mechanism.oscillating
+        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+        tree = {
+            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "prime_radius_mm": self.motion.mechanism.least,
+            "width_mm": self.width,
+            "lost_motion": Fact(scale * self.play.value, "lost motion", unit=unit),
+            **{
+                wall.key: {"perimeter_mm": wall.size.perimeter, "area_mm2": wall.size.area}
+                for wall in self.walls
+            },
+        }
+        return Facts(tree, ("total_lift",), "groove cam")
+
+
+def _farthest(motion: PitchMotion) -> float:
+    """Return the largest distance of the roller's centre from the axis, mm."""
+    m = motion.mechanism
+    return replace(m, start=m.start + motion.program.range[1]).least
+
+
+def make_groove(
+    program: Program,
+    mechanism: Mechanism,
+    *,
+    clearance: float = 0.0,
+    radius2: float | None = None,
+    diameter: float = math.inf,
+    clockwise: bool = False,
+    tolerance: float = CHORD_TOLERANCE,
+) -> GrooveCam:
+    """Return a groove cam after proving that its follower can stand wherever the lift puts it.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    mechanism : Mechanism
+        The follower, with the radius of the roller, of two that on the inner wall.
+    clearance : float, mm
+        Width of the groove less the roller's diameter; half of it at each of two rollers.
+    radius2 : float, mm, optional
+        Of a second roller, on the outer wall.
+    diameter : float, mm
+        Of the blank.
+    clockwise : bool
+        Whether the cam turns clockwise.
+    tolerance : float, mm
+        Chord error of its contours.
+
+    Returns
+    -------
+    GrooveCam
+
+    Raises
+    ------
+    InfeasibleError
+        If it cannot, or the groove would open the blank.
+    """
+    common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
+    radius, second = mechanism.radius, mechanism.radius if radius2 is None else radius2
+
+    def wall(size: float, side: int, key: str) -> Wall:
+        wide = replace(mechanism, radius=size + 0.5 * clearance)
+        return Wall(mechanism=wide, side=side, key=key, called=f"{key} wall", **common)
+
+    relief = None
+    if second != radius:
+        side, far = (1 if second > radius else -1), 2.0 * max(radius, second) - min(radius, second)
+        relief = wall(far, side, "relief")
+    inner, outer = wall(radius, 1, "inner"), wall(second, -1, "outer")
+    deepest = relief if relief is not None and relief.side > 0 else inner
+    make_cam(program, deepest.mechanism)
+    made = GrooveCam(
+        motion=PitchMotion(mechanism=mechanism, **common),
+        inner=inner,
+        outer=outer,
+        radius2=second,
+        relief=relief,
+    )
+    least = 2.0 * made.reach
+    if not diameter > least:
+        raise InfeasibleError(
+            "the groove opens the edge of the blank",
+            where="cam.outer_diameter_mm",
+            value=diameter,
+            limit=least,
+            unit="mm",
+            nearest="the limit is twice the groove's largest distance from the axis, excluded",
+            ways=(
+                Way(
+                    near={"cam.outer_diameter_mm": least},
+                    far={"cam.outer_diameter_mm": 1.5 * least},
+                ),
+            ),
+        )
+    return made

@@ -1,0 +1,201 @@
+"""The play of a follower between two walls: how far it moves while the cam stands still, exactly.
+
+A roller that rests on a wall has its centre on the parallel of the pitch curve that is nearer to
+the wall by half the clearance, or on an arc about a corner that trimming has left. A centre on that
+parallel is at a place of the cam which tells the angle at which the follower stands there and its
+lift in closed form; for a given angle the place is a bracketed root.
+
+Depends on curve, lost, mechanism and numeric; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from gearcam.cams.curve import ProfileSegments, segments, unit
+from gearcam.cams.lost import resting
+from gearcam.cams.measures import Extreme
+from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.wall import Wall
+from gearcam.display import Brief
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import places_between
+from gearcam.numeric.roots import bracketed_root, newton_in_bracket
+
+_TURN = 2.0 * math.pi
+
+_STEP = 1e-8
+"""Last step of a search, rad or in units of a jump's velocity: its error is the square of it."""
+
+_ROUNDING = 1e-13
+"""Angle, rad: more than rounding makes of one in a turn."""
+
+_FLAT = 1e-6
+"""Width, rad, of a bracket about a largest play: the value there changes with its square."""
+
+_APART = 1e-9
+"""Angle, rad, below which two ends of stretches are one."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rest(Brief):
+    """A roller that is pressed against a wall.
+
+    Parameters
+    ----------
+    wall : Wall
+        As wide as its groove.
+    radius : float, mm
+        Of the roller, at most that of the wall.
+    """
+
+    wall: Wall
+    radius: float
+
+    @property
+    def _mechanism(self) -> Mechanism:
+        return replace(self.wall.mechanism, radius=self.radius)
+
+    @cached_property
+    def _centers(self) -> ProfileSegments:
+        """The curve on which centres stand, before corners count."""
+        curve = replace(self.wall.curve, mirrored=False)
+        inset = self.wall.side * (self.wall.mechanism.radius - self.radius)
+        return segments(replace(curve, mechanism=replace(curve.mechanism, radius=inset)), inset)
+
+    def _standing(self, theta: Array, centers: Plane) -> tuple[Array, Array, Plane]:
+        """Return angles at which centres in the cam's frame are reached, lifts, fixed places."""
+        m, square = self.wall.mechanism, np.abs(centers) ** 2
+        if m.oscillating:
+            swing = np.arccos((m.pivot**2 + m.arm**2 - square) / (2.0 * m.pivot * m.arm))
+            fixed, lift = m.pivot - m.arm * unit(-swing), swing - m.start
+        else:
+            height = np.sqrt(square - m.offset**2)
+            fixed, lift = m.offset + 1j * height, height - m.start
+        turn = np.angle(fixed * np.conj(centers) * unit(-theta))
+        return theta + turn, lift, fixed
+
+    def _moving(self, index: Ints, parameter: Array) -> tuple[Array, Array, Array, Array]:
+        """Return angles and lifts at places of the curve of centres, with their slopes."""
+        m = self.wall.mechanism
+        jumps = self._centers.jump[index]
+        knots = self._centers.curve.program.knots[self._centers.piece[index]]
+        theta = np.where(jumps, knots, parameter)
+        centers, velocities = self._centers.moving(index, parameter)
+        stands, lift, fixed = self._standing(theta, centers)
+        # seen along the follower's way and across it
+        across = unit(-(m.start + lift)) if m.oscillating else np.ones_like(fixed)
+        drawn = np.conj(across) * velocities * unit(stands)
+        turned = np.conj(across) * 1j * fixed
+        slope = -drawn.real / turned.real
+        rise = (drawn.imag + turned.imag * slope) / (m.arm if m.oscillating else 1.0)
+        return stands, lift, slope, rise
+
+    @cached_property
+    def _starts(self) -> Array:
+        """Angles at which the pieces of that curve begin."""
+        begin = self._centers.start
+        return self._moving(np.arange(len(begin)), begin)[0]
+
+    @cached_property
+    def ends(self) -> Array:
+        """Angles, rad, between which the lift is smooth."""
+        bends = self._moving(*self._centers.breaks)[0]
+        return np.concatenate([self._starts, bends, *(np.array(pair) for pair, _ in self._corners)])
+
+    @cached_property
+    def _corners(self) -> Sequence[tuple[tuple[float, float], complex]]:
+        """Corners with the angles between which the roller rests on them."""
+        found = []
+        for corner in self.wall.corners:
+            theta = np.array([corner.before, corner.after])
+            s, ds = self.wall.program.derivatives(theta, 1)
+            before = self._centers.curve
+            inset = self._centers.inset
+            places = [before.trace(theta, s, ds, inset)[0]]
+            angles = self._standing(theta, places[0])[0]
+            found.append(((float(angles[0]), float(angles[1])), corner.point))
+        return found
+
+    def lift(self, theta: Array) -> tuple[Array, Array]:
+        """Return the lift of the resting follower and its slope.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+
+        Returns
+        -------
+        lift, slope : (n,) arrays
+            mm or rad, and per rad.
+        """
+        centers, starts = self._centers, np.maximum.accumulate(self._starts)
+        aim = starts[0] + np.mod(theta - starts[0], _TURN)
+        index = np.searchsorted(starts, aim, side="right") - 1
+        low, high = centers.start[index], centers.end[index]
+
+        def function(parameter: Array) -> tuple[Array, Array]:
+            stands, _, slope, _ = self._moving(index, parameter)
+            return stands - aim, slope
+
+        first = np.where(centers.jump[index], 0.5 * (low + high), np.clip(aim, low, high))
+        places = newton_in_bracket(function, low, high, first, _STEP, _ROUNDING)
+        _, lift, slope, rise = self._moving(index, places)
+        rise = rise / slope
+        for inside, point in self._on_corners(theta):
+            given = resting(self._mechanism, point, self.wall.side)
+            lift[inside], rise[inside] = given(Jet.variable(theta[inside], 1)).derivatives()
+        return lift, rise
+
+    def _on_corners(self, theta: Array) -> Iterator[tuple[Mask, complex]]:
+        for (before, after), point in self._corners:
+            yield np.mod(theta - before, _TURN) <= np.mod(after - before, _TURN), point
+
+
+def largest_play(inner: Rest, outer: Rest) -> Extreme:
+    """Return the largest play of a follower between two walls, and where.
+
+    Parameters
+    ----------
+    inner, outer : Rest
+        Its roller, or its rollers, on the walls within and beyond the pitch curve.
+
+    Returns
+    -------
+    Extreme
+        Cam angle, rad, and lift, mm or rad.
+    """
+
+    def play(theta: Array) -> list[Array]:
+        rows = zip(outer.lift(theta), inner.lift(theta), strict=True)
+        return [high - low for high, low in rows]
+
+    ends = np.sort(np.mod(np.concatenate([inner.ends, outer.ends, [0.0]]), _TURN))
+    kept = ends[np.append(True, np.diff(ends) > _APART)]
+    x = places_between(np.append(kept[kept < _TURN - _APART], _TURN))
+    values, slopes = (found.reshape(x.shape) for found in play(x.ravel()))
+    best = int(values.argmax())
+    place, value = float(x.flat[best]), float(values.flat[best])
+    # a function lies below its tangents about a largest value: few cells can hold it
+    low, high, width = slopes[:, :-1], slopes[:, 1:], np.diff(x, axis=1)
+    top = np.minimum(values[:, :-1] + low * width, values[:, 1:] - high * width)
+    cells = np.nonzero((low > 0.0) & (high < 0.0) & (top > value))
+    if len(cells[0]):
+        roots = bracketed_root(
+            lambda theta: play(theta)[1],
+            x[:, :-1][cells],
+            x[:, 1:][cells],
+            _FLAT,
+            (low[cells], high[cells]),
+        )
+        found = play(roots)[0]
+        if found.max() > value:
+            place, value = float(roots[found.argmax()]), float(found.max())
+    return Extreme(theta=place % _TURN, value=max(0.0, value))
