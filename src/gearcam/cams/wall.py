@@ -40,7 +40,7 @@ CHORD_TOLERANCE = 1e-3
 _TURN = [(0.0, 2.0 * math.pi)]
 """The whole turn, as stretches of it."""
 
-_OVERSAMPLING = 8
+OVERSAMPLING = 8
 """Dense points per chord: their own chord error is 1/64 of the polygon's."""
 
 
@@ -321,13 +321,17 @@ class Wall(PitchMotion):
         """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
         if self.mechanism.flat or self.mechanism.radius == 0.0:
             return self.contour
-        return self._contour(self._sampled(self._drawn(segments(self.curve, 0.0))))
+        return self._contour(self._pitch_sampler)
+
+    @property
+    def _pitch_sampler(self) -> Sampler:
+        return self._sampled(self._drawn(segments(self.curve, 0.0)))
 
     def _contour(self, sampler: Sampler) -> Contour:
         _, points, error = sampler.chords
         clockwise = not self.clockwise  # theta draws against the cam's turning
         return Contour(
-            dense=lambda: sampler.runs(_OVERSAMPLING, reverse=clockwise),
+            dense=lambda: sampler.runs(OVERSAMPLING, reverse=clockwise),
             vertices=as_pairs(points[::-1] if clockwise else points),
             tolerance=self.tolerance,
             chord_error=error,
