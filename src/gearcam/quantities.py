@@ -159,7 +159,8 @@ def _type_of(field: dataclasses.Field[Any]) -> str:
     words = [kind.__name__ if isinstance(kind, type) else str(kind)]
     for alias, text in _ALIASES.items():
         words = [re.sub(alias, text, word) for word in words]
-    quantities = (made.quantity, *((made.angular.quantity,) if made.angular else ()))
+    others = (other.quantity for other in (made.angular, made.sliding) if other)
+    quantities = (made.quantity, *others)
     words += [" or ".join(one.unit.replace("deg", "rad") for one in quantities if one.unit)]
     if field.default is not REQUIRED:
         words.append("optional" if field.default is None else f"default {field.default!r}")

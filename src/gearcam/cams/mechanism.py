@@ -75,9 +75,9 @@ class Driver(Brief):
         """The name of its column."""
         return f"{self.symbol}_{self.unit}"
 
-    def told(self, theta: float, digits: int = 6) -> str:
-        """Return an angle, rad, as people are told, with its unit, to some `digits`."""
-        return f"{shown(self.scale * theta, digits)} {self.unit}"
+    def told(self, theta: float) -> str:
+        """Return an angle, rad, as people are told, with its unit."""
+        return f"{shown(self.scale * theta)} {self.unit}"
 
     def seen(self, theta: float) -> str:
         """Return a place for a table of facts: rounding shows as nothing."""
@@ -219,6 +219,51 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
         math.sqrt((pivot + arm - size) * (pivot + arm + size)),
     )
     return Mechanism(start=2.0 * half, arm=arm, pivot=pivot, **kind)
+
+
+def make_sliding_mechanism(follower: FollowerSpec, way: float) -> Mechanism:
+    """Return the numbers of a follower over a cam that slides.
+
+    Parameters
+    ----------
+    follower : FollowerSpec
+        The follower, round.
+    way : float, mm
+        How far the cam slides.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    InfeasibleError
+        If the arm does not reach the height of zero lift.
+    """
+    kind = {"flat": False, "radius": follower.radius, "slide": way / (2.0 * math.pi)}
+    if not follower.oscillating:
+        return Mechanism(oscillating=False, start=0.0, tilt=follower.axis, **kind)
+    arm, height = _given(follower.arm, "an arm"), follower.pivot_height
+    if not abs(height) < arm:
+        raise InfeasibleError(
+            "the arm does not reach down to zero lift"
+            if height > 0.0
+            else "the arm does not reach up to zero lift",
+            where="follower.pivot_height_mm",
+            value=height,
+            limit=math.copysign(arm, height),
+            unit="mm",
+            nearest="the limit is the arm, excluded",
+            ways=(
+                Way(
+                    near={"follower.pivot_height_mm": math.copysign(arm, height)},
+                    far={"follower.pivot_height_mm": 0.0},
+                ),
+            ),
+        )
+    pivot = _given(follower.pivot_distance, "a pivot distance")
+    start = -math.asin(height / arm)
+    return Mechanism(oscillating=True, start=start, arm=arm, pivot=pivot, height=height, **kind)
 
 
 def _out_of_reach(

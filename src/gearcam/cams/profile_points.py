@@ -76,13 +76,15 @@ class ProfilePoints:
         return index, middle, radius + 2.0 * self.sagitta[index].max(axis=1)
 
 
-def profile_points(points: Plane | Array) -> ProfilePoints:
+def profile_points(points: Plane | Array, around: bool = True) -> ProfilePoints:
     """Return the points of a profile, cleaned.
 
     Parameters
     ----------
     points : (n,) complex array or (n, 2) array, mm
         A closed profile in order, either way around; equal neighbours are dropped.
+    around : bool
+        Whether it goes around the cam's axis; one that slides has none.
 
     Returns
     -------
@@ -104,16 +106,19 @@ def profile_points(points: Plane | Array) -> ProfilePoints:
         raise InfeasibleError(
             "the profile has too few points", value=len(z), limit=FEWEST, unit="points"
         )
-    around = float(np.angle(np.roll(z, -1) * np.conj(z)).sum()) / (2.0 * math.pi)
-    if abs(abs(around) - 1.0) > 0.25 or not np.all(z):
+    if not around:
+        turned = float((np.conj(z) * np.roll(z, -1)).imag.sum())
+        return ProfilePoints(points=z if turned > 0.0 else z[::-1].copy())
+    turns = float(np.angle(np.roll(z, -1) * np.conj(z)).sum()) / (2.0 * math.pi)
+    if abs(abs(turns) - 1.0) > 0.25 or not np.all(z):
         raise InfeasibleError(
             "the profile does not go around the cam's axis once",
-            value=around,
+            value=turns,
             limit=1.0,
             unit="turns",
             nearest="one closed line in order, with the origin inside",
         )
-    return ProfilePoints(points=z if around > 0.0 else z[::-1].copy())
+    return ProfilePoints(points=z if turns > 0.0 else z[::-1].copy())
 
 
 def in_plane(points: Plane | Array) -> Plane:

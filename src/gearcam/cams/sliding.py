@@ -178,6 +178,11 @@ class SlidingCam(Brief, Cam):
         return self.motion.mechanism.driver.turn
 
     @property
+    def width(self) -> float:
+        """Of the groove, mm."""
+        return 2.0 * self.lower.mechanism.radius
+
+    @property
     def plate(self) -> Plate:
         """What it is cut from."""
         return self.lower.plate

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 from gearcam.display import Brief
 from gearcam.numerals import shown
-from gearcam.quantities import LENGTH, TEXT, param
+from gearcam.quantities import ANGLE, LENGTH, TEXT, param
 
 KIND: Final = "cams"
 """The checks of cams."""
@@ -36,6 +36,11 @@ _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
 def _size(*, doc: str) -> Any:
     """Return a length that a follower or cam may have."""
     return param(LENGTH, default=None, gt=0, le=1e6, doc=doc)
+
+
+def _run(*, doc: str) -> Any:
+    """Return a length of standstill."""
+    return param(LENGTH, default=0.0, ge=0, le=1e6, doc=doc)
 
 
 def _aside(*, doc: str) -> Any:
@@ -74,6 +79,16 @@ class FollowerSpec(Brief):
     pivot_distance: float | None = _size(doc="from the cam's axis to the pivot")
     face_offset: float = _aside(
         doc="of an oscillating flat follower: how far its face stands off the pivot to the cam"
+    )
+
+    axis: float = param(
+        ANGLE, default=0.0, gt=-80, lt=80,
+        doc="of a translating follower over a translating cam: how far its way leans in the "
+        "direction in which the cam moves",
+    )  # fmt: skip
+    pivot_height: float = _aside(
+        doc="of an oscillating follower over a translating cam: its pivot above the roller's "
+        "centre at zero lift"
     )
 
     @property
@@ -127,7 +142,9 @@ class CamSpec:
     True
     """
 
-    form: str = param(TEXT, default="disc", choices=("disc", "groove"), doc="the form of the cam")
+    form: str = param(
+        TEXT, default="disc", choices=("disc", "groove", "translating"), doc="the form of the cam"
+    )
     prime_radius: float | None = _size(
         doc="from the cam's axis to the centre of a round follower at zero lift"
     )
@@ -152,6 +169,13 @@ class CamSpec:
         TEXT, default=None, choices=("front", "back"),
         doc="the face that a groove is cut into: front is +z, as when left out",
     )  # fmt: skip
+
+    walls: str | None = param(
+        TEXT, default=None, choices=("lower", "both"),
+        doc="of a translating cam: the wall below the follower, as when left out, or a groove",
+    )  # fmt: skip
+    run_in: float = _run(doc="way of a translating cam before its motion, at zero lift")
+    run_out: float = _run(doc="way of a translating cam after its motion, at the last lift")
 
     @property
     def clockwise(self) -> bool:

@@ -6,7 +6,7 @@ ranges. What a schema cannot say (knots must rise, formulas must parse) the read
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from gearcam.designs.faults import description
@@ -139,10 +139,18 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
 def _titled(kind: DesignKind, title: str) -> Schema:
     made = table_schema(kind.table(title))
     if title in kind.one_of:
-        made["oneOf"] = [{"required": [key]} for key in kind.one_of[title]]
+        made["oneOf"] = [_either(one) for one in kind.one_of[title]]
     if title == "output":
         made["properties"]["files"]["uniqueItems"] = True
     return made
+
+
+def _either(one: str | Mapping[str, Sequence[str]]) -> Schema:
+    """Return what one of several alternatives asks for: a key, or words of a key."""
+    if isinstance(one, str):
+        return {"required": [one]}
+    words = {key: {"enum": list(values)} for key, values in one.items()}
+    return {"required": list(one), "properties": words}
 
 
 def _property(key: Key) -> Schema:

@@ -166,7 +166,8 @@ def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: dict[str, Any]
     for drawing in drawings:
         name = f"{drawing.name}.dxf"
         files[name] = dxf_bytes(drawing, style)
-        known["error_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
+        if drawing.contours:
+            known["error_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
     return files
 
 

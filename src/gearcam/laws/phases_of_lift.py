@@ -2,11 +2,11 @@
 
 The *lift* is a length for translating followers and an angle for oscillating ones; a file says
 which (``lift_mm``, ``lift_deg``). What a phase takes is an angle of a cam that turns and a length,
-its *way*, of one that slides (``angle_deg``, ``way_mm``). A *rise* goes up by its lift after a law on the unit square, a
-*return* comes down after one (by all that was risen, if it gives no lift), a *dwell* stands still,
-and a *segment* goes from the state in which the phase before it ends to a lift with a velocity and
-an acceleration, so that phases join without a dwell. The angle of one phase may be
-``"rest"``: what the others leave of the turn.
+its *way*, of one that slides (``angle_deg``, ``way_mm``). A *rise* goes up by its lift after a law
+on the unit square, a *return* comes down after one (by all that was risen, if it gives no lift), a
+*dwell* stands still, and a *segment* goes from the state in which the phase before it ends to a
+lift with a velocity and an acceleration, so that phases join without a dwell. The angle of one
+phase may be ``"rest"``: what the others leave of the turn.
 
 Refused by reading: phases that do not fill a turn, a rest that is none, programs that end at
 another lift than they begin with. A cam that slides has no turn: its program is *open*, and its

@@ -10,10 +10,11 @@ Source: 000 section 3.3, eqs. (3.3)-(3.5).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -260,31 +261,13 @@ def make_program(
     ):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    widths = angles_of(phases) if closed else [phase.angle for phase in phases]
-    share = TURN / sum(widths)
-    angles = np.cumsum([0.0, *(width * share for width in widths)])
-    angles[-1] = TURN
-    heights = levels(phases)
-    if closed:
-        heights[-1] = 0.0
+    angles, heights = _ends(phases, closed)
     shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
         _Place(*ends, *lifts)
         for ends, lifts in zip(pairwise(angles.tolist()), pairwise(heights), strict=True)
     ]
-
-    def end_state(number: int) -> tuple[float, float]:
-        """Velocity and acceleration at the end of a phase: its law fixes them by itself."""
-        if number < 0 and not closed:
-            return 0.0, 0.0
-        match phases[number]:
-            case SegmentPhase() as phase:
-                return phase.end[1:]
-            case RisePhase() as phase:
-                return places[number].end_state(rises[phase.law])
-            case DwellPhase():
-                return 0.0, 0.0
 
     pieces: list[tuple[float, Piece]] = []
     stretches: list[PlacedPhase] = []
@@ -296,7 +279,9 @@ def make_program(
                 pieces.append((place.end, Piece(polynomial, parameters=(place.start, place.base))))
             case SegmentPhase():
                 kind = "rise" if place.rise >= 0.0 else "return"
-                pieces.append((place.end, place.quintic(end_state(number - 1), phase.end[1:])))
+                before = _end_state(phases[number - 1], places[number - 1], rises)
+                start = before if number or closed else (0.0, 0.0)
+                pieces.append((place.end, place.quintic(start, phase.end[1:])))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 pieces += place.pieces(rises[phase.law])
@@ -312,6 +297,29 @@ def make_program(
         error=swing * max((rise.error for rise in rises.values()), default=0.0),
         open=not closed,
     )
+
+
+def _ends(phases: Sequence[Phase], closed: bool) -> tuple[Array, list[float]]:
+    """Return the angles, rad, and the lifts at which phases begin, and the last one ends."""
+    widths = angles_of(phases) if closed else [float(phase.angle) for phase in phases]
+    share = TURN / sum(widths)
+    angles = np.cumsum([0.0, *(width * share for width in widths)])
+    angles[-1] = TURN
+    heights = levels(phases)
+    if closed:
+        heights[-1] = 0.0
+    return angles, heights
+
+
+def _end_state(phase: Phase, place: _Place, rises: Mapping[Any, Rise]) -> tuple[float, float]:
+    """Return velocity and acceleration at the end of a phase: its law fixes them by itself."""
+    match phase:
+        case SegmentPhase():
+            return phase.end[1:]
+        case RisePhase():
+            return place.end_state(rises[phase.law])
+        case DwellPhase():
+            return 0.0, 0.0
 
 
 @dataclass(frozen=True)
