@@ -56,6 +56,13 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "cam.curvature.pitch_rise_min_mm": (22.670419, 5e-7),
         "motion.peak_velocity": (2 * 10 / (math.pi / 2), 1e-12),
     },
+    "groove_cam": {
+        # the walls are parallels of a pitch curve of 221.58887350723 mm, 12.05 mm apart
+        "cam.groove.inner.perimeter_mm": (221.58887350723 - math.pi * 12.05, 1e-10),
+        "cam.groove.outer.perimeter_mm": (221.58887350723 + math.pi * 12.05, 1e-10),
+        "cam.pressure_angle_deg.return_max": (31.810726, 5e-7),
+        "cam.groove.inner.radius_mm.min": (30 - 6.025, 1e-12),
+    },
     "plate_cam_oscillating": {
         "cam.start_angle_deg": (DEG * math.acos((100**2 + 90**2 - 40**2) / 18000), 1e-12),
         # modified sine has the lower peak acceleration, 3-4-5 the higher peak velocity

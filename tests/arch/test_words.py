@@ -46,7 +46,8 @@ TERMS = (
     "centrode", "addendum curve", "form point", "fillet interference", "backlash", "contact ratio",
     "overclosure", "rack travel", "stepped gear", "knife-edge follower", "profile segment",
     "pitch curve", "prime circle", "base circle", "cam profile", "pressure angle", "undercut",
-    "transmission error", "track", "wall", "body", "lift", "profile shift", "contact patch",
+    "transmission error", "track", "wall", "groove cam", "lost motion",
+    "body", "lift", "profile shift", "contact patch",
     "half-tooth", "edge contact", "non-contact stretch", "leading tooth pair",
 )  # fmt: skip
 GLOSSARY = (rules.ROOT / "docs" / "conventions.md").read_text("utf-8")

@@ -383,8 +383,9 @@ def test_a_quiet_cam_has_no_findings() -> None:
 def test_every_check_of_cams_is_covered() -> None:
     codes = {code for kind, code in CHECKS if kind == KIND}
     tried = {name.split()[0] for name in EDGES} | {
-        *("sharp-profile", "hard-shock", "soft-shock", "coarse-rows")
+        *("sharp-profile", "hard-shock", "soft-shock", "coarse-rows"),
+        "lost-motion",  # in test_groove_cams.py
     }
     assert codes == tried
     limits = {check.limit[0] for (kind, _), check in CHECKS.items() if kind == KIND and check.limit}
-    assert limits == {"pressure_angle", "lost_lift", "profile_radius"}
+    assert limits == {"pressure_angle", "lost_lift", "profile_radius", "lost_motion"}

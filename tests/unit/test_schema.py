@@ -264,7 +264,7 @@ def test_reader_and_schema_refuse_the_same_cams(edits: Edits) -> None:
         (("motion", 3, "to_mm"), None),
         (("follower", "type"), "ball"),
         (("follower",), None),
-        (("cam", "form"), "groove"),
+        (("cam", "form"), "conjugate"),
         (("cam", "prime_radius_mm"), None),
         (("cam", "base_radius_mm"), 30),
         (("blank", "bore_diameter_mm"), [20, 20]),

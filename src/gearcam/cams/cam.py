@@ -38,8 +38,8 @@ class Cam(Displayed):
         return self.walls
 
     @cached_property
-    def play(self) -> Extreme | None:
-        """Largest play of the follower between walls, mm or rad; None where nothing holds it."""
+    def lost_motion(self) -> Extreme | None:
+        """Largest lost motion between walls, mm or rad; None where nothing holds the follower."""
         return None
 
     @property

@@ -209,22 +209,21 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 @check(
     "lost-motion",
     kind=KIND,
-    limit=("lost_motion", Param(LENGTH, ge=0, doc="play of a follower between two walls"), 0.1),
+    limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between walls"), 0.1),
 )
 def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a follower that moves while the cam stands still.
 
-    Looks at: the largest play of a follower that two walls hold: what it moves from one to the
-    other.
+    Looks at: the largest lost motion of a follower that two walls hold: from one to the other.
     """
-    found, mechanism = cam.play, cam.motions[0].mechanism
+    found, mechanism = cam.lost_motion, cam.motions[0].mechanism
     if found is None:
         return
-    play = found.value * mechanism.lever
+    lost = found.value * mechanism.lever
     angle = f" ({shown(math.degrees(found.value), 4)} deg)" if mechanism.oscillating else ""
-    if play > limit:
+    if lost > limit:
         yield Remark(
-            f"Between its walls the follower has {shown(play, 4)} mm{angle} of play.",
+            f"Between its walls the follower has {shown(lost, 4)} mm{angle} of lost motion.",
             f"at {mechanism.driver.told(found.theta)}",
-            play,
+            lost,
         )

@@ -9,7 +9,7 @@ the smaller one is clear of its own.
 
 Refused: what disc cams refuse, of the widest roller, and blanks that the groove would open.
 
-Depends on cam, disc, play, wall and mechanism.
+Depends on cam, disc, lost_motion, wall and mechanism.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from functools import cached_property
 
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
+from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.play import Rest, largest_play
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
@@ -75,9 +75,9 @@ class GrooveCam(Brief, Cam):
         return _farthest(self.motion) + radius
 
     @cached_property
-    def play(self) -> Extreme:
+    def lost_motion(self) -> Extreme:
         """Largest lost motion, mm or rad: what the follower moves while the cam stands still."""
-        return largest_play(
+        return largest_lost_motion(
             Rest(wall=self.inner, radius=self.motion.mechanism.radius),
             Rest(wall=self.outer, radius=self.radius2),
         )
@@ -92,7 +92,7 @@ class GrooveCam(Brief, Cam):
             "total_lift": Fact(scale * (high - low), "lift", unit=unit),
             "prime_radius_mm": self.motion.mechanism.least,
             "width_mm": self.width,
-            "lost_motion": Fact(scale * self.play.value, "lost motion", unit=unit),
+            "lost_motion": Fact(scale * self.lost_motion.value, "lost motion", unit=unit),
             **{
                 wall.key: {"perimeter_mm": wall.size.perimeter, "area_mm2": wall.size.area}
                 for wall in self.walls

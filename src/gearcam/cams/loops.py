@@ -71,8 +71,9 @@ def without_small_loops(
     left: list[tuple[float, float]] = []
     closes = segments.curve.program.closed
     for parts in over_the_end(undercut, closes):
-        # of two parts, one on each side of the turn's end, the later one begins
-        found = _closed(segments, (parts[-1][0], parts[0][1]), size)
+        # of two parts, one on each side of the turn's end, the later one begins; a jump at that
+        # end is no stretch behind it
+        found = _closed(segments, (parts[-1][0], parts[0][1] or parts[-1][1]), size)
         if found is None:
             left += parts
         else:

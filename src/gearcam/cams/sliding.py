@@ -9,7 +9,7 @@ Frame: people see the mirror image, as of a cam that turns clockwise: the cam mo
 
 Refused: arms that stand upright, plates that do not hold their walls.
 
-Depends on cam, play, wall and mechanism.
+Depends on cam, lost_motion, wall and mechanism.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import numpy as np
 from gearcam.cams.cam import Cam
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.play import Rest, largest_play
+from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.wall import CHORD_TOLERANCE, OVERSAMPLING, PitchMotion, Wall
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
@@ -188,13 +188,13 @@ class SlidingCam(Brief, Cam):
         return self.lower.plate
 
     @cached_property
-    def play(self) -> Extreme | None:
+    def lost_motion(self) -> Extreme | None:
         """Largest lost motion in a groove, mm or rad."""
         if self.upper is None:
             return None
         radius = self.motion.mechanism.radius
         lower, upper = (Rest(wall=wall, radius=radius) for wall in self.walls)
-        return largest_play(lower, upper)
+        return largest_lost_motion(lower, upper)
 
     @cached_property
     def edge(self) -> Contour:

@@ -131,7 +131,7 @@ class FollowerSpec(Brief):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CamSpec:
+class CamSpec(Brief):
     """A cam: its form, its size, its direction of turning.
 
     Examples

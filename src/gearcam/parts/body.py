@@ -177,6 +177,8 @@ class Part(Brief, Displayed):
         Engraved in the face z = width.
     recesses : tuple of Recess
         Milled out of either face; those below one another do not overlap.
+    turns : bool
+        Whether it turns about the origin where that lies within its outline.
 
     Raises
     ------
@@ -193,6 +195,7 @@ class Part(Brief, Displayed):
     hub: Hub | None = None
     marks: tuple[Mark, ...] = ()
     recesses: tuple[Recess, ...] = ()
+    turns: bool = True
 
     def __post_init__(self) -> None:
         if not all(contour.area > 0 for contour in (*self.contours, *self.inner)):

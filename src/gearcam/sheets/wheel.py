@@ -73,7 +73,7 @@ class _Wheel:
     def turns(self) -> bool:
         """Whether the axis lies within the outline: racks have none."""
         corners = as_complex(self.part.contours[-1].vertices)
-        if not corners.all():
+        if not (self.part.turns and corners.all()):
             return False
         turn = float(np.angle(np.roll(corners, -1) / corners).sum())
         return abs(turn) > math.pi

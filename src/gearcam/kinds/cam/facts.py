@@ -103,7 +103,7 @@ def _cam(result: CamResult) -> Tree:
         "pivot_distance_mm": given.pivot_distance,
         "arm_mm": given.arm,
         "face_offset_mm": given.face_offset or None,
-        "offset_mm": None if swings else given.offset,
+        "offset_mm": None if swings or mechanism.slide else given.offset,
         **result.form.sizes(result),
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": _pressure(result),

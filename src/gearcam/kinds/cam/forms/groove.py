@@ -159,7 +159,7 @@ class Groove(Form):
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return sizes of the groove, its lost motion, and both walls."""
         cam, given = _cam(result), result.design.cam
-        swings, play = cam.motion.mechanism.oscillating, cam.play
+        swings, lost = cam.motion.mechanism.oscillating, cam.lost_motion
         scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
         return {
             "outer_diameter_mm": Fact(given.outer_diameter, "diameter of the blank"),
@@ -168,9 +168,9 @@ class Groove(Form):
             "roller_clearance_mm": given.roller_clearance or 0.0,
             "start_angle_deg": math.degrees(cam.motion.mechanism.start) if swings else None,
             "lost_motion": Fact(
-                scale * play.value,
+                scale * lost.value,
                 "lost motion",
-                place=f"at {shown(math.degrees(play.theta), scale=360.0)} deg",
+                place=f"at {shown(math.degrees(lost.theta), scale=360.0)} deg",
                 unit=unit,
                 shown=True,
             ),

@@ -137,6 +137,7 @@ class Translating(Form):
                 width=thickness,
                 openings=tuple(holes),
                 recesses=tuple(recesses),
+                turns=False,
             ),
         )
 
@@ -209,7 +210,7 @@ class Translating(Form):
         }
 
     def facts(self, result: CamResult) -> dict[str, Any]:
-        """Return curvature, undercut and length of the walls, and the play in a groove."""
+        """Return curvature, undercut and length of the walls, and the lost motion in a groove."""
         cam, given = _cam(result), result.design.cam
         mechanism, rows = cam.motion.mechanism, zip(cam.walls, result.contours, strict=True)
         told = {
@@ -226,16 +227,16 @@ class Translating(Form):
         swings = mechanism.oscillating
         start = {"start_angle_deg": math.degrees(mechanism.start) if swings else None}
         clearance = result.design.blank.clearance
-        if cam.play is None:
+        if cam.lost_motion is None:
             return {**start, "clearance_mm": clearance or None, **told}
         scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
         return {
             **start,
             "roller_clearance_mm": given.roller_clearance or 0.0,
             "lost_motion": Fact(
-                scale * cam.play.value,
+                scale * cam.lost_motion.value,
                 "lost motion",
-                place=mechanism.driver.seen(cam.play.theta),
+                place=mechanism.driver.seen(cam.lost_motion.theta),
                 unit=unit,
                 shown=True,
             ),

@@ -1,4 +1,4 @@
-"""The play of a follower between two walls: how far it moves while the cam stands still, exactly.
+"""Lost motion: how far a follower moves between two walls while the cam stands still, exactly.
 
 A roller that rests on a wall has its centre on the parallel of the pitch curve that is nearer to
 the wall by half the clearance, or on an arc about a corner that trimming has left. A centre on that
@@ -37,7 +37,7 @@ _ROUNDING = 1e-13
 """Angle, rad: more than rounding makes of one in a turn."""
 
 _FLAT = 1e-6
-"""Width, rad, of a bracket about a largest play: the value there changes with its square."""
+"""Width, rad, of a bracket about a largest value, which changes with its square."""
 
 _APART = 1e-9
 """Angle, rad, below which two ends of stretches are one."""
@@ -185,8 +185,8 @@ class Rest(Brief):
             yield np.mod(theta - before, _TURN) <= np.mod(after - before, _TURN), point
 
 
-def largest_play(inner: Rest, outer: Rest) -> Extreme:
-    """Return the largest play of a follower between two walls, and where.
+def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
+    """Return the largest lost motion of a follower between two walls, and where.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def largest_play(inner: Rest, outer: Rest) -> Extreme:
         Cam angle, rad, and lift, mm or rad.
     """
 
-    def play(theta: Array) -> list[Array]:
+    def missing(theta: Array) -> list[Array]:
         rows = zip(outer.lift(theta), inner.lift(theta), strict=True)
         return [high - low for high, low in rows]
 
@@ -211,7 +211,7 @@ def largest_play(inner: Rest, outer: Rest) -> Extreme:
     ends = np.sort(np.clip(ends, first, last))
     kept = ends[np.append(True, np.diff(ends) > _APART)]
     x = places_between(np.append(kept[kept < last - _APART], last))
-    values, slopes = (found.reshape(x.shape) for found in play(x.ravel()))
+    values, slopes = (found.reshape(x.shape) for found in missing(x.ravel()))
     best = int(values.argmax())
     place, value = float(x.flat[best]), float(values.flat[best])
     # a function lies below its tangents about a largest value: few cells can hold it
@@ -220,13 +220,13 @@ def largest_play(inner: Rest, outer: Rest) -> Extreme:
     cells = np.nonzero((low > 0.0) & (high < 0.0) & (top > value))
     if len(cells[0]):
         roots = bracketed_root(
-            lambda theta: play(theta)[1],
+            lambda theta: missing(theta)[1],
             x[:, :-1][cells],
             x[:, 1:][cells],
             _FLAT,
             (low[cells], high[cells]),
         )
-        found = play(roots)[0]
+        found = missing(roots)[0]
         if found.max() > value:
             place, value = float(roots[found.argmax()]), float(found.max())
     return Extreme(theta=place % _TURN, value=max(0.0, value))
