@@ -24,6 +24,7 @@ Source: derived anew; conventions as in `mechanism`.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 from typing import Final
@@ -165,8 +166,9 @@ def _stand(mechanism: Mechanism, angles: Array) -> tuple[Plane, Plane]:
     """Return how the cam stands at each angle: a turn, then a shift, mm."""
     m = mechanism
     if not m.slide:
-        return np.exp(1j * angles), np.zeros(angles.shape, dtype=np.complex128)
-    turn = np.full(angles.shape, np.exp(1j * m.tilt))
+        turn: Plane = np.exp(1j * angles, dtype=np.complex128)
+        return turn, np.zeros(angles.shape, dtype=np.complex128)
+    turn = np.full(angles.shape, cmath.exp(1j * m.tilt), dtype=np.complex128)
     return turn, turn * (m.slide * angles) - 1j * m.height
 
 
@@ -210,6 +212,8 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
     # half the angle from the three sides: exact for a small roller too
     rest = np.maximum((far + arm - reach) * (far + arm + reach), 0.0)
     turn = 2.0 * np.arctan2(np.sqrt(np.maximum(room, 0.0)), np.sqrt(rest))
+    if mechanism.slide:  # beyond the pivot, where the arm of a disc cam's follower may stand
+        room = np.where(toward.real + reach < 0.0, -np.inf, room)
     return np.where(reach > far + arm, np.inf, own + turn), room
 
 

@@ -139,9 +139,10 @@ class Mechanism(Brief):
 
     def sliding_centre(self, position: Array) -> Plane:
         """Return centres of a round follower over a cam that slides, in the fixed frame."""
-        if self.oscillating:
-            return complex(-self.pivot, self.height) + self.arm * np.exp(1j * position)
-        return 1j * cmath.exp(1j * self.tilt) * position
+        if not self.oscillating:
+            return np.asarray(1j * cmath.exp(1j * self.tilt) * position, dtype=np.complex128)
+        arm = self.arm * np.exp(1j * position)
+        return np.asarray(complex(-self.pivot, self.height) + arm, dtype=np.complex128)
 
     @property
     def lever(self) -> float:
@@ -242,8 +243,8 @@ def make_sliding_mechanism(follower: FollowerSpec, way: float) -> Mechanism:
     """
     kind = {"flat": False, "radius": follower.radius, "slide": way / (2.0 * math.pi)}
     if not follower.oscillating:
-        return Mechanism(oscillating=False, start=0.0, tilt=follower.axis, **kind)
-    arm, height = _given(follower.arm, "an arm"), follower.pivot_height
+        return Mechanism(oscillating=False, start=0.0, tilt=follower.axis or 0.0, **kind)
+    arm, height = _given(follower.arm, "an arm"), follower.pivot_height or 0.0
     if not abs(height) < arm:
         raise InfeasibleError(
             "the arm does not reach down to zero lift"

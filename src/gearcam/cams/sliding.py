@@ -23,9 +23,9 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.cams.cam import Cam
+from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.wall import CHORD_TOLERANCE, OVERSAMPLING, PitchMotion, Wall
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
@@ -40,6 +40,10 @@ _UPRIGHT = 0.5 * math.pi
 
 _DENSE = 1 / 40
 """Chord error of dense points over the tolerance."""
+
+_COVERED = 2.0
+"""Chord errors by which a wall may come nearer to the follower's first and last place than it is
+wide."""
 
 _ALIKE = 1e-9
 """Distance of corners, mm, below which they are one: rounding."""
@@ -81,13 +85,29 @@ class SlidingWall(Wall):
     @cached_property
     def line(self) -> Array:
         """Vertices of the wall, (n, 2), mm, from the beginning of the way to its end."""
-        return as_pairs(self.sampler.chords[1])
+        points = self.sampler.chords[1]
+        centers = as_complex(self.pitch_line[[0, -1]])
+        room = np.abs(points[:, None] - centers).min(axis=0)
+        covered = room < self.mechanism.radius - _COVERED * self.tolerance
+        if covered.any():
+            key = "cam.run_in_mm" if covered[0] else "cam.run_out_mm"
+            lack = 2.0 * self.mechanism.radius
+            end = "begins" if covered[0] else "ends"
+            raise InfeasibleError(
+                f"where its way {end} the follower cuts away what it needs elsewhere: the "
+                f"{self.called} is undercut there",
+                where=key,
+                value=float(room[covered].min()),
+                limit=self.mechanism.radius,
+                unit="mm",
+                nearest="these are distances from the follower's centre",
+                ways=(Way(far={key: lack}),),
+            )
+        return as_pairs(points)
 
     @cached_property
     def pitch_line(self) -> Array:
         """Vertices of the pitch curve, (n, 2), mm, from the beginning of the way to its end."""
-        if self.mechanism.radius == 0.0:
-            return self.line
         return as_pairs(self._pitch_sampler.chords[1])
 
     def stretch(self, *, reverse: bool = False) -> Stretch:

@@ -12,6 +12,7 @@ from typing import Any, Final
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS, DesignKind
 from gearcam.designs.table import Key, Table
+from gearcam.quantities import REQUIRED
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
@@ -155,7 +156,7 @@ def _either(one: str | Mapping[str, Sequence[str]]) -> Schema:
 
 def _property(key: Key) -> Schema:
     words: Schema = {"description": description(key)}
-    if not key.required and key.default is not None:
+    if key.default not in (None, REQUIRED):
         words["default"] = key.outward(key.default)
     single = _single(key)
     if key.length is None:

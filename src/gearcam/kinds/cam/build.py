@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 FOLLOWED: Final = "followed.csv"
 """The motion that a given profile makes."""
 
+WAY_STEP: Final = 1.0
+"""Step of a translating cam's way where the design gives none, mm."""
+
 _WHOLE: Final = 1e-9
 """Part of a step by which a turn may fall short of a whole number of them: rounding."""
 
@@ -103,7 +106,9 @@ class CamResult(Result):
     def angles(self) -> Array:
         """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
         output, driver = self.design.output, self.mechanism.driver
-        step = output.way_step / driver.rate if self.form.slides else output.motion_step
+        step = (
+            (output.way_step or WAY_STEP) / driver.rate if self.form.slides else output.motion_step
+        )
         made = step * np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1.0)
         if self.program.open:  # whose end no beginning repeats
             made = np.append(made[made < 2.0 * math.pi * (1.0 - _WHOLE)], 2.0 * math.pi)

@@ -61,7 +61,7 @@ class CamOutputSpec(OutputSpec):
     ----------
     pose : float, rad
         Cam angle of the assembled cam.
-    place : float, mm
+    place : float or None, mm
         Way of the assembled translating cam.
 
     Examples
@@ -83,11 +83,12 @@ class CamOutputSpec(OutputSpec):
     motion_step: float = param(
         ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
     )
-    way_step: float = param(
-        LENGTH, default=1.0, gt=0, le=1e6, doc="step of a translating cam's way in motion.csv"
-    )
-    place: float = param(
-        LENGTH, default=0.0, ge=0, le=1e6, word="u",
+    way_step: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6,
+        doc="step of a translating cam's way in motion.csv; 1 mm when left out",
+    )  # fmt: skip
+    place: float | None = param(
+        LENGTH, default=None, ge=0, le=1e6, word="u",
         doc="way at which a translating cam is drawn below its follower",
     )  # fmt: skip
     inspection_points: int = param(

@@ -15,10 +15,11 @@ from gearcam.cams.wall import CHORD_TOLERANCE
 from gearcam.designs.faults import Fault, show
 from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Fact
+from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import FORMS, Form, Keys
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH
 from gearcam.kinds.cam.wall_facts import curvature, trimming
-from gearcam.laws.phases_of_lift import DwellPhase
+from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
 from gearcam.numerals import shown
 
@@ -82,20 +83,13 @@ class Translating(Form):
 
     def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
         """Return the lift over the way, with its run before and after."""
-        runs = (design.cam.run_in, design.cam.run_out)
-        before, after = ([DwellPhase(angle=run)] if run else [] for run in runs)
-        motion = design.motion
-        if not isinstance(motion, Sequence):
-            raise TypeError("a translating cam is told by phases")
         swings = design.follower.oscillating
-        return make_program(
-            [*before, *motion, *after], tolerances, oscillating=swings, closed=False
-        )
+        return make_program(_phases(design), tolerances, oscillating=swings, closed=False)
 
     def make(self, design: CamDesign, program: Program) -> SlidingCam:
         """Return the cam."""
-        cam, blank = design.cam, design.blank
-        way = math.fsum([cam.run_in, cam.run_out, *(float(one.angle) for one in design.motion)])
+        cam, blank = design.cam, _blank(design)
+        way = math.fsum(float(one.angle) for one in _phases(design))
         return make_sliding(
             program,
             make_sliding_mechanism(design.follower, way),
@@ -153,7 +147,7 @@ class Translating(Form):
         """Return the plate below its follower."""
         from gearcam.kinds.cam.drawn import follower
 
-        place, (motion,) = result.design.output.place, result.cam.motions
+        place, (motion,) = result.design.output.place or 0.0, result.cam.motions
         if place > (way := _cam(result).way):
             raise InfeasibleError(
                 "the cam does not slide so far",
@@ -203,8 +197,8 @@ class Translating(Form):
             "way_mm": Fact(cam.way, "way"),
             "run_in_mm": given.cam.run_in or None,
             "run_out_mm": given.cam.run_out or None,
-            "axis_deg": math.degrees(given.follower.axis) or None,
-            "pivot_height_mm": given.follower.pivot_height if swings else None,
+            "axis_deg": math.degrees(given.follower.axis or 0.0) or None,
+            "pivot_height_mm": (given.follower.pivot_height or 0.0) if swings else None,
             "length_mm": plate.right - plate.left,
             "height_mm": plate.high - plate.low,
         }
@@ -287,6 +281,23 @@ def _milled_faults(output: Any) -> Iterator[Fault]:
         yield Fault(("output", "files"), message, "cut-svg", rule)
 
 
+def _phases(design: CamDesign) -> list[Phase]:
+    """Return the phases of a design with its run before and after."""
+    motion = design.motion
+    if not isinstance(motion, Sequence):
+        raise TypeError("a translating cam is told by phases")
+    before, after = ([DwellPhase(angle=run)] if run else [] for run in design.cam.runs)
+    return [*before, *motion, *after]
+
+
+def _blank(design: CamDesign) -> CamBlank:
+    """Return the blank, which is one of a cam."""
+    blank = design.blank
+    if not isinstance(blank, CamBlank):
+        raise TypeError(f"{blank!r} is no blank of a cam")
+    return blank
+
+
 def _cam(result: CamResult) -> SlidingCam:
     """Return the cam, which is one of this form."""
     cam = result.cam
@@ -310,10 +321,10 @@ def _bolts(result: CamResult) -> Iterator[Opening]:
     from gearcam.parts.body import Opening
     from gearcam.parts.shapes import Circle
 
-    blank, plate = result.design.blank, _cam(result).plate
+    blank, plate = _blank(result.design), _cam(result).plate
     for number in range(blank.bolts):
         aside = (number - 0.5 * (blank.bolts - 1)) * (blank.bolt_spacing or 0.0)
-        place = (0.5 * (plate.left + plate.right) + aside, plate.low + blank.bolt_height)
+        place = (0.5 * (plate.left + plate.right) + aside, plate.low + (blank.bolt_height or 0.0))
         shape = Circle(center=np.array(place), diameter=blank.bolt_diameter)
         yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
