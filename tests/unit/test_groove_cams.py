@@ -7,6 +7,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,9 +24,12 @@ from gearcam.designs import loads
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.kinds.cam.design import CamDesign
+from gearcam.laws.motion_formula import MotionFormula
 from gearcam.numeric.jets import Jet
+from gearcam.tolerances import DEFAULT
 from helpers_cams import angles, back, mechanism, program, rise, there_and_back
 from helpers_pairs import PROFILES
+from helpers_step_read import read_step
 from witness.roller_bands import band, lift
 
 STEEP = (50.0, 130.0, 50.0, 130.0)
@@ -89,6 +93,49 @@ def test_play_by_dense_points(kind: str) -> None:
                 lift(dense.ravel(), t, m.radius, m.offset, outwards=True) - m.start for t in theta
             ]
             np.testing.assert_allclose(found, places, atol=3e-5)
+
+
+@pytest.mark.parametrize(
+    ("kind", "height", "prime"), [("roller", 25.0, 30.0), ("swinging roller", 22.0, 35.0)]
+)
+def test_a_roller_that_rests_touches_its_wall_and_no_more(
+    kind: str, height: float, prime: float
+) -> None:
+    """On corners too: the distance from its centre to the whole wall is its radius."""
+    swings = kind.startswith("swinging")
+    motion = there_and_back("3-4-5", height, STEEP, swings=swings)
+    follower = mechanism(kind, roller_radius=13.6, prime_radius=prime)
+    made = make_groove(motion, follower, clearance=2.0, tolerance=1e-4)
+    theta = np.linspace(0.0, 2.0 * math.pi, 721)
+    for wall in made.walls:
+        assert wall.corners
+        position = follower.start + Rest(wall=wall, radius=13.6).lift(theta)[0]
+        fixed = follower.pivot - follower.arm * np.exp(-1j * position) if swings else 1j * position
+        center = fixed * np.exp(-1j * theta)
+        places = shapely.points(center.real, center.imag)
+        away = shapely.distance(places, wall.contour.polygon.boundary)
+        np.testing.assert_allclose(away, 13.6, atol=2e-4)
+        assert np.all(shapely.contains(wall.contour.polygon, places) == (wall.side < 0))
+        wide = follower.start + Rest(wall=wall, radius=14.6).lift(theta)[0] - follower.start
+        beyond = wall.side * (motion.derivatives(theta, 0)[0] - wide)
+        assert beyond.max() == pytest.approx(wall.shortfall, rel=1e-2)
+
+
+def test_jumps_of_velocity_round_one_wall_and_cut_the_other() -> None:
+    made = make_groove(
+        there_and_back("constant-velocity", 10.0), mechanism("roller"), clearance=1.0
+    )
+    for wall in made.walls:
+        convex, concave = wall.profile_radius
+        assert convex == 0.0
+        assert concave == pytest.approx(6.5)
+    rises = MotionFormula(lift="10*sin(theta/2)").program(DEFAULT, oscillating=False)
+    assert [jump.after - jump.before for jump in rises.hard] == [pytest.approx(10.0)]
+    inner, outer = make_groove(rises, mechanism("roller"), clearance=1.0).walls
+    assert inner.profile_radius[0] > 1.0
+    assert inner.profile_radius[1] == pytest.approx(6.5)
+    assert outer.profile_radius[0] == 0.0
+    assert outer.profile_radius[1] == pytest.approx(inner.profile_radius[0] + 13.0)
 
 
 def test_without_clearance_only_corners_give_play() -> None:
@@ -205,6 +252,31 @@ def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     assert set(result.files("tool-path")) >= {"tool_path_relief.csv", "tool_path_inner.dxf"}
 
 
+@pytest.mark.parametrize("side", ["front", "back"])
+def test_step_holds_the_groove(side: str) -> None:
+    result = gearcam.build(read(PLAIN, ('"front"', f'"{side}"')))
+    (solid,) = read_step(result.files("step")["cam.step"])
+    inner, outer = (wall.size.area for wall in result.cam.walls)
+    assert solid.volume == pytest.approx(volume_of([(outer - inner, 12.0)]), rel=1e-6)
+    middle = result.part.volume, 20.0 * (0.25 * math.pi * (110.0**2 - 16.0**2))
+    low, high = (8.0, 20.0) if side == "front" else (0.0, 12.0)
+    height = (middle[1] * 10.0 - (middle[1] - middle[0]) * 0.5 * (low + high)) / middle[0]
+    assert solid.center[2] == pytest.approx(height, abs=1e-5)
+
+
+def test_the_inner_wall_carries_the_follower(tmp_path: Path) -> None:
+    """From points and from the drawing: lower than asked by no more than the half width's rest."""
+    result = gearcam.build(FILE_DESIGN)
+    cam = result.cam
+    assert isinstance(cam, GrooveCam)
+    file = tmp_path / "cam.dxf"
+    file.write_bytes(result.files("dxf")["cam.dxf"])
+    expected = Rest(wall=cam.inner, radius=6.0).lift(result.angles)[0]
+    for profile in (cam.outline, file):
+        found = result.follow(profile).columns["s"]
+        np.testing.assert_allclose(found, expected, atol=3e-3)
+
+
 def test_files_of_a_groove() -> None:
     result = gearcam.build(FILE_DESIGN)
     tables = result.files("csv")
@@ -310,6 +382,12 @@ def test_a_blank_that_the_groove_opens_is_refused_with_the_least() -> None:
     thin = [one for one in result.findings if one.code == "thin-wall"]
     assert [one.value for one in thin] == [pytest.approx(0.0, abs=2e-3)]
     assert "groove and the outline" in thin[0].message
+
+
+def test_a_remedy_for_a_blank_that_is_opened_works() -> None:
+    result = gearcam.build(read(("outer_diameter_mm = 110", "outer_diameter_mm = 90")))
+    found = gearcam.remedies(result, patience=5.0).found
+    assert any("outer_diameter_mm" in str(one.changes) for one in found)
 
 
 def test_a_thin_floor_is_told() -> None:

@@ -260,6 +260,7 @@ def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.Monke
         "plate_cam_oscillating": {"blank.density_kg_m3": 7850.0, "blank.clearance_mm": 0.01},
         "plate_cam_offset_roller": {},
         "tappet": {},
+        "groove_cam": {"follower.roller2_radius_mm": 7.0},
         "valve_lever": {},
     }
     for name, change in changes.items():

@@ -93,11 +93,11 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * lever
         angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if swings else ""
-        cut = _stretches(inside, told)
+        cut, much = _stretches(inside, told), f"{shown(lost, 4)} mm{angle}"
         yield Remark(
-            f"The {wall.called} is {cut}. Trimmed, it has a corner on which the "
-            f"follower rests from {told(low)} to {told(high)}: it loses up to {shown(lost, 4)} mm"
-            f"{angle} of lift.",
+            f"The {wall.called} is {cut}. Trimmed, it has a corner on which the follower rests "
+            f"from {told(low)} to {told(high)}: "
+            + (f"it loses up to {much} of lift." if wall.side > 0 else f"it goes {much} too far."),
             _at(wall, f"at {told(loss.theta)}"),
             lost,
             severity="error" if lost > limit else "warning",

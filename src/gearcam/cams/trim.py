@@ -19,7 +19,7 @@ import numpy as np
 
 from gearcam.cams.curve import ProfileSegments
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
 
@@ -34,6 +34,9 @@ _AROUND = 97
 
 _BESIDE = 3.0
 """How far beside, in widths of the stretch: the loop closes within twice of it."""
+
+_RUNS = 8.0
+"""Run before and after a way that is tried where a wall is undercut there, in followers' radii."""
 
 _ROUNDS = 8
 """Times that chords are made four times finer where crossings are not told apart."""
@@ -114,6 +117,14 @@ def trimmed(
             made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
             if not _backwards(made[0], undercut):
                 return made
+    if segments.curve.program.open:
+        run = _RUNS * abs(segments.inset)
+        raise InfeasibleError(
+            "the wall is undercut where its way begins or ends: what is left cannot be told",
+            where="[cam]",
+            nearest="longer run_in_mm and run_out_mm leave room for what is cut away",
+            ways=(Way(far={"cam.run_in_mm": run, "cam.run_out_mm": run}),),
+        )
     raise InfeasibleError(
         "the profile crosses itself so often that what is left cannot be told",
         where="[cam]",

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.drawings import CLOSED, KERF, OUTLINE, PROFILE
+from gearcam.drawings import CLOSED, INNER, KERF, OUTLINE, PROFILE
 from gearcam.errors import GearcamError
 from gearcam.export.dxf import MILLIMETRES
 from gearcam.numeric.arrays import Array
@@ -143,7 +143,8 @@ def read_outline(data: bytes) -> tuple[Array, Array]:
     Parameters
     ----------
     data : bytes
-        The file. Where it holds several outlines, that on the layer PROFILE or OUTLINE counts.
+        The file. Where it holds several outlines, that on the layer PROFILE, OUTLINE
+        or INNER counts.
 
     Returns
     -------
@@ -165,7 +166,7 @@ def read_outline(data: bytes) -> tuple[Array, Array]:
             f"the layer {paths[0]} holds the path of a cutter, not an edge: "
             "take a file that was written without a kerf"
         )
-    for wanted in (PROFILE, OUTLINE, ""):
+    for wanted in (PROFILE, OUTLINE, INNER, ""):
         found = [
             (vertices, bulges)
             for layer in layers

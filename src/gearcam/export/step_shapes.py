@@ -151,9 +151,11 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
     # what goes through a hub is cut at last: its face must not end where the plate does
     late = bosses[0].openings if bosses else ()
     through = tuple(opening for opening in step.openings if opening not in late)
-    body = _prism(replace(step, openings=through), tolerance)
+    # swept surfaces are cut five times as fast as B-splines
+    prism = _swept if part.recesses else _prism
+    body = prism(replace(step, openings=through), tolerance)
     if bosses:
-        hubs = [_prism(replace(boss, openings=()), tolerance) for boss in bosses]
+        hubs = [prism(replace(boss, openings=()), tolerance) for boss in bosses]
         body = _combined(occt.BRepAlgoAPI_Fuse(), body, hubs)
     low = min(layer.low for layer in part.layers) - CLEARANCE
     high = max(layer.high for layer in part.layers) + CLEARANCE
@@ -162,8 +164,9 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
         marks = part.pockets[: len(part.marks)]
         cutters += [replace(one, high=one.high + OVERSHOOT * one.height) for one in marks]
         cutters += part.cutters(OVERSHOOT)
-    tools = [_prism(cutter, tolerance) for cutter in cutters]
-    return _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
+    tools = [prism(cutter, tolerance) for cutter in cutters]
+    made = _combined(occt.BRepAlgoAPI_Cut(), body, tools) if tools else body
+    return _converted(made) if part.recesses else made
 
 
 def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
@@ -186,6 +189,22 @@ def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
 
 def _prism(layer: Layer, tolerance: float) -> Any:
     """Return a layer as a solid, one side face for each piece; all run left around."""
+    return _converted(_swept(layer, tolerance))
+
+
+def _converted(prism: Any) -> Any:
+    """Return a solid whose swept curves are B-spline surfaces, which more programs read."""
+    # planes and cylinders stay
+    found = subshapes(
+        occt.ShapeCustom.ConvertToBSpline_s(prism, True, False, False, False), "SOLID"
+    )
+    if len(found) != 1:
+        raise SolidError("the solid came out empty")
+    return occt.TopoDS.Solid(found[0])
+
+
+def _swept(layer: Layer, tolerance: float) -> Any:
+    """Return the same with swept surfaces."""
     floor = occt.gp_Pln(_point(0j, layer.low), occt.gp_Dir(0.0, 0.0, 1.0))
     edge, *holes = (
         _wire(_pieces(edge, tolerance), layer.low)
@@ -196,14 +215,7 @@ def _prism(layer: Layer, tolerance: float) -> Any:
         face.Add(occt.TopoDS.Wire(hole.Reversed()))
     if not face.IsDone():
         raise SolidError("an outline encloses no face")
-    prism = occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, layer.height)).Shape()
-    # swept curves become B-spline surfaces, which more programs read; planes and cylinders stay
-    found = subshapes(
-        occt.ShapeCustom.ConvertToBSpline_s(prism, True, False, False, False), "SOLID"
-    )
-    if len(found) != 1:
-        raise SolidError("the solid came out empty")
-    return occt.TopoDS.Solid(found[0])
+    return occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, layer.height)).Shape()
 
 
 def _wire(pieces: Sequence[_Piece], height: float) -> Any:

@@ -33,7 +33,10 @@ def _sizes(document: Mapping[str, Any]) -> Iterator[Way]:
     for key, factor in (*sizes, ("follower.roller_radius_mm", _SMALLER)):
         given = value_at(document, key)
         if given:
-            yield Way(far={key: factor * given})
+            # a larger cam needs a larger blank
+            blank = value_at(document, "cam.outer_diameter_mm") if factor > 1.0 else None
+            room = {"cam.outer_diameter_mm": factor * blank} if blank else {}
+            yield Way(far={key: factor * given, **room})
     motion = document["motion"]
     lifts = {
         f"motion[{number}].{key}": _SMALLER * value

@@ -30,8 +30,8 @@ def read_profile(file: str | Path | ArrayLike) -> tuple[Array, Array]:
     Parameters
     ----------
     file : path or (n, 2) array, mm
-        A DXF file with one closed outline (or one on the layer PROFILE or OUTLINE), or a CSV file
-        with the columns x_mm and y_mm; or the points themselves.
+        A DXF file with one closed outline (or one on the layer PROFILE, OUTLINE or INNER), or a CSV
+        file with the columns x_mm and y_mm; or the points themselves.
 
     Returns
     -------
