@@ -18,6 +18,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
 from gearcam.errors import DesignError
+from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.commands import with_meshing
@@ -30,7 +31,6 @@ from gearcam.laws.phases_of_lift import (
     SegmentPhase,
 )
 from gearcam.laws.rises.base import RISES
-from gearcam.kinds.cam.blank import CamBlank
 from gearcam.parts.blank import WheelBlank
 from helpers_cam_files import FLAT, ROLLER, SWINGING, changed, read
 

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 
-Kind = Literal["BORE", "HOLE", "SLOT", "INNER"]
-"""What an opening is for: the shaft, bolts and lightness, a stop pin, inner teeth."""
+Kind = Literal["BORE", "HOLE", "SLOT", "INNER", "GROOVE"]
+"""What an opening is for: the shaft, bolts and lightness, a stop pin, inner teeth, a roller."""
 
 Edge = Contour | Circle | Loop
 """A closed plane curve, counter-clockwise, with moments, length, reach and points."""
@@ -61,7 +61,7 @@ class Opening(Brief):
 
     Parameters
     ----------
-    kind : {"BORE", "HOLE", "SLOT"}
+    kind : {"BORE", "HOLE", "SLOT", "INNER", "GROOVE"}
         What it is for, and its layer in drawings.
     shape : Contour or Circle or Loop
         The edge within which nothing is left, in the part's frame.

@@ -110,7 +110,7 @@ class Translating(Form):
         holes, recesses = list(_bolts(result)), []
         taken = holes
         if cam.groove is not None:
-            slot = Opening(kind="SLOT", shape=cam.groove, name="groove")
+            slot = Opening(kind="GROOVE", shape=cam.groove, name="groove")
             taken = [*holes, slot]
             if depth is None:
                 holes = taken
@@ -332,9 +332,12 @@ def _bolts(result: CamResult) -> Iterator[Opening]:
 def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0) -> Drawing:
     """Return the plate with its pitch curve, moved by its way below a follower."""
     from gearcam.drawings import (
+        BLANK,
         CENTER,
         CROSS_SIZE,
         FOLLOWER,
+        GROOVE,
+        OUTER_WALL,
         PITCH,
         PROFILE,
         Cross,
@@ -346,7 +349,10 @@ def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0
     )  # fmt: skip
 
     part, cam = result.part, _cam(result)
-    moving = list(part_features(part, outline=PROFILE))
+    moving = [
+        replace(one, layer=GROOVE) if one.layer == OUTER_WALL else one
+        for one in part_features(part, outline=PROFILE if cam.groove is None else BLANK)
+    ]
     if cam.motion.mechanism.radius:
         moving.append(Feature(layer=PITCH, shape=Path(points=cam.lower.pitch_line, closed=False)))
     features = list(place(moving, 0.0, (way, 0.0)))
