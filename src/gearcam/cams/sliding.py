@@ -41,6 +41,9 @@ _UPRIGHT = 0.5 * math.pi
 _DENSE = 1 / 40
 """Chord error of dense points over the tolerance."""
 
+_FEWEST = 8
+"""Fewest chords of an arc."""
+
 _COVERED = 2.0
 """Chord errors by which a wall may come nearer to the follower's first and last place than it is
 wide."""
@@ -118,15 +121,45 @@ class SlidingWall(Wall):
     @cached_property
     def contour(self) -> Contour:
         """The metal behind the wall, counter-clockwise."""
-        plate, end, first = self.plate, self.line[-1], self.line[0]
+        plate = self.plate
         edge = plate.low if self.side > 0 else plate.high
-        around = np.array([
-            end, (plate.left, end[1]), (plate.left, edge),
+        left, last = self._level(-1, plate.left)
+        right, first = self._level(0, plate.right)
+        corners = np.array([
+            last, (plate.left, last[1]), (plate.left, edge),
             (plate.right, edge), (plate.right, first[1]), first,
         ])  # fmt: skip
-        up = self.side < 0  # the metal lies above, the wall runs from left to right
-        back = straight(around[::-1] if up else around)
-        return joined([self.stretch(reverse=up), back], self)
+        if self.side > 0:
+            around = [self.stretch(), *left, straight(corners), *_turned(right)]
+        else:  # the metal lies above, the wall runs from left to right
+            back = straight(corners[::-1])
+            around = [self.stretch(reverse=True), *right, back, *_turned(left)]
+        return joined(around, self)
+
+    def _level(self, which: int, limit: float) -> tuple[list[Stretch], Array]:
+        """Return the way on from an end of the wall, and where it has become level.
+
+        It follows the roller's circle where that reaches farther than the wall, up to a limit.
+        """
+        center, start = (complex(*line[which]) for line in (self.pitch_line, self.line))
+        outwards = -1.0 if which else 1.0
+        far = outwards * min(outwards * center.real, outwards * limit)
+        if not outwards * (far - start.real) > _ALIKE:
+            return [], self.line[which]
+        aside = far - center.real
+        deep = math.sqrt((self.mechanism.radius - aside) * (self.mechanism.radius + aside))
+        end = complex(far, center.imag - self.side * deep)
+        arc = _arc(self, center, start, float(np.angle((end - center) / (start - center))))
+        return [arc], np.array([end.real, end.imag])
+
+
+def _turned(stretches: Sequence[Stretch]) -> list[Stretch]:
+    """Return stretches the other way."""
+    made = []
+    for runs, vertices in stretches:
+        back = tuple(run.reversed for run in reversed(runs))
+        made.append((back, np.vstack([back[0].points[:1], vertices[:0:-1]])))
+    return made
 
 
 def straight(corners: Array) -> Stretch:
@@ -140,16 +173,17 @@ def straight(corners: Array) -> Stretch:
     return tuple(made), np.array([run.points[0] for run in made])
 
 
-def _half_circle(wall: Wall, start: complex, center: complex) -> Stretch:
-    """Return a half circle about a centre, counter-clockwise."""
+def _arc(wall: Wall, center: complex, start: complex, turn: float) -> Stretch:
+    """Return an arc about a centre from its beginning, by a turn, rad."""
     spoke = start - center
 
     def points(sagitta: float) -> Plane:
-        chords = math.pi / (2.0 * math.acos(max(0.0, 1.0 - sagitta / abs(spoke))))
-        return spoke * np.exp(1j * np.linspace(0.0, math.pi, max(8, math.ceil(chords)) + 1))
+        chord = 2.0 * math.acos(max(0.0, 1.0 - sagitta / abs(spoke)))
+        count = max(_FEWEST, math.ceil(abs(turn) / chord))
+        return spoke * np.exp(1j * turn * np.linspace(0.0, 1.0, count + 1))
 
     dense = points(_DENSE * wall.tolerance)
-    tangents = 1j * dense / abs(spoke)
+    tangents = math.copysign(1.0, turn) * 1j * dense / abs(spoke)
     run = Run(points=as_pairs(center + dense), tangents=as_pairs(tangents))
     return (run,), as_pairs(center + points(wall.tolerance))[:-1]
 
@@ -236,8 +270,8 @@ class SlidingCam(Brief, Cam):
         right, left = as_complex(lower.pitch_line[[0, -1]]).tolist()
         start, end = complex(*lower.line[0]), complex(*upper.line[-1])
         stretches = [
-            lower.stretch(reverse=True), _half_circle(lower, start, right),
-            upper.stretch(), _half_circle(lower, end, left),
+            lower.stretch(reverse=True), _arc(lower, right, start, math.pi),
+            upper.stretch(), _arc(lower, left, end, math.pi),
         ]  # fmt: skip
         return joined(stretches, lower)
 
