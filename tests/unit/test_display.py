@@ -57,7 +57,8 @@ def _got(one: object, name: str) -> object:
 
 
 @pytest.mark.parametrize(
-    "name", ["shop_order", "stepped_ellipse", "feeder", "valve_lever", "undercut_cam"]
+    "name",
+    ["shop_order", "stepped_ellipse", "feeder", "valve_lever", "undercut_cam", "groove_cam"],
 )
 def test_everything_that_is_reached_shows_itself_in_one_line(name: str) -> None:
     coarse = {"output.chord_tolerance_mm": 0.01}

@@ -77,6 +77,8 @@ class DesignKind:
         Titles that a file must give.
     one_of : mapping of str to tuple
         Keys of which a table has exactly one, by its title; or words of a key instead of them.
+    conditions : mapping of str to callable
+        What returns more of the JSON schema of a table, by its title.
     rules : callable
         ``rules(document, found)`` yields faults between the tables.
     later : callable
@@ -107,6 +109,7 @@ class DesignKind:
     one_of: Mapping[str, tuple[str | Mapping[str, Sequence[str]], ...]] = field(
         default_factory=dict
     )
+    conditions: Mapping[str, Callable[[], dict[str, Any]]] = field(default_factory=dict)
     rules: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]

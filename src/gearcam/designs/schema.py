@@ -141,6 +141,8 @@ def _titled(kind: DesignKind, title: str) -> Schema:
     made = table_schema(kind.table(title))
     if title in kind.one_of:
         made["oneOf"] = [_either(one) for one in kind.one_of[title]]
+    if title in kind.conditions:
+        made |= kind.conditions[title]()
     if title == "output":
         made["properties"]["files"]["uniqueItems"] = True
     return made

@@ -68,9 +68,10 @@ def curvature(wall: Wall) -> Tree:
             made[f"pitch_{kind}_min_mm"] = 1.0 / found.largest
     made |= {"profile_convex_min_mm": convex, "profile_concave_min_mm": concave}
     facts: Tree = {name: value for name, value in made.items() if math.isfinite(value)}
+    which = f", {wall.called}" if wall.key else ""
     words = {
-        "profile_convex_min_mm": "smallest convex radius",
-        "profile_concave_min_mm": "smallest concave radius",
+        "profile_convex_min_mm": f"smallest convex radius{which}",
+        "profile_concave_min_mm": f"smallest concave radius{which}",
     }
     for name in words.keys() & facts.keys():
         facts[name] = Fact(facts[name], words[name], shown=True)

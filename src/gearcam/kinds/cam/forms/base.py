@@ -83,6 +83,9 @@ class Form(Protocol):
     rows: ClassVar[tuple[str, ...]] = ()
     """Facts of its own that stand in the tables of its drawings."""
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"
+
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG002
         """Yield what else is wrong by reading with the `parts` of a design, by their titles."""
         yield from ()
@@ -187,3 +190,32 @@ def _key_faults(form: Form, title: str, known: Table, made: Any) -> Iterator[Fau
             owners = [one for one in FORMS if entry.name in FORMS[one].takes[title]]
             rule = f"with cam.form = {quoted(owners)}"
             yield Fault((title, key), f"{show(value)}: a {form.name} cam has none", value, rule)
+
+
+def form_schema(title: str, owner: type) -> dict[str, Any]:
+    """Return what a schema says of the keys of a table, which some forms have and some need.
+
+    Parameters
+    ----------
+    title : str
+        Of the table; it has the key ``form``.
+    owner : type
+        The class of its parameters.
+
+    Returns
+    -------
+    dict
+    """
+    entries = table_of(title, owner).entries.items()
+    default = next(entry.default for _, entry in entries if entry.name == "form")
+    rules = []
+    for name, form in FORMS.items():
+        given: dict[str, Any] = {"properties": {"form": {"const": name}}}
+        if name != default:  # the form that counts where none is given
+            given["required"] = ["form"]
+        takes, needs = form.takes[title], form.needs.get(title, ())
+        required = [key for key, entry in entries if entry.name in needs]
+        foreign = [{"required": [key]} for key, entry in entries if entry.name not in takes]
+        then = {"required": required, **({"not": {"anyOf": foreign}} if foreign else {})}
+        rules.append({"if": given, "then": then})
+    return {"allOf": rules}
