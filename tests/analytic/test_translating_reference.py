@@ -188,3 +188,38 @@ def test_lost_motion_is_the_clearance_over_the_cosine_to_first_order() -> None:
         assert found is not None
         alpha = math.radians(36.86989764584)
         assert found.value / clearance == pytest.approx(1.0 / math.cos(alpha), rel=clearance)
+
+
+@pytest.mark.parametrize("name", FOLLOWERS)
+def test_lost_lift_is_what_a_roller_on_the_trimmed_wall_lacks(name: str) -> None:
+    cam = made(name, radius=40.0, run=60.0, groove=False, tolerance=1e-4, height=150.0)
+    wall, program = cam.lower, cam.motion.program
+    assert wall.corners
+    assert wall.shortfall > 1e-3
+    theta = np.linspace(0.05, 6.2, 2001)
+    found = follow(cam.edge.vertices, cam.motion.mechanism, theta)
+    lost = program.derivatives(theta, 0)[0] - found.lift
+    assert lost.max() == pytest.approx(wall.shortfall, rel=1e-2)
+    low, high = wall.corners[0].before, wall.corners[-1].after
+    outside = (theta < low - 0.01) | (theta > high + 0.01)
+    assert np.abs(lost[outside]).max() < 1e-3
+
+
+@pytest.mark.parametrize("radius", [19.6, 19.66, 19.75, 21.0])
+def test_a_small_loop_of_an_open_wall_is_closed(radius: float) -> None:
+    """The sharpest crest has 19.64980578843 mm: below it nothing is cut."""
+    walls = made(radius=radius, run=40.0, height=150.0).walls
+    for wall in walls:
+        assert len(wall.corners) == (1 if radius > 19.65 else 0)
+        assert len(wall.undercut) == len(wall.corners)
+        x = wall.line[:, 0]
+        assert np.all(np.diff(x) < 0.0)
+        assert abs(wall.line[0, 0]) < 1e-12
+        assert x[-1] == pytest.approx(-210.0)
+
+
+def test_places_are_even_along_the_way_with_both_ends() -> None:
+    cam = made(run=RUN)
+    theta, points, _ = cam.lower.places(16)
+    np.testing.assert_allclose(np.diff(theta), 2.0 * math.pi / 15.0)
+    assert points[[0, -1]] == pytest.approx([-6j, -150.0 - 6j])
