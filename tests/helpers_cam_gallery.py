@@ -77,6 +77,15 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "cam.cam2.pressure_angle_deg.return_max": (31.8045503326, 1e-9),
         "cam.pressure_angle_deg.rise_max": (33.5573097724, 1e-9),
     },
+    "translating_cam": {
+        # 3-4-5 over 60 mm and cycloidal over 40 mm, both 15 mm: 15/8 and 2 of the mean slope
+        "cam.pressure_angle_deg.rise_max": (DEG * math.atan(15 / 8 * 15 / 60), 1e-11),
+        "cam.pressure_angle_deg.return_max": (DEG * math.atan(2 * 15 / 40), 1e-11),
+        "cam.groove.lower.curvature.profile_convex_min_mm": (19.64980578843 - 6.025, 1e-10),
+        "cam.groove.lower.curvature.profile_concave_min_mm": (19.64980578843 + 6.025, 1e-10),
+        "cam.way_mm": (170.0, 1e-12),
+        "motion.peak_velocity": (0.75, 1e-12),
+    },
     "plate_cam_oscillating": {
         "cam.start_angle_deg": (DEG * math.acos((100**2 + 90**2 - 40**2) / 18000), 1e-12),
         # modified sine has the lower peak acceleration, 3-4-5 the higher peak velocity

@@ -4,7 +4,8 @@ A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers e
 what they hold: OUTLINE, BORE, HOLE, SLOT, INNER (inner teeth), MARK, CENTRODE, CENTER; a pair's
 layers begin with the wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME
 and FOLLOWER show what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name. A
-groove has its walls on INNER and OUTER, and the edge of the disc that it is cut into on BLANK.
+groove has its walls on INNER and OUTER, one with ends on GROOVE, and the edge of what it is cut
+into on BLANK.
 *Placing* turns and shifts shapes without changing them otherwise.
 
 What a cutter burns away, its *kerf*, is nothing of the part's: it moves the paths of a drawing to
@@ -36,6 +37,7 @@ OUTLINE: Final = "OUTLINE"
 BORE: Final = "BORE"
 HOLE: Final = "HOLE"
 SLOT: Final = "SLOT"
+GROOVE: Final = "GROOVE"
 INNER: Final = "INNER"
 OUTER_WALL: Final = "OUTER"
 BLANK: Final = "BLANK"
@@ -50,7 +52,7 @@ TOOL: Final = "TOOL"
 LABEL: Final = "LABEL"
 
 OUTER: Final = (OUTLINE, PROFILE, BLANK)
-THROUGH: Final = (BORE, HOLE, SLOT, INNER)
+THROUGH: Final = (BORE, HOLE, SLOT, INNER, GROOVE)
 """Kinds that are cut: around the part, and right through it."""
 
 DASHED: Final = (CENTRODE, PITCH, PRIME)
@@ -62,10 +64,11 @@ KERF: Final = "_KERF"
 CLOSED: Final = (
     *OUTER,
     INNER,
+    GROOVE,
     OUTER_WALL,
     PITCH,
     TOOL,
-    *(kind + KERF for kind in (*OUTER, BORE, SLOT, INNER)),
+    *(kind + KERF for kind in (*OUTER, BORE, SLOT, INNER, GROOVE)),
 )
 """Ends of layers whose closed curves are contours."""
 

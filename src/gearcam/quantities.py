@@ -80,6 +80,8 @@ class Param:
         Whether Python functions may stand for a text.
     angular : Param or None
         The same where lifts are angles: a file then has another key for it.
+    sliding : Param or None
+        The same where the cam slides: a file then has another key for it.
     """
 
     quantity: Quantity = NUMBER
@@ -94,6 +96,7 @@ class Param:
     both: bool = False
     function: bool = False
     angular: Param | None = None
+    sliding: Param | None = None
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""
@@ -156,7 +159,8 @@ def _type_of(field: dataclasses.Field[Any]) -> str:
     words = [kind.__name__ if isinstance(kind, type) else str(kind)]
     for alias, text in _ALIASES.items():
         words = [re.sub(alias, text, word) for word in words]
-    quantities = (made.quantity, *((made.angular.quantity,) if made.angular else ()))
+    others = (other.quantity for other in (made.angular, made.sliding) if other)
+    quantities = (made.quantity, *others)
     words += [" or ".join(one.unit.replace("deg", "rad") for one in quantities if one.unit)]
     if field.default is not REQUIRED:
         words.append("optional" if field.default is None else f"default {field.default!r}")

@@ -150,8 +150,9 @@ def test_a_wrong_number_is_seen() -> None:
 def kind_of(file: str) -> str:
     """The word in ``output.files`` that asks for a file."""
     path = Path(file)
-    if path.stem in ("inspection", "tool_path", "curvature"):
-        return path.stem.replace("_", "-")
+    for stem in ("inspection", "tool_path", "curvature"):
+        if path.stem.startswith(stem):
+            return stem.replace("_", "-")
     return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]
 
 

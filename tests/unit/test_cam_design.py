@@ -18,6 +18,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
 from gearcam.errors import DesignError
+from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.commands import with_meshing
@@ -57,7 +58,7 @@ def test_the_plate_cam_with_a_roller_is_read() -> None:
     assert design.follower == FollowerSpec(type="roller", roller_radius=6.0, offset=8.0)
     assert design.cam == CamSpec(prime_radius=30.0, thickness=12.0)
     assert not design.cam.clockwise
-    assert design.blank == WheelBlank(timing_marks=False)
+    assert design.blank == CamBlank()
     assert design.limits == {}
     assert design.output == CamOutputSpec(files=("dxf", "stl", "csv"))
     assert design.output.motion_step == pytest.approx(math.pi / 180, rel=1e-15)
@@ -125,13 +126,12 @@ def test_a_cam_that_turns_clockwise_and_a_blank_of_single_values() -> None:
     text = changed("[output]", f'rotation = "cw"\n{blank}keyway_angle_deg = 90\n[output]')
     design = read(text + "theta_deg = 45\ntool_radius_mm = 5\n[limits]\nwall_mm = 2\n")
     assert design.cam.clockwise
-    assert design.blank == WheelBlank(
+    assert design.blank == CamBlank(
         bore_diameter=12.0,
         bolts=3,
         bolt_circle=30.0,
         bolt_diameter=4.0,
         keyway_angle=math.radians(90),
-        timing_marks=False,
     )
     assert design.output.pose == math.radians(45)
     assert design.output.tool_radius == 5.0
@@ -182,7 +182,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     refused("motion: is a int", motion=3)
     refused(r"motion\[0\].law: is a str", motion=(replace(rise, law="cycloidal"), dwell, *rest))
     refused("instance of FollowerSpec", follower=3)
-    refused("instance of WheelBlank", blank=None)
+    refused("instance of CamBlank", blank=None)
     refused("instance of CamOutputSpec", output=None)
     refused("blank.stop_pin: a cam has none", blank=WheelBlank(stop_pin=2.0))
     refused("missing beside bolts", blank=WheelBlank(bolts=2))

@@ -221,7 +221,7 @@ def test_phases_that_can_be_read_are_judged_beside_those_that_cannot() -> None:
     }
 
 
-@pytest.mark.parametrize("form", ["cylinder", "translating"])
+@pytest.mark.parametrize("form", ["cylinder"])
 def test_planned_forms_are_named_and_nothing_else_is_said(form: str) -> None:
     problem = only(changed('"disc"', f'"{form}"\nwidth_mm = 3').replace("rise", "raise"))
     assert problem.line == 27

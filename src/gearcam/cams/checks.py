@@ -7,7 +7,7 @@ yields findings; where there are several, the place names which.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
 from gearcam.cams.cam import Cam
@@ -62,7 +62,7 @@ def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
             worst = max(found.low, found.high, key=lambda end: abs(end.value))
             yield Remark(
                 f"The pressure angle on the {kind} reaches {_deg(worst.value)}.",
-                _at(motion, f"{kind}, at {_deg(worst.theta)}"),
+                _at(motion, f"{kind}, at {motion.mechanism.driver.told(worst.theta)}"),
                 math.degrees(abs(worst.value)),
                 limit=math.degrees(largest),
             )
@@ -86,25 +86,27 @@ def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
 def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
     left = wall.undercut_ranges
     lever, swings = wall.mechanism.lever, wall.mechanism.oscillating
+    told = wall.mechanism.driver.told
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         low, high = corner.before, corner.after
         inside = [pair for pair in left if _within(pair, low, high)]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * lever
         angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if swings else ""
-        much = f"{shown(lost, 4)} mm{angle}"
+        cut, much = _stretches(inside, told), f"{shown(lost, 4)} mm{angle}"
         yield Remark(
-            f"The {wall.called} is {_stretches(inside)}. Trimmed, it has a corner on which the "
-            f"follower rests from {_deg(low)} to {_deg(high)}: "
+            f"The {wall.called} is {cut}. Trimmed, it has a corner on which the follower rests "
+            f"from {told(low)} to {told(high)}: "
             + (f"it loses up to {much} of lift." if wall.side > 0 else f"it goes {much} too far."),
-            _at(wall, f"at {_deg(loss.theta)}"),
+            _at(wall, f"at {told(loss.theta)}"),
             lost,
             severity="error" if lost > limit else "warning",
         )
     for pair in left:
+        cut = _stretches([pair], told)
         yield Remark(
-            f"The {wall.called} is {_stretches([pair])}, so little that trimming costs nothing.",
-            _at(wall, f"at {_deg(pair[0])}"),
+            f"The {wall.called} is {cut}, so little that trimming costs nothing.",
+            _at(wall, f"at {told(pair[0])}"),
         )
 
 
@@ -113,11 +115,11 @@ def _within(pair: tuple[float, float], low: float, high: float) -> bool:
     return (pair[0] - low) % _TURN <= (high - low) % _TURN
 
 
-def _stretches(pairs: list[tuple[float, float]]) -> str:
+def _stretches(pairs: list[tuple[float, float]], told: Callable[[float], str]) -> str:
     if not pairs:
         return "cut by the follower at another angle"
     words = (
-        f"from {_deg(low)} to {_deg(high)}" if high > low else f"at {_deg(low)}"
+        f"from {told(low)} to {told(high)}" if high > low else f"at {told(low)}"
         for low, high in pairs
     )
     return "undercut " + " and ".join(words)
@@ -127,11 +129,12 @@ def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
     """Yield place, jump and unit of every knot whose derivative of this order jumps."""
     lead = cam.motions[0]
     swings = lead.mechanism.oscillating
-    unit = ("deg/rad" if swings else "mm/rad") + ("2" if order == 2 else "")
+    driver = lead.mechanism.driver
+    unit = ("deg/" if swings else "mm/") + driver.per + ("2" if order == 2 else "")
     for jump in lead.program.jumps:
         if jump.order == order:
-            by = jump.after - jump.before
-            yield f"at {_deg(jump.theta)}", math.degrees(by) if swings else by, unit
+            by = (jump.after - jump.before) / driver.rate**order
+            yield f"at {driver.told(jump.theta)}", math.degrees(by) if swings else by, unit
 
 
 @check("hard-shock", kind=KIND)
@@ -221,7 +224,7 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     if lost > limit:
         yield Remark(
             f"Between its walls the follower has {shown(lost, 4)} mm{angle} of lost motion.",
-            f"at {_deg(found.theta)}",
+            f"at {mechanism.driver.told(found.theta)}",
             lost,
         )
 

@@ -9,7 +9,11 @@ follower             A                   B                             beta
 ==================== =================== ============================= =============
 translating          ``s0 + s``          ``s' - e``                    ``theta``
 oscillating          ``d*sin(Psi)``      ``l*(1 + s') - d*cos(Psi)``   ``theta + Psi``
+translating, sliding ``k*cos(tilt)``     ``s' - k*sin(tilt)``          ``-tilt``
+oscillating, sliding ``k*cos(Psi)``      ``l*s' - k*sin(Psi)``         ``-Psi``
 ==================== =================== ============================= =============
+
+(k the way per rad of a cam that slides.)
 
 ``alpha = arctan(B/A)`` is the pressure angle, ``w = hypot(A, B)`` the speed of the centre and
 ``turning = beta' - alpha'`` how fast the normal turns; the pitch curve's curvature is
@@ -80,7 +84,13 @@ def contact(mechanism: Mechanism, s: Jet, ds: Jet, d2s: Jet) -> Contact:
     if mechanism.flat:
         swings = mechanism.oscillating
         return (_swinging_face if swings else _sliding_face)(mechanism, position, ds, d2s)
-    if mechanism.oscillating:
+    if mechanism.slide:
+        k, swings = mechanism.slide, mechanism.oscillating
+        angle, angle_slope = (position, ds) if swings else (0.0 * s + mechanism.tilt, 0.0 * ds)
+        a, b = k * cos(angle), mechanism.lever * ds - k * sin(angle)
+        a_slope, b_slope = -k * sin(angle) * angle_slope, mechanism.lever * d2s - a * angle_slope
+        beta_slope = -1.0 * angle_slope
+    elif mechanism.oscillating:
         d, arm = mechanism.pivot, mechanism.arm
         sine, cosine = d * sin(position), d * cos(position)
         a, b = sine, arm * (1.0 + ds) - cosine

@@ -1,10 +1,10 @@
-"""Pitch curve and profile of a cam before trimming: closed curves made of sweeps and jumps.
+"""Pitch curve and profile of a cam before trimming: curves made of sweeps and jumps.
 
 A *sweep* lets theta run within one smooth piece of the lift. Where the velocity jumps, theta
 stands still and a *jump* lets the velocity run from its value before to that after: a roller
 then rolls about its own centre, a flat face is touched along a straight piece. With the jumps
 between its sweeps the profile is a closed curve with a continuous tangent, whatever the motion; it
-runs backwards where it is undercut.
+runs backwards where it is undercut. Of a cam that slides it is open: it ends where its way does.
 
 Curves are points of the complex plane, mm, in the cam's frame; a cam that turns clockwise has all
 of them mirrored at the y axis.
@@ -25,6 +25,7 @@ from gearcam.cams.mechanism import Mechanism
 from gearcam.display import Brief
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.crossings import CurvePoint
 from gearcam.numeric.jets import Jet
 
 
@@ -83,6 +84,8 @@ class CamCurve(Brief):
         """Return centres of a round follower in the cam's frame, not mirrored: ``theta, s``."""
         m = self.mechanism
         position = m.start + s
+        if m.slide:
+            return m.sliding_centre(position) + m.slide * theta
         if m.oscillating:
             return m.pivot * unit(-theta) - m.arm * unit(-theta - position)
         return (m.offset + 1j * position) * unit(-theta)
@@ -107,21 +110,24 @@ class CamCurve(Brief):
         if m.flat:
             points, tangents = self._flat(theta, s, ds)
         else:
-            a, b, more = self.velocity(s, ds)
-            tangents = (a + 1j * b) / np.hypot(a, b) * unit(-theta - more)
+            a, b, beta = self.velocity(theta, s, ds)
+            tangents = (a + 1j * b) / np.hypot(a, b) * unit(-beta)
             points = self.pitch(theta, s) - 1j * inset * tangents
         if self.mirrored:
             return -np.conj(points), -np.conj(tangents)
         return points, tangents
 
-    def velocity(self, s: Array, ds: Array) -> tuple[Array, Array, Array]:
-        """Return A, B and ``beta - theta`` of a round follower (see `gearcam.cams.contact`)."""
+    def velocity(self, theta: Array, s: Array, ds: Array) -> tuple[Array, Array, Array]:
+        """Return A, B and beta of a round follower (see `gearcam.cams.contact`)."""
         m = self.mechanism
         position = m.start + s
+        if m.slide:
+            angle = position if m.oscillating else m.tilt + np.zeros_like(s)
+            return m.slide * np.cos(angle), m.lever * ds - m.slide * np.sin(angle), -angle
         if m.oscillating:
             a = m.pivot * np.sin(position)
-            return a, m.arm * (1.0 + ds) - m.pivot * np.cos(position), position
-        return position, ds - m.offset, np.zeros_like(s)
+            return a, m.arm * (1.0 + ds) - m.pivot * np.cos(position), theta + position
+        return position, ds - m.offset, theta
 
     def _flat(self, theta: Array, s: Array, ds: Array) -> tuple[Plane, Plane]:
         m = self.mechanism
@@ -167,6 +173,16 @@ class ProfileSegments(Brief):
         """Return some of the segments, in the order of `index`."""
         names = ("piece", "start", "end", "jump", "corner")
         return replace(self, **{name: getattr(self, name)[index] for name in names})
+
+    @property
+    def first(self) -> CurvePoint:
+        """The place where they begin."""
+        return CurvePoint(0, float(self.start[0]))
+
+    @property
+    def last(self) -> CurvePoint:
+        """The place where they end."""
+        return CurvePoint(len(self.end) - 1, float(self.end[-1]))
 
     @property
     def backward(self) -> Mask:
@@ -230,16 +246,18 @@ class ProfileSegments(Brief):
         found = contact(self.curve.mechanism, Jet([s]), Jet([ds]), Jet([d2s]))
         speed = found.speed if self.inset else found.pitch_speed
         points, tangents = self.curve.trace(theta, s, ds, self.inset)
-        return points, np.where(self.jump[index], self._rolling(s, ds), speed.c[0]) * tangents
+        return points, np.where(
+            self.jump[index], self._rolling(theta, s, ds), speed.c[0]
+        ) * tangents
 
-    def _rolling(self, s: Array, ds: Array) -> Array:
+    def _rolling(self, theta: Array, s: Array, ds: Array) -> Array:
         """Return how fast a jump draws: a roller about its centre, or along a flat face."""
         m = self.curve.mechanism
         position = m.start + s
         if m.flat:
             swings = m.pivot * np.cos(position) / (1.0 + ds) ** 2
             return swings if m.oscillating else np.ones_like(s)
-        a, b, _ = self.curve.velocity(s, ds)
+        a, b, _ = self.curve.velocity(theta, s, ds)
         return self.inset * a * (m.arm or 1.0) / (a * a + b * b)
 
 
@@ -271,7 +289,11 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
 
 
 def begun(segments: ProfileSegments) -> ProfileSegments:
-    """Return segments that begin at a corner, as a `Sampler` wants; one is made if needed."""
-    turned = segments.taken(np.roll(np.arange(len(segments.start)), -segments.corner.argmax()))
+    """Return segments that begin at a corner, or at an open end, as a `Sampler` wants.
+
+    One is made if needed.
+    """
+    first = 0 if segments.curve.program.open else segments.corner.argmax()
+    turned = segments.taken(np.roll(np.arange(len(segments.start)), -first))
     turned.corner[0] = True  # a smooth closed curve begins somewhere
     return turned

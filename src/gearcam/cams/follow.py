@@ -10,7 +10,10 @@ oscillating round    ``Psi = Psi_z + arccos((l^2 + D^2 - r^2)/(2*l*D))``
 oscillating flat     ``Psi = Psi_z + arcsin(f/D)``
 ==================== ==================================================================
 
-where ``z = d - D*exp(-i*Psi_z)``. The same formulas with r, or the face, *grown* by g give the
+where ``z = d - D*exp(-i*Psi_z)``. A cam that slides is moved along ``+x`` by its way instead, and
+seen along its follower's way or from the height of its pivot.
+
+The same formulas with r, or the face, *grown* by g give the
 position on a disc of radius g around z, and so a bound for all places within: blocks of points
 that cannot be the highest are left out, and none that can.
 
@@ -21,6 +24,7 @@ Source: derived anew; conventions as in `mechanism`.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass, replace
 from typing import Final
@@ -75,7 +79,7 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
         A closed profile in the cam's frame, in order, either way around. For a polyline with
         bulges those of `gearcam.numeric.bulges.flatten_bulges`; all of them lie on its arcs.
     mechanism : Mechanism
-        The follower; the cam turns counter-clockwise by theta.
+        The follower; the cam turns counter-clockwise by theta, or slides.
     theta : (m,) array, rad
         Cam angles.
 
@@ -88,7 +92,7 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
     InfeasibleError
         If the points are no closed profile around the axis, or the follower cannot rest on it.
     """
-    profile = profile_points(points)
+    profile = profile_points(points, around=not mechanism.slide)
     if mechanism.below:  # seen in a mirror below the axis, where the cam turns the other way
         above = replace(mechanism, start=-mechanism.start)
         seen = follow(np.conj(profile.points), above, -np.asarray(theta, dtype=float))
@@ -111,7 +115,7 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
 
 def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
     """Refuse a profile that a swinging follower cannot get over."""
-    if not mechanism.oscillating:
+    if not mechanism.oscillating or mechanism.slide:
         return
     swing = -mechanism.face_offset if mechanism.flat else mechanism.arm - mechanism.radius
     limit = mechanism.pivot + swing
@@ -136,10 +140,10 @@ def _highest(
     InfeasibleError
         If nothing is touched at one of them.
     """
-    turn, tolerance = np.exp(1j * angles), _ROUNDING * profile.size
-    number, chord, upper = _candidates(profile, mechanism, turn, tolerance)
+    (turn, shift), tolerance = _stand(mechanism, angles), _ROUNDING * profile.size
+    number, chord, upper = _candidates(profile, mechanism, (turn, shift), tolerance)
     start, step = profile.points[chord], profile.chords[chord]
-    z, way = turn[number] * start, turn[number] * step
+    z, way = turn[number] * start + shift[number], turn[number] * step
     position, part = _on_chord(mechanism, z, way, 0.0, tolerance)
     # half of what the bound leaves: it counts the heights of the curve twice
     error, point = 0.5 * np.maximum(upper - position, 0.0), start + part * step
@@ -160,6 +164,16 @@ def _highest(
     highest = position[best]
     np.maximum.at(highest, number, position + error[touched])
     return position[best], highest - position[best], point[touched][best]
+
+
+def _stand(mechanism: Mechanism, angles: Array) -> tuple[Plane, Plane]:
+    """Return how the cam stands at each angle: a turn, then a shift, mm."""
+    m = mechanism
+    if not m.slide:
+        turn: Plane = np.exp(1j * angles, dtype=np.complex128)
+        return turn, np.zeros(angles.shape, dtype=np.complex128)
+    turn = np.full(angles.shape, cmath.exp(1j * m.tilt), dtype=np.complex128)
+    return turn, turn * (m.slide * angles) - 1j * m.height
 
 
 # --- one place ---------------------------------------------------------------------------------
@@ -202,6 +216,8 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
     # half the angle from the three sides: exact for a small roller too
     rest = np.maximum((far + arm - reach) * (far + arm + reach), 0.0)
     turn = 2.0 * np.arctan2(np.sqrt(np.maximum(room, 0.0)), np.sqrt(rest))
+    if mechanism.slide:  # beyond the pivot, where the arm of a disc cam's follower may stand
+        room = np.where(toward.real + reach < 0.0, -np.inf, room)
     return np.where(reach > far + arm, np.inf, own + turn), room
 
 
@@ -248,20 +264,22 @@ def _on_chord(
 
 
 def _candidates(
-    profile: ProfilePoints, mechanism: Mechanism, turn: Plane, tolerance: float
+    profile: ProfilePoints, mechanism: Mechanism, stand: tuple[Plane, Plane], tolerance: float
 ) -> tuple[Ints, Ints, Array]:
     """Return the chords that may hold the contact: number of angle and chord, and upper bound.
 
-    `turn` holds exp(i*theta). Points lie on the curve, so that the highest of some is a lower
-    bound; what cannot reach it is left out, first by blocks, then by chords.
+    `stand` holds how the cam is turned and shifted. Points lie on the curve, so that the highest of
+    some is a lower bound; what cannot reach it is left out, first by blocks, then by chords.
     """
     index, middle, radius = profile.blocks
-    upper = _reached(mechanism, turn[:, None] * middle, radius, tolerance)
+    turn, shift = stand
+    upper = _reached(mechanism, turn[:, None] * middle + shift[:, None], radius, tolerance)
     top = index[np.argmax(upper, axis=1)]
-    lower = _reached(mechanism, turn[:, None] * profile.points[top], 0.0, tolerance).max(axis=1)
+    tops = turn[:, None] * profile.points[top] + shift[:, None]
+    lower = _reached(mechanism, tops, 0.0, tolerance).max(axis=1)
     angle, block = np.nonzero((upper >= lower[:, None] - tolerance) & (upper > -np.inf))
     angle, chord = np.repeat(angle, index.shape[1]), index[block].ravel()
-    z = turn[angle] * profile.points[chord]
+    z = turn[angle] * profile.points[chord] + shift[angle]
     np.maximum.at(lower, angle, _reached(mechanism, z, 0.0, tolerance))
     height = 2.0 * profile.sagitta[chord]
     upper = _on_chord(mechanism, z, turn[angle] * profile.chords[chord], height, tolerance)[0]

@@ -69,7 +69,8 @@ def without_small_loops(
     """
     closed: list[tuple[CurvePoint, CurvePoint]] = []
     left: list[tuple[float, float]] = []
-    for parts in over_the_end(undercut):
+    closes = segments.curve.program.closed
+    for parts in over_the_end(undercut, closes):
         # of two parts, one on each side of the turn's end, the later one begins; a jump at that
         # end is no stretch behind it
         found = _closed(segments, (parts[-1][0], parts[0][1] or parts[-1][1]), size)
@@ -79,7 +80,9 @@ def without_small_loops(
             closed.append(found)
     if not closed:
         return segments, (), left
-    pairs = zip(closed, [*closed[1:], closed[0]], strict=True)
+    ends = [*closed[1:], closed[0]] if closes else [*closed, (segments.last, segments.last)]
+    begins = closed if closes else [(segments.first, segments.first), *closed]
+    pairs = zip(begins, ends, strict=True)
     kept, corners = cut_out(segments, [Branch(one[1], two[0]) for one, two in pairs])
     return kept, corners, left
 
@@ -125,6 +128,8 @@ def _beside(segments: ProfileSegments, place: CurvePoint, side: int) -> list[Cur
     found = [place] if not segments.jump[k] and place[1] != far[k] else []
     for step in (1, 2)[: 2 - len(found)]:
         other = (k + side * step) % count
+        if segments.curve.program.open and other != k + side * step:
+            break
         found.append(CurvePoint(other, float(near[other])))
     return found
 

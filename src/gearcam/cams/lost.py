@@ -46,15 +46,25 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
     """
     m, radius, angle = mechanism, abs(point), math.atan2(point.imag, point.real)
 
+    def place(theta: Jet) -> tuple[Jet, Jet]:
+        """Return where the point stands: seen along the follower's way, or with its pivot at +d."""
+        if not m.slide:
+            return radius * cos(theta + angle), radius * sin(theta + angle)
+        x, y = point.real - m.slide * theta, point.imag + 0.0 * theta
+        if m.oscillating:
+            return -1.0 * x, y - m.height
+        c, s = math.cos(m.tilt), math.sin(m.tilt)
+        return c * x + s * y, c * y - s * x
+
     def sliding(theta: Jet) -> Jet:
-        x, y = radius * cos(theta + angle), radius * sin(theta + angle)
+        x, y = place(theta)
         if m.flat:
             return y - m.start
         aside = x - m.offset
         return y + side * sqrt(m.radius**2 - aside * aside) - m.start
 
     def swinging(theta: Jet) -> Jet:
-        x, y = radius * cos(theta + angle), radius * sin(theta + angle)
+        x, y = place(theta)
         # the point seen from the pivot: its angle from the line to the axis, its distance
         across = m.pivot - x
         square = across * across + y * y

@@ -72,6 +72,8 @@ class Rest(Brief):
     def _standing(self, theta: Array, centers: Plane) -> tuple[Array, Array, Plane]:
         """Return angles at which centres in the cam's frame are reached, lifts, fixed places."""
         m, square = self.wall.mechanism, np.abs(centers) ** 2
+        if m.slide:
+            return self._sliding(centers)
         if m.oscillating:
             swing = np.arccos((m.pivot**2 + m.arm**2 - square) / (2.0 * m.pivot * m.arm))
             fixed, lift = m.pivot - m.arm * unit(-swing), swing - m.start
@@ -80,6 +82,16 @@ class Rest(Brief):
             fixed, lift = m.offset + 1j * height, height - m.start
         turn = np.angle(fixed * np.conj(centers) * unit(-theta))
         return theta + turn, lift, fixed
+
+    def _sliding(self, centers: Plane) -> tuple[Array, Array, Plane]:
+        """Return the same where the cam slides: the height of a centre tells the lift."""
+        m = self.wall.mechanism
+        if m.oscillating:
+            position = np.arcsin((centers.imag - m.height) / m.arm)
+        else:
+            position = centers.imag / math.cos(m.tilt)
+        fixed = m.sliding_centre(position)
+        return (centers - fixed).real / m.slide, position - m.start, fixed
 
     def _moving(self, index: Ints, parameter: Array) -> tuple[Array, Array, Array, Array]:
         """Return angles and lifts at places of the curve of centres, with their slopes."""
@@ -90,9 +102,13 @@ class Rest(Brief):
         centers, velocities = self._centers.moving(index, parameter)
         stands, lift, fixed = self._standing(theta, centers)
         # seen along the follower's way and across it
-        across = unit(-(m.start + lift)) if m.oscillating else np.ones_like(fixed)
-        drawn = np.conj(across) * velocities * unit(stands)
-        turned = np.conj(across) * 1j * fixed
+        if m.slide:
+            across = unit(m.start + lift) if m.oscillating else unit(m.tilt + 0.0 * lift)
+            drawn, turned = np.conj(across) * velocities, np.conj(across) * -m.slide
+        else:
+            across = unit(-(m.start + lift)) if m.oscillating else np.ones_like(fixed)
+            drawn = np.conj(across) * velocities * unit(stands)
+            turned = np.conj(across) * 1j * fixed
         slope = -drawn.real / turned.real
         rise = (drawn.imag + turned.imag * slope) / (m.arm if m.oscillating else 1.0)
         return stands, lift, slope, rise
@@ -123,6 +139,16 @@ class Rest(Brief):
             found.append(((float(angles[0]), float(angles[1])), corner.point))
         return found
 
+    @cached_property
+    def span(self) -> tuple[float, float]:
+        """Angles, rad, between which the roller stands on the wall."""
+        if self.wall.program.closed:
+            return 0.0, _TURN
+        last = len(self._centers.end) - 1
+        return float(self._starts[0]), float(
+            self._moving(np.array([last]), self._centers.end[[last]])[0][0]
+        )
+
     def lift(self, theta: Array) -> tuple[Array, Array]:
         """Return the lift of the resting follower and its slope.
 
@@ -137,8 +163,8 @@ class Rest(Brief):
             mm or rad, and per rad.
         """
         centers, starts = self._centers, np.maximum.accumulate(self._starts)
-        aim = starts[0] + np.mod(theta - starts[0], _TURN)
-        index = np.searchsorted(starts, aim, side="right") - 1
+        aim = theta if self.wall.program.open else starts[0] + np.mod(theta - starts[0], _TURN)
+        index = np.maximum(np.searchsorted(starts, aim, side="right") - 1, 0)
         low, high = centers.start[index], centers.end[index]
 
         def function(parameter: Array) -> tuple[Array, Array]:
@@ -177,9 +203,14 @@ def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
         rows = zip(outer.lift(theta), inner.lift(theta), strict=True)
         return [high - low for high, low in rows]
 
-    ends = np.sort(np.mod(np.concatenate([inner.ends, outer.ends, [0.0]]), _TURN))
+    spans = inner.span, outer.span
+    first, last = max(low for low, _ in spans), min(high for _, high in spans)
+    ends = np.concatenate([inner.ends, outer.ends, [first]])
+    if inner.wall.program.closed:
+        ends = np.mod(ends, _TURN)
+    ends = np.sort(np.clip(ends, first, last))
     kept = ends[np.append(True, np.diff(ends) > _APART)]
-    x = places_between(np.append(kept[kept < _TURN - _APART], _TURN))
+    x = places_between(np.append(kept[kept < last - _APART], last))
     values, slopes = (found.reshape(x.shape) for found in missing(x.ravel()))
     best = int(values.argmax())
     place, value = float(x.flat[best]), float(values.flat[best])

@@ -159,13 +159,17 @@ def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return joined
 
 
-def over_the_end(stretches: Sequence[tuple[float, float]]) -> list[list[tuple[float, float]]]:
+def over_the_end(
+    stretches: Sequence[tuple[float, float]], closed: bool = True
+) -> list[list[tuple[float, float]]]:
     """Return stretches of a turn by themselves, but for one that goes on over the turn's end.
 
     Parameters
     ----------
     stretches : sequence of (float, float)
         Cam angles, rad, in rising order, cut at the end of the turn.
+    closed : bool
+        Whether the turn goes on over its end.
 
     Returns
     -------
@@ -173,7 +177,7 @@ def over_the_end(stretches: Sequence[tuple[float, float]]) -> list[list[tuple[fl
         Of one stretch, or of the two parts of one, that after the end first.
     """
     parts = [[stretch] for stretch in stretches]
-    if len(parts) > 1 and stretches[0][0] == 0.0 and stretches[-1][1] >= 2.0 * math.pi:
+    if closed and len(parts) > 1 and stretches[0][0] == 0.0 and stretches[-1][1] >= 2.0 * math.pi:
         return [*parts[1:-1], [stretches[0], stretches[-1]]]
     return parts
 

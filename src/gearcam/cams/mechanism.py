@@ -15,6 +15,16 @@ oscillating flat     ``Psi0 = arcsin((base + f)/d)``, the face f nearer the cam
 A roller *below* the axis, the second on one follower, has a negative position; all formulas of the
 first hold for it as they stand.
 
+A cam that *slides* moves along ``-x`` by its way ``u = slide*theta``, so that a whole way is one
+turn: what is said of cam angles holds, and a `Driver` tells the way to people. (People see the
+mirror image, which moves along ``+x``.) Its follower translates along ``+y`` turned by a *tilt*,
+counter-clockwise, or its arm points from the pivot at ``(-d, p)`` towards ``+x``:
+
+==================== ==========================================================
+translating round    the lift itself, ``C = i*exp(i*tilt)*s``
+oscillating round    ``Psi0 = -arcsin(p/l)``, ``C = -d + i*p + l*exp(i*Psi)``
+==================== ==========================================================
+
 Refused: followers that cannot touch the cam at zero lift.
 
 Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28).
@@ -22,18 +32,70 @@ Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28).
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
+from gearcam.numeric.arrays import Array, Plane
+
+
+@dataclass(frozen=True, kw_only=True)
+class Driver(Brief):
+    """How the place of a cam is told to people.
+
+    Parameters
+    ----------
+    symbol, unit, per : str
+        Of its angle or way, as in the names of columns; what derivatives are taken by.
+    called : str
+        What it is.
+    scale : float
+        Angle or way, in the unit, of one rad.
+    rate : float
+        What one rad is of what derivatives are taken by.
+    """
+
+    symbol: str
+    unit: str
+    per: str
+    called: str
+    scale: float
+    rate: float
+
+    @property
+    def turn(self) -> float:
+        """What is gone when a program is over, in the unit."""
+        return 2.0 * math.pi * self.scale
+
+    @property
+    def column(self) -> str:
+        """The name of its column."""
+        return f"{self.symbol}_{self.unit}"
+
+    def told(self, theta: float) -> str:
+        """Return an angle, rad, as people are told, with its unit."""
+        return f"{shown(self.scale * theta)} {self.unit}"
+
+    def seen(self, theta: float) -> str:
+        """Return a place for a table of facts: rounding shows as nothing."""
+        return f"at {shown(self.scale * theta, scale=self.turn)} {self.unit}"
+
+
+TURNING = Driver(
+    symbol="theta", unit="deg", per="rad", called="cam angle", scale=math.degrees(1.0), rate=1.0
+)
+"""A cam that turns."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanism(Brief):
-    """A follower and the cam's axis, turning counter-clockwise.
+    """A follower and the cam's axis, turning counter-clockwise; or a cam that slides along ``-x``.
 
     Parameters
     ----------
@@ -49,6 +111,12 @@ class Mechanism(Brief):
         l and d of an oscillating follower.
     face_offset : float, mm
         f of an oscillating flat follower.
+    slide : float, mm/rad
+        Way of a cam that slides; 0 of one that turns.
+    tilt : float, rad
+        Of a translating follower's way over a cam that slides.
+    height : float, mm
+        p, of the pivot over a cam that slides.
     """
 
     flat: bool
@@ -59,6 +127,25 @@ class Mechanism(Brief):
     arm: float = 0.0
     pivot: float = 0.0
     face_offset: float = 0.0
+    slide: float = 0.0
+    tilt: float = 0.0
+    height: float = 0.0
+
+    @property
+    def driver(self) -> Driver:
+        """How the cam's place is told to people."""
+        if not self.slide:
+            return TURNING
+        return Driver(
+            symbol="u", unit="mm", per="mm", called="way", scale=self.slide, rate=self.slide
+        )
+
+    def sliding_centre(self, position: Array) -> Plane:
+        """Return centres of a round follower over a cam that slides, in the fixed frame."""
+        if not self.oscillating:
+            return np.asarray(1j * cmath.exp(1j * self.tilt) * position, dtype=np.complex128)
+        arm = self.arm * np.exp(1j * position)
+        return np.asarray(complex(-self.pivot, self.height) + arm, dtype=np.complex128)
 
     @property
     def lever(self) -> float:
@@ -80,7 +167,10 @@ class Mechanism(Brief):
 
     @property
     def least(self) -> float:
-        """Distance from the axis to a round follower's centre or to a flat face, at zero lift."""
+        """Distance from the axis to a round follower's centre or to a flat face, at zero lift.
+
+        The cam turns.
+        """
         if not self.oscillating:
             return self.start if self.flat else math.hypot(self.offset, self.start)
         if self.flat:
@@ -158,6 +248,51 @@ def swing(pivot: float, arm: float, size: float) -> float:
         math.sqrt((pivot + arm - size) * (pivot + arm + size)),
     )
     return 2.0 * half
+
+
+def make_sliding_mechanism(follower: FollowerSpec, way: float) -> Mechanism:
+    """Return the numbers of a follower over a cam that slides.
+
+    Parameters
+    ----------
+    follower : FollowerSpec
+        The follower, round.
+    way : float, mm
+        How far the cam slides.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    InfeasibleError
+        If the arm does not reach the height of zero lift.
+    """
+    kind = {"flat": False, "radius": follower.radius, "slide": way / (2.0 * math.pi)}
+    if not follower.oscillating:
+        return Mechanism(oscillating=False, start=0.0, tilt=follower.axis or 0.0, **kind)
+    arm, height = _given(follower.arm, "an arm"), follower.pivot_height or 0.0
+    if not abs(height) < arm:
+        raise InfeasibleError(
+            "the arm does not reach down to zero lift"
+            if height > 0.0
+            else "the arm does not reach up to zero lift",
+            where="follower.pivot_height_mm",
+            value=height,
+            limit=math.copysign(arm, height),
+            unit="mm",
+            nearest="the limit is the arm, excluded",
+            ways=(
+                Way(
+                    near={"follower.pivot_height_mm": math.copysign(arm, height)},
+                    far={"follower.pivot_height_mm": 0.0},
+                ),
+            ),
+        )
+    pivot = _given(follower.pivot_distance, "a pivot distance")
+    start = -math.asin(height / arm)
+    return Mechanism(oscillating=True, start=start, arm=arm, pivot=pivot, height=height, **kind)
 
 
 def _out_of_reach(

@@ -20,6 +20,9 @@ from gearcam.numeric.bulges import as_complex
 FEWEST: Final = 8
 """Fewest points of a profile."""
 
+_CORNER: Final = 0.5
+"""Turn between two chords of a plate, rad, that no curve makes: one of its corners."""
+
 _ALIKE: Final = 1e-12
 """Distance over the profile's size below which neighbours are one point: rounding."""
 
@@ -32,9 +35,12 @@ class ProfilePoints:
     ----------
     points : (n,) complex array, mm
         Counter-clockwise around the cam's axis at 0, no neighbours alike, first not repeated.
+    corner : float, rad
+        Turn from which on a point is a corner, whose chords are straight.
     """
 
     points: Plane
+    corner: float = math.inf
 
     @cached_property
     def size(self) -> float:
@@ -51,6 +57,7 @@ class ProfilePoints:
         """Estimated height of the curve over each chord, mm: the larger of its ends' curvatures."""
         length, before = np.abs(self.chords), np.roll(self.chords, 1)
         turn = np.abs(np.angle(self.chords * np.conj(before)))
+        turn[turn >= self.corner] = 0.0
         bend = 2.0 * turn / (length + np.abs(before))
         return np.maximum(bend, np.roll(bend, -1)) * length**2 / 8.0
 
@@ -76,13 +83,15 @@ class ProfilePoints:
         return index, middle, radius + 2.0 * self.sagitta[index].max(axis=1)
 
 
-def profile_points(points: Plane | Array) -> ProfilePoints:
+def profile_points(points: Plane | Array, around: bool = True) -> ProfilePoints:
     """Return the points of a profile, cleaned.
 
     Parameters
     ----------
     points : (n,) complex array or (n, 2) array, mm
         A closed profile in order, either way around; equal neighbours are dropped.
+    around : bool
+        Whether it goes around the cam's axis; one that slides has none.
 
     Returns
     -------
@@ -104,16 +113,19 @@ def profile_points(points: Plane | Array) -> ProfilePoints:
         raise InfeasibleError(
             "the profile has too few points", value=len(z), limit=FEWEST, unit="points"
         )
-    around = float(np.angle(np.roll(z, -1) * np.conj(z)).sum()) / (2.0 * math.pi)
-    if abs(abs(around) - 1.0) > 0.25 or not np.all(z):
+    if not around:
+        turned = float((np.conj(z) * np.roll(z, -1)).imag.sum())
+        return ProfilePoints(points=z if turned > 0.0 else z[::-1].copy(), corner=_CORNER)
+    turns = float(np.angle(np.roll(z, -1) * np.conj(z)).sum()) / (2.0 * math.pi)
+    if abs(abs(turns) - 1.0) > 0.25 or not np.all(z):
         raise InfeasibleError(
             "the profile does not go around the cam's axis once",
-            value=around,
+            value=turns,
             limit=1.0,
             unit="turns",
             nearest="one closed line in order, with the origin inside",
         )
-    return ProfilePoints(points=z if around > 0.0 else z[::-1].copy())
+    return ProfilePoints(points=z if turns > 0.0 else z[::-1].copy())
 
 
 def in_plane(points: Plane | Array) -> Plane:

@@ -38,6 +38,11 @@ def _size(*, doc: str) -> Any:
     return param(LENGTH, default=None, gt=0, le=1e6, doc=doc)
 
 
+def _run(*, doc: str) -> Any:
+    """Return a length of standstill."""
+    return param(LENGTH, default=None, ge=0, le=1e6, doc=doc)
+
+
 def _aside(*, doc: str) -> Any:
     """Return a length to either side."""
     return param(LENGTH, default=0.0, ge=-1e6, le=1e6, doc=doc)
@@ -97,6 +102,20 @@ class FollowerSpec(Brief):
         doc="of an oscillating flat follower: how far its face stands off the pivot to the cam"
     )
 
+    axis: float | None = param(
+        ANGLE, default=None, ge=-80, le=80,
+        doc="of a translating follower over a translating cam: how far its way leans in the "
+        "direction in which the cam moves",
+    )  # fmt: skip
+    pivot_height: float | None = param(
+        LENGTH,
+        default=None,
+        ge=-1e6,
+        le=1e6,
+        doc="of an oscillating follower over a translating cam: its pivot above the roller's "
+        "centre at zero lift",
+    )
+
     @property
     def oscillating(self) -> bool:
         """Whether it swings about a pivot; its lift is then an angle."""
@@ -151,7 +170,7 @@ class CamSpec(Brief):
     form: str = param(
         TEXT,
         default="disc",
-        choices=("disc", "groove", "conjugate", "yoke"),
+        choices=("disc", "groove", "conjugate", "yoke", "translating"),
         doc="the form of the cam",
     )
     prime_radius: float | None = _size(
@@ -184,6 +203,18 @@ class CamSpec(Brief):
         TEXT, default=None, choices=("front", "back"),
         doc="the face that a groove is cut into: front is +z, as when left out",
     )  # fmt: skip
+
+    walls: str | None = param(
+        TEXT, default=None, choices=("lower", "both"),
+        doc="of a translating cam: the wall below the follower, as when left out, or a groove",
+    )  # fmt: skip
+    run_in: float | None = _run(doc="way of a translating cam before its motion, at zero lift")
+    run_out: float | None = _run(doc="way of a translating cam after its motion, at the last lift")
+
+    @property
+    def runs(self) -> tuple[float, float]:
+        """Ways of a translating cam before and after its motion, mm."""
+        return self.run_in or 0.0, self.run_out or 0.0
 
     @property
     def clockwise(self) -> bool:

@@ -19,7 +19,7 @@ import numpy as np
 
 from gearcam.cams.curve import ProfileSegments
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
 
@@ -34,6 +34,9 @@ _AROUND = 97
 
 _BESIDE = 3.0
 """How far beside, in widths of the stretch: the loop closes within twice of it."""
+
+_RUNS = 8.0
+"""Run before and after a way that is tried where a wall is undercut there, in followers' radii."""
 
 _ROUNDS = 8
 """Times that chords are made four times finer where crossings are not told apart."""
@@ -62,14 +65,18 @@ class Corner(Brief):
     after: float
 
 
-def star_shaped(points: Plane, tangents: Plane) -> bool:
+def star_shaped(points: Plane, tangents: Plane, slides: bool = False) -> bool:
     """Return whether a curve is seen whole from the axis: it then cannot cross itself.
 
     Parameters
     ----------
     points, tangents : complex arrays, mm and 1
         All along the curve, which is drawn forward everywhere.
+    slides : bool
+        Whether the cam slides: its axis is infinitely far below.
     """
+    if slides:
+        return bool(np.all(tangents.real > 0.0) or np.all(tangents.real < 0.0))
     side = np.imag(np.conj(points) * tangents)
     return bool(np.all(side > 0.0) or np.all(side < 0.0))
 
@@ -102,12 +109,22 @@ def trimmed(
     """
     for number in range(_ROUNDS):
         chain = _chain(segments, undercut, tolerance * 0.25**number)
-        rings = [ring for ring in remaining(segments, [chain])[0] if _about_axis(ring)]
+        rings = [
+            ring for ring in remaining(segments, [chain])[0] if chain.open or _about_axis(ring)
+        ]
         # chords that are too long may have missed a loop
         if len(rings) == 1 and rings[0].gap <= _MISS * np.abs(chain.points).max():
             made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
             if not _backwards(made[0], undercut):
                 return made
+    if segments.curve.program.open:
+        run = _RUNS * abs(segments.inset)
+        raise InfeasibleError(
+            "the wall is undercut where its way begins or ends: what is left cannot be told",
+            where="[cam]",
+            nearest="longer run_in_mm and run_out_mm leave room for what is cut away",
+            ways=(Way(far={"cam.run_in_mm": run, "cam.run_out_mm": run}),),
+        )
     raise InfeasibleError(
         "the profile crosses itself so often that what is left cannot be told",
         where="[cam]",
@@ -157,8 +174,12 @@ def _chain(
         low.append(places[:-1])
         high.append(places[1:])
     curve, lows = np.concatenate(number), np.concatenate(low)
+    highs = np.concatenate(high)
+    if segments.curve.program.open:
+        curve, lows = np.append(curve, curve[-1]), np.append(lows, highs[-1])
     points = np.conj(segments.at(curve, lows)[0])  # a cam is drawn clockwise
-    return Chain(curve=curve, low=lows, high=np.concatenate(high), points=points)
+    curve, lows = curve[: len(highs)], lows[: len(highs)]
+    return Chain(curve=curve, low=lows, high=highs, points=points)
 
 
 def _beside(stretch: tuple[float, float], start: float, end: float) -> Array:
@@ -166,7 +187,7 @@ def _beside(stretch: tuple[float, float], start: float, end: float) -> Array:
     low, high = stretch
     more = _BESIDE * (high - low)
     places = np.linspace(low - more, high + more, _AROUND)
-    turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])
+    turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])  # of an open curve nothing lies there
     shifted = (places + turns[:, None]).ravel()
     return shifted[(shifted > start) & (shifted < end)]
 
@@ -181,7 +202,8 @@ def cut_out(
     segments : ProfileSegments
         The whole curve.
     branches : sequence of Branch
-        What is left of it, in the order of drawing; each ends where the next one begins.
+        What is left of it, in the order of drawing; each ends where the next one begins, the last
+        where the first does or at an open curve's end.
 
     Returns
     -------
@@ -191,7 +213,8 @@ def cut_out(
         At the ends of the branches.
     """
     corners = []
-    for one, two in zip(branches, [*branches[1:], branches[0]], strict=True):
+    following = branches[1:] if segments.curve.program.open else [*branches[1:], branches[0]]
+    for one, two in zip(branches, following, strict=False):
         index, places = (np.array(values) for values in zip(one.end, two.begin, strict=True))
         before, after = segments.states(index, places)[0].tolist()
         point = complex(segments.at(index, places)[0][0])

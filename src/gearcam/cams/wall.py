@@ -40,7 +40,7 @@ CHORD_TOLERANCE = 1e-3
 _TURN = [(0.0, 2.0 * math.pi)]
 """The whole turn, as stretches of it."""
 
-_OVERSAMPLING = 8
+OVERSAMPLING = 8
 """Dense points per chord: their own chord error is 1/64 of the polygon's."""
 
 
@@ -232,18 +232,17 @@ class Wall(PitchMotion):
     @property
     def undercut_ranges(self) -> list[tuple[float, float]]:
         """The same for people: one that goes on over the end of the turn ends beyond it."""
-        joined = over_the_end(self.undercut)
+        joined = over_the_end(self.undercut, self.program.closed)
         ends = (parts[0][1] + (2.0 * math.pi if len(parts) > 1 else 0.0) for parts in joined)
         return [(parts[-1][0], end) for parts, end in zip(joined, ends, strict=True)]
 
     @cached_property
     def _kept(self) -> _Kept:
         whole = segments(self.curve, self.curve.mechanism.radius)
-        size = self.mechanism.least + self.program.range[1] * self.mechanism.lever
-        kept, corners, left = without_small_loops(whole, self.undercut, size)
+        kept, corners, left = without_small_loops(whole, self.undercut, self._reach)
         drawn = self._drawn(kept)
         sampler = self._sampled(drawn)
-        if left or not star_shaped(*sampler.probes):
+        if left or not star_shaped(*sampler.probes, slides=self.program.open):
             kept, more = trimmed(kept, left, self.tolerance)
             starts = set(kept.states(np.arange(len(kept.start)), kept.start)[0].tolist())
             corners = (*(corner for corner in corners if corner.after in starts), *more)
@@ -252,11 +251,17 @@ class Wall(PitchMotion):
         corners = tuple(sorted(corners, key=lambda corner: corner.before))
         return _Kept(drawn=drawn, sampler=sampler, corners=corners)
 
+    @property
+    def _reach(self) -> float:
+        """The size of the cam, mm, of which small lengths are parts."""
+        m = self.mechanism
+        return (2.0 * math.pi * m.slide or m.least) + self.program.range[1] * m.lever
+
     def _drawn(self, kept: ProfileSegments) -> ProfileSegments:
         return replace(begun(kept), curve=replace(self.curve, mirrored=self.clockwise))
 
     def _sampled(self, drawn: ProfileSegments) -> Sampler:
-        return Sampler(curves=drawn, tolerance=self.tolerance)
+        return Sampler(curves=drawn, tolerance=self.tolerance, closed=self.program.closed)
 
     @property
     def corners(self) -> tuple[Corner, ...]:
@@ -319,13 +324,17 @@ class Wall(PitchMotion):
         """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
         if self.mechanism.flat or self.mechanism.radius == 0.0:
             return self.contour
-        return self._contour(self._sampled(self._drawn(segments(self.curve, 0.0))))
+        return self._contour(self._pitch_sampler)
+
+    @property
+    def _pitch_sampler(self) -> Sampler:
+        return self._sampled(self._drawn(segments(self.curve, 0.0)))
 
     def _contour(self, sampler: Sampler) -> Contour:
         _, points, error = sampler.chords
         clockwise = not self.clockwise  # theta draws against the cam's turning
         return Contour(
-            dense=lambda: sampler.runs(_OVERSAMPLING, reverse=clockwise),
+            dense=lambda: sampler.runs(OVERSAMPLING, reverse=clockwise),
             vertices=as_pairs(points[::-1] if clockwise else points),
             tolerance=self.tolerance,
             chord_error=error,
@@ -333,7 +342,7 @@ class Wall(PitchMotion):
 
     def places(self, count: int) -> tuple[Array, Plane, Plane]:
         """Return points of the profile at `count` even cam angles of a turn (see `places_at`)."""
-        return self.places_at(2.0 * math.pi * np.arange(count) / count)
+        return self.places_at(2.0 * math.pi * np.arange(count) / (count - self.program.open))
 
     def places_at(self, theta: Array) -> tuple[Array, Plane, Plane]:
         """Return points of the profile at cam angles, where they are left by trimming.
@@ -351,7 +360,9 @@ class Wall(PitchMotion):
             Touched at those angles, with the outward normals of the metal.
         """
         kept = self._kept.drawn
-        within = np.mod(theta, 2.0 * math.pi)
+        turn = 2.0 * math.pi
+        # an open curve ends with its last place
+        within = np.minimum(theta, np.nextafter(turn, 0)) if self.program.open else theta % turn
         sweeps = np.flatnonzero(~kept.jump)
         inside = (kept.start[sweeps] <= within[:, None]) & (within[:, None] < kept.end[sweeps])
         left = inside.any(axis=1)

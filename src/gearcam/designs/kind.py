@@ -75,8 +75,8 @@ class DesignKind:
         What gives the tables with fixed keys, by title; each makes the design's field of that name.
     required : tuple of str
         Titles that a file must give.
-    one_of : mapping of str to tuple of str
-        Keys of which a table has exactly one, by its title.
+    one_of : mapping of str to tuple
+        Keys of which a table has exactly one, by its title; or words of a key instead of them.
     conditions : mapping of str to callable
         What returns more of the JSON schema of a table, by its title.
     rules : callable
@@ -106,7 +106,9 @@ class DesignKind:
     homes: Callable[[], Mapping[str, str]] = dict
     tables: Mapping[str, Callable[[], Table]]
     required: tuple[str, ...]
-    one_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    one_of: Mapping[str, tuple[str | Mapping[str, Sequence[str]], ...]] = field(
+        default_factory=dict
+    )
     conditions: Mapping[str, Callable[[], dict[str, Any]]] = field(default_factory=dict)
     rules: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None

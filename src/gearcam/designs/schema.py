@@ -6,12 +6,13 @@ ranges. What a schema cannot say (knots must rise, formulas must parse) the read
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS, DesignKind
 from gearcam.designs.table import Key, Table
+from gearcam.quantities import REQUIRED
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
@@ -139,7 +140,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
 def _titled(kind: DesignKind, title: str) -> Schema:
     made = table_schema(kind.table(title))
     if title in kind.one_of:
-        made["oneOf"] = [{"required": [key]} for key in kind.one_of[title]]
+        made["oneOf"] = [_either(one) for one in kind.one_of[title]]
     if title in kind.conditions:
         made |= kind.conditions[title]()
     if title == "output":
@@ -147,9 +148,17 @@ def _titled(kind: DesignKind, title: str) -> Schema:
     return made
 
 
+def _either(one: str | Mapping[str, Sequence[str]]) -> Schema:
+    """Return what one of several alternatives asks for: a key, or words of a key."""
+    if isinstance(one, str):
+        return {"required": [one]}
+    words = {key: {"enum": list(values)} for key, values in one.items()}
+    return {"required": list(one), "properties": words}
+
+
 def _property(key: Key) -> Schema:
     words: Schema = {"description": description(key)}
-    if not key.required and key.default is not None:
+    if key.default not in (None, REQUIRED):
         words["default"] = key.outward(key.default)
     single = _single(key)
     if key.length is None:

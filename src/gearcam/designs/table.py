@@ -42,6 +42,8 @@ class Key:
         value by itself.
     swings : bool or None
         Of a lift: whether it is given so where lifts are angles; None of everything else.
+    slides : bool or None
+        Of what a cam does: whether it is given so where the cam slides; None of everything else.
     """
 
     name: str
@@ -52,11 +54,12 @@ class Key:
     literal: str
     default: Any
     swings: bool | None = None
+    slides: bool | None = None
 
     @property
     def required(self) -> bool:
-        """Whether the file must give the key."""
-        return self.default is REQUIRED
+        """Whether the file must give the key, and no other in its place."""
+        return self.default is REQUIRED and self.slides is None
 
     def takes(self, count: int) -> bool:
         """Return whether its list may have as many values as `count`."""
@@ -119,6 +122,15 @@ class Table:
         }
         return Table(self.title, self.owner, kept)
 
+    def of_cams(self, *, sliding: bool) -> Table:
+        """Return the table with the keys of cams that slide, `sliding`, or turn."""
+        kept = {
+            k: replace(entry, slides=None)
+            for k, entry in self.entries.items()
+            if entry.slides in (None, sliding)
+        }
+        return Table(self.title, self.owner, kept)
+
     def inward(self, raw: Mapping[str, Any]) -> dict[str, Any]:
         """Return inner values by parameter name, for the keys given."""
         return {
@@ -168,7 +180,11 @@ def table_of(title: str, owner: type) -> Table:
 
 def _entries(name: str, made_of: Param, hint: Any, default: Any) -> Iterator[Key]:
     entry = _entry(name, made_of, hint, default)
-    if made_of.angular is None:
+    if made_of.sliding is not None:
+        slid = made_of.sliding
+        yield replace(entry, slides=False)
+        yield replace(entry, slides=True, key=slid.key(name), param=slid, literal="")
+    elif made_of.angular is None:
         yield entry
     else:
         angular = made_of.angular

@@ -10,6 +10,7 @@ from gearcam.designs.examine import name_fault
 from gearcam.designs.faults import description, show
 from gearcam.designs.kind import KINDS, DesignKind
 from gearcam.designs.table import Key, Table
+from gearcam.quantities import REQUIRED
 
 _COLUMN: Final = 36
 _WIDTH: Final = 96
@@ -97,7 +98,7 @@ def entry_lines(known: Table, given: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _example(entry: Key) -> Any:
-    if entry.required or entry.default is None:
+    if entry.default in (None, REQUIRED):
         made = entry.param
         usual = made.choices[0] if made.choices else made.ge or made.gt or 1
         return _EXAMPLES.get(entry.key, usual)

@@ -44,9 +44,9 @@ CURVE_PART: Final = 0.96
 dense points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
 
 COLORS: Final = {
-    drawings.BORE: 5, drawings.HOLE: 4, drawings.SLOT: 6, drawings.MARK: 1, drawings.TOOL: 1,
-    drawings.CENTRODE: 3, drawings.PITCH: 3, drawings.CENTER: 8, drawings.PRIME: 8,
-    drawings.FOLLOWER: 8,
+    drawings.BORE: 5, drawings.HOLE: 4, drawings.SLOT: 6, drawings.GROOVE: 6, drawings.MARK: 1,
+    drawings.TOOL: 1, drawings.CENTRODE: 3, drawings.PITCH: 3, drawings.CENTER: 8,
+    drawings.PRIME: 8, drawings.FOLLOWER: 8,
 }  # fmt: skip
 """Colour numbers: blue, cyan, magenta, red, green, 8 grey; all others are 7, black or white."""
 

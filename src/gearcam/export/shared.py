@@ -84,7 +84,9 @@ def part_facts(part: Part, tools: ToolLimits, density: float | None) -> dict[str
     }
     if density is not None:
         made["density_kg_m3"] = density
-        made["mass"] = mass_properties(part, density).as_dict()
+        mass = mass_properties(part, density).as_dict()
+        about = () if part.turns else ("unbalance_g_mm", "unbalance_direction_deg")
+        made["mass"] = {name: value for name, value in mass.items() if name not in about}
     return {name: value for name, value in made.items() if value}
 
 
@@ -166,7 +168,8 @@ def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: dict[str, Any]
     for drawing in drawings:
         name = f"{drawing.name}.dxf"
         files[name] = dxf_bytes(drawing, style)
-        known["error_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
+        if drawing.contours:
+            known["error_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
     return files
 
 

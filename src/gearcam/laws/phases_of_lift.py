@@ -1,15 +1,17 @@
 """Phases of a lift program: what a design says of each stretch of a cam's turn.
 
 The *lift* is a length for translating followers and an angle for oscillating ones; a file says
-which (``lift_mm``, ``lift_deg``). A *rise* goes up by its lift after a law on the unit square, a
-*return* comes down after one (by all that was risen, if it gives no lift), a *dwell* stands still,
-and a *segment* goes from the state in which the phase before it ends to a lift with a velocity and
-an acceleration, so that phases join without a dwell. The angle of one phase may be
-``"rest"``: what the others leave of the turn. Of some cams the phases may fill *half a turn*, after
-which the program goes on with the opposite of what it has done.
+which (``lift_mm``, ``lift_deg``). What a phase takes is an angle of a cam that turns and a length,
+its *way*, of one that slides (``angle_deg``, ``way_mm``). A *rise* goes up by its lift after a law
+on the unit square, a *return* comes down after one (by all that was risen, if it gives no lift), a
+*dwell* stands still, and a *segment* goes from the state in which the phase before it ends to a
+lift with a velocity and an acceleration, so that phases join without a dwell. The angle of one
+phase may be ``"rest"``: what the others leave of the turn. Of some cams the phases may fill *half a
+turn*, after which the program goes on with the opposite of what it has done.
 
 Refused by reading: phases that do not fill a turn, a rest that is none, programs that end at
-another lift than they begin with.
+another lift than they begin with. A cam that slides has no turn: its program is *open*, and its
+phases fill whatever way they take.
 
 Depends on quantities only.
 """
@@ -47,7 +49,12 @@ Problem = tuple[int | None, str, str, str]
 TURN: Final = 2.0 * math.pi
 """A turn of the cam, rad."""
 
-_ANGLE: Final = "cam angle that it takes, or what the others leave"
+_WAY: Final = Param(LENGTH, word="way", gt=0, le=1e6, doc="way of a sliding cam that it takes")
+
+_SPAN: Final[dict[str, Any]] = {
+    "gt": 0, "le": 360, "doc": "cam angle that it takes, or what the others leave", "sliding": _WAY,
+}  # fmt: skip
+"""What a phase takes of a turn, or of a way."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +68,7 @@ class DwellPhase:
     DwellPhase(angle='rest')
     """
 
-    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    angle: float | Literal["rest"] = param(ANGLE, **_SPAN)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +79,8 @@ class RisePhase(Brief):
     ----------
     law : object
         Parameters of a law, such as `gearcam.rises.Cycloidal`.
+    angle : float or "rest"
+        What it takes of a turn, in rad; of a cam that slides its way, in mm.
     lift : float or None
         In mm, or in rad where the follower oscillates.
 
@@ -82,7 +91,7 @@ class RisePhase(Brief):
     RisePhase(angle=2, lift=10, law=Cycloidal)
     """
 
-    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    angle: float | Literal["rest"] = param(ANGLE, **_SPAN)
     law: Any
     lift: float | None = param(
         LENGTH,
@@ -125,7 +134,7 @@ class SegmentPhase(Brief):
     SegmentPhase(angle=1, to=4, velocity=-2)
     """
 
-    angle: float | Literal["rest"] = param(ANGLE, gt=0, le=360, doc=_ANGLE)
+    angle: float | Literal["rest"] = param(ANGLE, **_SPAN)
     to: float | None = param(
         LENGTH,
         default=None,
@@ -224,7 +233,7 @@ def fill_half(phases: Sequence[Phase]) -> bool:
 
 
 def program_problems(
-    phases: Sequence[Phase], *, oscillating: bool, half: bool = False
+    phases: Sequence[Phase], *, oscillating: bool, closed: bool = True, half: bool = False
 ) -> Iterator[Problem]:
     """Yield what is wrong with a program by reading.
 
@@ -234,6 +243,8 @@ def program_problems(
         Of a turn, or half of it.
     oscillating : bool
         Whether lifts are angles.
+    closed : bool
+        Whether they fill a turn, at whose end the lift is that at its beginning.
     half : bool
         Whether they fill half a turn.
 
@@ -250,7 +261,11 @@ def program_problems(
             clean = False
             yield number, asked, "is missing", f"a lift in {unit}"
     if clean:
-        yield from _closure_problems(phases, unit, half=half)
+        if closed:
+            yield from _turn_problems(phases, 0.5 * TURN if half else TURN)
+        else:
+            yield from _way_problems(phases)
+        yield from _closure_problems(phases, unit, closed=closed, half=half)
 
 
 def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
@@ -273,8 +288,15 @@ def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
         yield None, "", message, f'{whole} deg in all, or "rest" for one of them{hint}'
 
 
-def _closure_problems(phases: Sequence[Phase], unit: str, *, half: bool) -> Iterator[Problem]:
-    yield from _turn_problems(phases, 0.5 * TURN if half else TURN)
+def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
+    for number, phase in enumerate(phases):
+        if phase.angle == "rest":
+            yield number, "angle", "no turn is there to be filled", "a length above 0"
+
+
+def _closure_problems(
+    phases: Sequence[Phase], unit: str, *, closed: bool, half: bool
+) -> Iterator[Problem]:
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
@@ -286,7 +308,7 @@ def _closure_problems(phases: Sequence[Phase], unit: str, *, half: bool) -> Iter
         if abs(found[-1]) <= _LIFT_MISS * largest:
             rule = "another lift than at its beginning, or phases of a whole turn, 360 deg"
             yield None, "", "the half turn ends at the lift at which it begins", rule
-    elif abs(found[-1]) > _LIFT_MISS * largest:
+    elif closed and abs(found[-1]) > _LIFT_MISS * largest:
         end = math.degrees(found[-1]) if unit == "deg" else found[-1]
         rule = "the lift at the end of the turn is that at its beginning, 0"
         yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule

@@ -1,18 +1,20 @@
-"""Lift programs: the displacement of a follower over a turn of the cam.
+"""Lift programs: the displacement of a follower over a turn of the cam, or over its way.
 
 A program is made from phases. Every phase is scaled from the unit square; a segment is the quintic
 that leaves with the state in which the phase before it ends. The program repeats every turn, and
-says at which knots its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps.
+says at which knots its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps. That of
+a cam that slides is *open*; its whole way counts as one turn, 2*pi rad.
 
 Source: 000 section 3.3, eqs. (3.3)-(3.5).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -105,6 +107,8 @@ class Program(Brief, Displacement):
         Estimated error of the lift beyond rounding.
     deviation : Deviation, optional
         What smoothing took off rows.
+    open : bool
+        Whether it ends where its turn does.
     """
 
     lift: Piecewise
@@ -112,6 +116,12 @@ class Program(Brief, Displacement):
     cuts: Array
     error: float = 0.0
     deviation: Deviation | None = None
+    open: bool = False
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is repeated every turn."""
+        return not self.open
 
     @property
     def knots(self) -> Array:
@@ -202,6 +212,7 @@ class Program(Brief, Displacement):
                 after=float(survey.after[knot, order]),
             )
             for knot in np.flatnonzero(jumping.any(axis=1)).tolist()
+            if knot or not self.open
         )
 
     @property
@@ -220,6 +231,7 @@ def make_program(
     tolerances: Tolerances,
     *,
     oscillating: bool = False,
+    closed: bool = True,
     half: bool = False,
 ) -> Program:
     """Make a program from its phases.
@@ -232,6 +244,8 @@ def make_program(
         Accuracy of laws that are expanded.
     oscillating : bool
         Whether lifts are angles.
+    closed : bool
+        Whether it is repeated; else its phases take parts of a way, which counts as a turn.
     half : bool
         Whether the phases fill half a turn and are followed by their opposite: the first leaves
         with the state in which the last one ends, its signs changed.
@@ -247,31 +261,18 @@ def make_program(
     InfeasibleError
         If the program does not close, or a law has no value.
     """
-    for number, _, message, rule in program_problems(phases, oscillating=oscillating, half=half):
+    for number, _, message, rule in program_problems(
+        phases, oscillating=oscillating, closed=closed, half=half
+    ):
         where = "motion" if number is None else f"motion[{number}]"
         raise InfeasibleError(message, where=where, nearest=rule)
-    turn = 0.5 * TURN if half else TURN
-    widths = angles_of(phases, turn)
-    share = turn / sum(widths)
-    angles = np.cumsum([0.0, *(width * share for width in widths)])
-    angles[-1] = turn
-    heights = levels(phases) if half else [*levels(phases)[:-1], 0.0]
+    angles, heights = _ends(phases, closed=closed, half=half)
     shapes = [phase.law for phase in phases if isinstance(phase, RisePhase)]
     rises = {shape: shape.build(tolerances) for shape in dict.fromkeys(shapes)}
     places = [
         _Place(*ends, *lifts)
         for ends, lifts in zip(pairwise(angles.tolist()), pairwise(heights), strict=True)
     ]
-
-    def end_state(number: int) -> tuple[float, float]:
-        """Velocity and acceleration at the end of a phase: its law fixes them by itself."""
-        match phases[number]:
-            case SegmentPhase() as phase:
-                return phase.end[1:]
-            case RisePhase() as phase:
-                return places[number].end_state(rises[phase.law])
-            case DwellPhase():
-                return 0.0, 0.0
 
     pieces: list[tuple[float, Piece]] = []
     stretches: list[PlacedPhase] = []
@@ -283,7 +284,8 @@ def make_program(
                 pieces.append((place.end, Piece(polynomial, parameters=(place.start, place.base))))
             case SegmentPhase():
                 kind = "rise" if place.rise >= 0.0 else "return"
-                start, around = end_state(number - 1), half and number == 0
+                before = _end_state(phases[number - 1], places[number - 1], rises)
+                start, around = before if number or closed else (0.0, 0.0), half and number == 0
                 pieces.append((place.end, place.quintic(start, phase.end[1:], opposite=around)))
             case RisePhase():
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
@@ -298,7 +300,32 @@ def make_program(
         stretches=tuple(stretches),
         cuts=np.union1d(lift.knots, cuts),
         error=swing * max((rise.error for rise in rises.values()), default=0.0),
+        open=not closed,
     )
+
+
+def _ends(phases: Sequence[Phase], *, closed: bool, half: bool) -> tuple[Array, list[float]]:
+    """Return the angles, rad, and the lifts at which phases begin, and the last one ends."""
+    turn = 0.5 * TURN if half else TURN
+    widths = angles_of(phases, turn) if closed else [float(phase.angle) for phase in phases]
+    share = turn / sum(widths)
+    angles = np.cumsum([0.0, *(width * share for width in widths)])
+    angles[-1] = turn
+    heights = levels(phases)
+    if closed and not half:
+        heights[-1] = 0.0
+    return angles, heights
+
+
+def _end_state(phase: Phase, place: _Place, rises: Mapping[Any, Rise]) -> tuple[float, float]:
+    """Return velocity and acceleration at the end of a phase: its law fixes them by itself."""
+    match phase:
+        case SegmentPhase():
+            return phase.end[1:]
+        case RisePhase():
+            return place.end_state(rises[phase.law])
+        case DwellPhase():
+            return 0.0, 0.0
 
 
 @dataclass(frozen=True)

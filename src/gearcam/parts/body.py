@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 
-Kind = Literal["BORE", "HOLE", "SLOT", "INNER"]
-"""What an opening is for: the shaft, bolts and lightness, a stop pin, inner teeth."""
+Kind = Literal["BORE", "HOLE", "SLOT", "INNER", "GROOVE"]
+"""What an opening is for: the shaft, bolts and lightness, a stop pin, inner teeth, a roller."""
 
 Edge = Contour | Circle | Loop
 """A closed plane curve, counter-clockwise, with moments, length, reach and points."""
@@ -61,7 +61,7 @@ class Opening(Brief):
 
     Parameters
     ----------
-    kind : {"BORE", "HOLE", "SLOT"}
+    kind : {"BORE", "HOLE", "SLOT", "INNER", "GROOVE"}
         What it is for, and its layer in drawings.
     shape : Contour or Circle or Loop
         The edge within which nothing is left, in the part's frame.
@@ -178,6 +178,8 @@ class Part(Brief, Displayed):
         Engraved in the face z = width.
     recesses : tuple of Recess
         Milled out of either face; those below one another do not overlap.
+    turns : bool
+        Whether it turns about the origin where that lies within its outline.
 
     Raises
     ------
@@ -194,6 +196,7 @@ class Part(Brief, Displayed):
     hub: Hub | None = None
     marks: tuple[Mark, ...] = ()
     recesses: tuple[Recess, ...] = ()
+    turns: bool = True
 
     def __post_init__(self) -> None:
         edges = (*self.contours, *self.inner)

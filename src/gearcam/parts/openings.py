@@ -186,16 +186,33 @@ def openings(
     found += _bolts(wide)
     if blank.stop_pin:
         found.append(_slot(blank, solid, work))
-    _demand_apart(found, blank, solid, work)
+    demand_apart(found, blank, solid, work)
     if blank.lightening_holes:
         found += _lightening(wide, solid, found, work)
     return tuple(found)
 
 
-def _demand_apart(
+def demand_apart(
     found: Sequence[Opening], blank: WheelBlank, solid: Polygon, work: Workpiece
 ) -> None:
-    """Refuse openings that meet each other, the hub's edge or the outline."""
+    """Refuse openings that meet each other, the hub's edge or the outline.
+
+    Parameters
+    ----------
+    found : sequence of Opening
+        The openings.
+    blank : WheelBlank
+        With the hub, and how much wider bores are than given.
+    solid : shapely.Polygon
+        What they go through.
+    work : Workpiece
+        What is ordered, for messages.
+
+    Raises
+    ------
+    InfeasibleError
+        If they do.
+    """
     from shapely import Polygon
 
     edges = [opening.shape.points(_FINE * work.module) for opening in found]

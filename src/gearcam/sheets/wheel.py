@@ -76,7 +76,7 @@ class _Wheel:
     def turns(self) -> bool:
         """Whether the axis lies within the outline: racks have none."""
         corners = as_complex(self.part.contours[-1].points(self.part.tolerance))
-        if not corners.all():
+        if not (self.part.turns and corners.all()):
             return False
         turn = float(np.angle(np.roll(corners, -1) / corners).sum())
         return abs(turn) > math.pi

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.cams.checks import KIND
 from gearcam.findings import Finding, in_order, run_checks
+from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.laws.program import Program
@@ -21,7 +22,6 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.parts.blank import WheelBlank
 from gearcam.result import Progress, Result
 from gearcam.tolerances import DEFAULT, Tolerances
 
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 FOLLOWED: Final = "followed.csv"
 """The motion that a given profile makes."""
+
+WAY_STEP: Final = 1.0
+"""Step of a translating cam's way where the design gives none, mm."""
 
 _WHOLE: Final = 1e-9
 """Part of a step by which a turn may fall short of a whole number of them: rounding."""
@@ -102,8 +105,14 @@ class CamResult(Result):
     @property
     def angles(self) -> Array:
         """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
-        step = self.design.output.motion_step
-        return step * np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1.0)
+        output, driver = self.design.output, self.mechanism.driver
+        step = (
+            (output.way_step or WAY_STEP) / driver.rate if self.form.slides else output.motion_step
+        )
+        made = step * np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1.0)
+        if self.program.open:  # whose end no beginning repeats
+            made = np.append(made[made < 2.0 * math.pi * (1.0 - _WHOLE)], 2.0 * math.pi)
+        return made
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the follower's motion and the curvature of what it touches, exactly.
@@ -112,14 +121,16 @@ class CamResult(Result):
         ----------
         theta : float or (n,) array, rad, optional
             Cam angles, any number of turns; a turn in steps of the design's
-            ``output.motion_step_deg``, both ends, where left out: the table of ``motion.csv``.
+            ``output.motion_step_deg``, both ends, where left out: the table of ``motion.csv``. Of a
+            translating cam ways, mm, and steps of ``output.way_step_mm``.
 
         Returns
         -------
         Columns
-            ``theta_deg``; ``lift_mm`` and its derivatives by theta ``velocity_mm_per_rad``,
-            ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3`` (of an oscillating follower
-            ``lift_deg``, ``velocity_deg_per_rad`` and so on); ``pressure_angle_deg``, signed;
+            ``theta_deg``, of a translating cam ``u_mm``; ``lift_mm`` and its derivatives by theta
+            ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3`` (of an
+            oscillating follower ``lift_deg``, ``velocity_deg_per_rad`` and so on, of a translating
+            cam ``velocity_mm_per_mm`` and so on); ``pressure_angle_deg``, signed;
             ``rho_pitch_mm`` and ``rho_profile_mm``, radii of curvature of pitch curve and profile
             before trimming: positive where convex, infinite where straight, that of the profile
             negative on a convex pitch curve where it is undercut. At a knot the values after it
@@ -132,17 +143,28 @@ class CamResult(Result):
         InfeasibleError
             If the cam cannot be made.
         """
-        theta = self.angles if theta is None else angles("theta", theta)
+        return self.motion_at(self._asked(theta))
+
+    def _asked(self, theta: ArrayLike | None) -> Array:
+        """Return cam angles, rad, of what people give: angles, rad, or ways, mm."""
+        rate = self.mechanism.driver.rate
+        return self.angles if theta is None else angles("theta", theta) / rate
+
+    def motion_at(self, theta: Array) -> Columns:
+        """Return the table of `motion` at cam angles `theta`, rad, of a way 2*pi at its end."""
+        driver = self.mechanism.driver
         motions, walls = self.cam.motions, self.cam.walls
         found = motions[0].motion(theta)
         oscillating = self.design.follower.oscillating
         unit, scale = ("deg", math.degrees(1.0)) if oscillating else ("mm", 1.0)
-        names = ("lift_{}", "velocity_{}_per_rad", "acceleration_{}_per_rad2", "jerk_{}_per_rad3")
+        names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
         columns = {
-            "theta_deg": np.degrees(theta),
+            driver.column: driver.scale * theta,
             **{
-                name.format(unit): scale * found[short]
-                for name, short in zip(names, ("s", "ds", "d2s", "d3s"), strict=True)
+                name.format(unit, driver.per): scale * found[short] / driver.rate**order
+                for order, (name, short) in enumerate(
+                    zip(names, ("s", "ds", "d2s", "d3s"), strict=True)
+                )
             },
         }
         told = [found, *(one.motion(theta) for one in motions[1:])]
@@ -158,7 +180,7 @@ class CamResult(Result):
     def ordered(self) -> bool:
         """Whether the design orders a part: a blank, or files that are made from parts."""
         plain = {"csv", "curvature"}
-        blank = WheelBlank(timing_marks=False)
+        blank = CamBlank()
         return self.design.blank != blank or not set(self.design.output.files) <= plain
 
     @cached_property
@@ -179,7 +201,7 @@ class CamResult(Result):
         Parameters
         ----------
         theta : float or (n,) array, rad, optional
-            Cam angles, any number of turns; those of `motion` where left out.
+            Cam angles, any number of turns, or ways, mm; those of `motion` where left out.
         wall : str, optional
             The key of a wall; the first where left out.
 
@@ -187,10 +209,10 @@ class CamResult(Result):
         -------
         Columns
             A row for each angle at which trimming has left the point; elsewhere the follower rests
-            on a corner. ``theta_deg``; ``x_mm``, ``y_mm`` in the cam's frame; ``nx``, ``ny``, the
-            outward unit normal of the metal there; ``fixed_x_mm``, ``fixed_y_mm``, the same point
-            in the fixed frame, whose rows are the path of contact. Where the velocity jumps, the
-            point after it counts.
+            on a corner. ``theta_deg`` or ``u_mm``; ``x_mm``, ``y_mm`` in the cam's frame; ``nx``,
+            ``ny``, the outward unit normal of the metal there; ``fixed_x_mm``, ``fixed_y_mm``, the
+            same point in the fixed frame, whose rows are the path of contact. Where the velocity
+            jumps, the point after it counts.
 
         Raises
         ------
@@ -201,12 +223,15 @@ class CamResult(Result):
         """
         walls = {one.key: one for one in self.cam.walls}
         key = next(iter(walls)) if wall is None else one_of("wall", wall, tuple(walls))
-        asked = self.angles if theta is None else angles("theta", theta)
-        left, points, normals = walls[key].places_at(asked)
-        fixed = points * np.exp((-1j if self.design.cam.clockwise else 1j) * left)
+        left, points, normals = walls[key].places_at(self._asked(theta))
+        driver = self.mechanism.driver
+        if self.form.slides:
+            fixed = points + driver.scale * left
+        else:
+            fixed = points * np.exp((-1j if self.design.cam.clockwise else 1j) * left)
         return Columns(
             {
-                "theta_deg": np.degrees(left),
+                driver.column: driver.scale * left,
                 "x_mm": points.real,
                 "y_mm": points.imag,
                 "nx": normals.real,

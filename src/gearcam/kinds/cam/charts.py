@@ -19,8 +19,6 @@ from gearcam.parts.blank import KIND as PARTS_KIND
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
 
-_ANGLE: Final = "cam angle theta, deg"
-
 _TIMES: Final = 10.0
 """Curvature of the roller, or of the pitch curve where that is more, beyond which the profile's is
 not drawn: where it is undercut its curvature grows without limit."""
@@ -30,27 +28,35 @@ def _table(result: CamResult) -> Columns:
     """Return the motion over a turn, at both sides of all knots."""
     turn = result.angles
     turn = np.append(turn[turn < 2.0 * math.pi], np.nextafter(2.0 * math.pi, 0.0))
-    return result.motion(with_both_sides(turn, result.program.knots))
+    return result.motion_at(with_both_sides(turn, result.program.knots))
+
+
+def _places(result: CamResult) -> tuple[str, str]:
+    """Return the column of cam angles, or of ways, and what a chart calls it."""
+    driver = result.mechanism.driver
+    return driver.column, f"{driver.called} {driver.symbol}, {driver.unit}"
 
 
 def _of_lift(name: str, result: CamResult) -> Chart:
     table = _table(result)
     column = next(column for column in table if column.startswith(name))
-    unit = column.removeprefix(f"{name}_").replace("_per_rad", "/rad")
-    line = Line(label=name, x=table["theta_deg"], y=table[column])
-    return Chart(title=f"Follower's {name}", x=_ANGLE, y=f"{name}, {unit}", lines=(line,))
+    unit = column.removeprefix(f"{name}_").replace("_per_", "/")
+    places, told = _places(result)
+    line = Line(label=name, x=table[places], y=table[column])
+    return Chart(title=f"Follower's {name}", x=told, y=f"{name}, {unit}", lines=(line,))
 
 
 def _pressure_angle(result: CamResult) -> Chart:
     table = _table(result)
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = math.degrees(pressure_limit(result.mechanism, given))
+    places, told = _places(result)
     return Chart(
         title="Pressure angle",
-        x=_ANGLE,
+        x=told,
         y="pressure angle, deg",
         lines=tuple(
-            Line(label=f"pressure angle {one.key}".strip(), x=table["theta_deg"], y=table[column])
+            Line(label=f"pressure angle {one.key}".strip(), x=table[places], y=table[column])
             for one in result.cam.motions
             for column in (pressure_column(one),)
         ),
@@ -81,14 +87,15 @@ def _curvature(result: CamResult) -> Chart:
         limits.append(Limit(label="roller, convex pitch curve", value=1.0 / radius))
     if result.mechanism.flat:
         del lines["pitch curve"]
+    places, told = _places(result)
     return Chart(
         title="Curvature, positive where convex",
-        x=_ANGLE,
+        x=told,
         y="curvature, 1/mm",
         lines=tuple(
             Line(
                 label=label,
-                x=table["theta_deg"],
+                x=table[places],
                 y=np.where(np.abs(values) <= largest, values, np.nan),
             )
             for label, values in lines.items()

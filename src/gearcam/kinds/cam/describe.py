@@ -12,6 +12,7 @@ from gearcam.designs.template import entry_lines, key_line, law_comment
 from gearcam.kinds.cam.design import KIND
 from gearcam.kinds.cam.motion import (
     LIFT,
+    SPAN,
     WITH_LAW,
     phase_table,
     rise_table,
@@ -73,7 +74,7 @@ def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
     made = table_schema(known, summary(PHASES[name]), **words)
     either = [
         {"oneOf": [{"required": [key]} for key in keys]}
-        if word == LIFT.get(name)
+        if word in (LIFT.get(name), SPAN)
         else {"not": {"required": list(keys)}}
         for word, keys in twins(known).items()
     ]

@@ -18,7 +18,8 @@ from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
-from gearcam.kinds.cam.forms.base import form_faults, form_schema
+from gearcam.kinds.cam.blank import CamBlank
+from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_schema
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
@@ -37,7 +38,7 @@ NAME: Final = "cam"
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 
-LATER_FORMS: Final = ("cylinder", "translating")
+LATER_FORMS: Final = ("cylinder",)
 """Forms of cams that are planned."""
 
 _OF_WHEELS: Final = ("stop_pin", "tip_rounding", "timing_marks", "mark_diameter")
@@ -60,6 +61,8 @@ class CamOutputSpec(OutputSpec):
     ----------
     pose : float, rad
         Cam angle of the assembled cam.
+    place : float or None, mm
+        Way of the assembled translating cam.
 
     Examples
     --------
@@ -80,6 +83,14 @@ class CamOutputSpec(OutputSpec):
     motion_step: float = param(
         ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
     )
+    way_step: float | None = param(
+        LENGTH, default=None, gt=0, le=1e6,
+        doc="step of a translating cam's way in motion.csv; 1 mm when left out",
+    )  # fmt: skip
+    place: float | None = param(
+        LENGTH, default=None, ge=0, le=1e6, word="u",
+        doc="way at which a translating cam is drawn below its follower",
+    )  # fmt: skip
     inspection_points: int = param(
         COUNT, default=360, ge=8, le=100000, doc="points in inspection.csv, at even cam angles"
     )
@@ -104,7 +115,7 @@ class CamDesign(Design):
         What touches the cam, and how it is guided.
     cam : CamSpec
         Form, size, direction of turning.
-    blank : WheelBlank
+    blank : CamBlank or WheelBlank
         Bore, hub, holes, density; a cam has no timing marks.
     output : CamOutputSpec
         Files and their tolerance.
@@ -128,7 +139,7 @@ class CamDesign(Design):
     motion: Motion
     follower: FollowerSpec
     cam: CamSpec
-    blank: WheelBlank = field(default_factory=WheelBlank)
+    blank: WheelBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
 
     def _settle(self) -> None:
@@ -147,8 +158,8 @@ class CamDesign(Design):
                 yield f"motion[{number}].law", phase.law, tuple(classes_in(RISES).values())
 
 
-def _unmarked(blank: WheelBlank, source: str) -> WheelBlank:
-    """Take the timing marks off a blank, and refuse what else only wheels have."""
+def _unmarked(blank: WheelBlank, source: str) -> CamBlank:
+    """Return a blank as one of a cam, without timing marks; refuse what else only wheels have."""
     plain = {item.name: item.default for item in dataclasses.fields(WheelBlank)}
     problems = [
         Problem("a cam has none", file=source, key=f"blank.{name}", value=getattr(blank, name))
@@ -157,20 +168,21 @@ def _unmarked(blank: WheelBlank, source: str) -> WheelBlank:
     ]
     if problems:
         raise DesignError(problems)
-    return dataclasses.replace(blank, timing_marks=False)
+    sizes = {one.name: getattr(blank, one.name) for one in dataclasses.fields(blank)}
+    return CamBlank(**sizes | {"timing_marks": False})
 
 
 @lru_cache(maxsize=1)
 def _blank_table() -> Table:
     """Return the table of a cam's blank: the keys of a wheel's but for those of teeth."""
     entries = {}
-    for key, entry in table_of("blank", WheelBlank).entries.items():
+    for key, entry in table_of("blank", CamBlank).entries.items():
         if entry.name not in _OF_WHEELS:
             told = dataclasses.replace(
                 entry.param, doc=_BLANK_WORDS.get(entry.name, entry.param.doc)
             )
             entries[key] = dataclasses.replace(entry, param=told)
-    return Table("blank", WheelBlank, entries)
+    return Table("blank", CamBlank, entries)
 
 
 def _examine_motion(document: Mapping[str, Any], found: Examined) -> None:
@@ -191,9 +203,15 @@ def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     yield from output_faults(output)
     yield from _tool_faults(output, follower)
     if "cam" in found.parts:
-        owners = {"follower": FollowerSpec, "cam": CamSpec}
+        owners = {
+            "follower": FollowerSpec,
+            "cam": CamSpec,
+            "blank": CamBlank,
+            "output": CamOutputSpec,
+        }
         yield from form_faults(found.parts["cam"].form, found.parts, owners)
-    if "follower" in found.parts and "cam" in found.parts:
+    slides = "cam" in found.parts and found.parts["cam"].form in SLIDING
+    if "follower" in found.parts and "cam" in found.parts and not slides:
         told = size_problems(found.parts["follower"], found.parts["cam"])
         yield from told_faults(told, table_of("cam", CamSpec), document["cam"], ("cam",))
 
@@ -214,7 +232,11 @@ KIND: Final = DesignKind(
     design=CamDesign,
     main=TITLE,
     examine_main=_examine_motion,
-    main_of=lambda design: motion_of(design.motion, oscillating=design.follower.oscillating),
+    main_of=lambda design: motion_of(
+        design.motion,
+        oscillating=design.follower.oscillating,
+        sliding=design.cam.form in SLIDING,
+    ),
     homes=homes,
     tables={
         "follower": partial(table_of, "follower", FollowerSpec),
@@ -223,7 +245,7 @@ KIND: Final = DesignKind(
         "output": partial(table_of, "output", CamOutputSpec),
     },
     required=("follower", "cam"),
-    one_of={"cam": ("prime_radius_mm", "base_radius_mm")},
+    one_of={"cam": ("prime_radius_mm", "base_radius_mm", {"form": SLIDING})},
     conditions={"cam": partial(form_schema, "cam", CamSpec)},
     rules=_rules,
     later=_later,

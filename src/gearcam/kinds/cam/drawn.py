@@ -62,7 +62,11 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
         wide = 0.2 * reach + (found.largest if found is not None else 0.0)
         stem = complex(m.offset, position), complex(m.offset, position + 0.5 * reach)
         return [path(complex(-wide, position), complex(wide, position)), path(*stem)]
-    if m.oscillating:
+    if m.slide:
+        center = complex(m.sliding_centre(np.array(position)))
+        up = center + 0.5j * reach * complex(np.exp(1j * m.tilt))
+        line = path(complex(-m.pivot, m.height) if m.oscillating else up, center)
+    elif m.oscillating:
         center = complex(m.pivot - m.arm * np.exp(-1j * position))
         line = path(complex(m.pivot), center)
     else:

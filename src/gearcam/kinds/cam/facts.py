@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 Tree = dict[str, Any]
 
 _PEAKS = (
-    ("peak_velocity", "largest velocity", "/rad"),
-    ("peak_acceleration", "largest acceleration", "/rad2"),
-    ("peak_jerk", "largest jerk", "/rad3"),
+    ("peak_velocity", "largest velocity", 1),
+    ("peak_acceleration", "largest acceleration", 2),
+    ("peak_jerk", "largest jerk", 3),
 )
 
 
@@ -54,14 +54,13 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
     }
     follower = f"{design.follower.motion} {design.follower.type} follower"
     article = "an" if design.follower.oscillating else "a"
-    radius = "base" if result.mechanism.flat else "prime"
-    headline = ("motion.total_lift", f"cam.{radius}_radius_mm")
+    headline = ("motion.total_lift", f"cam.{result.form.leading(result)}")
     return Facts(tree, headline, f"{design.cam.form} cam for {article} {follower}")
 
 
 def _motion(result: CamResult) -> Tree:
     """Lift in mm or deg; what jumps has a peak, what is infinite has none."""
-    program = result.program
+    program, driver = result.program, result.mechanism.driver
     swings = result.design.follower.oscillating
     scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
     low, high = program.range
@@ -72,8 +71,13 @@ def _motion(result: CamResult) -> Tree:
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
         "deviation": _deviation(program, scale, unit),
         **{
-            name: Fact(scale * peak, meaning, unit=unit + per, shown=True)
-            for (name, meaning, per), peak in zip(
+            name: Fact(
+                scale * peak / driver.rate**order,
+                meaning,
+                unit=f"{unit}/{driver.per}{order if order > 1 else ''}",
+                shown=True,
+            )
+            for (name, meaning, order), peak in zip(
                 _PEAKS[: program.continuity + 1], program.peaks, strict=False
             )
         },
@@ -100,10 +104,8 @@ def _cam(result: CamResult) -> Tree:
         "pivot_distance_mm": given.pivot_distance,
         "arm_mm": given.arm,
         "face_offset_mm": given.face_offset or None,
-        "offset_mm": None if swings else given.offset,
-        "rotation": Fact(design.cam.rotation, "cam turns"),
-        "prime_radius_mm": mechanism.least,
-        "base_radius_mm": mechanism.least - mechanism.radius,
+        "offset_mm": None if swings or mechanism.slide else given.offset,
+        **result.form.sizes(result),
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": pressure(result, result.cam.motions[0]),
         **result.form.facts(result),
@@ -137,7 +139,7 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
                 math.degrees(found.largest),
                 f"pressure angle, {kind}{whose}",
                 at_most=math.degrees(limit),
-                place=f"at {shown(math.degrees(worst.theta), scale=360.0)} deg",
+                place=result.mechanism.driver.seen(worst.theta),
                 unit="deg",
                 shown=found.largest > 0.0,
             )
@@ -168,9 +170,8 @@ def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
         how = "Gauss-Legendre quadrature with half the cells, and rounding"
         for wall in result.cam.walls:
             prefix, size = f"{wall.key}_" if wall.key else "", wall.size
-            rows |= {
-                f"{prefix}perimeter_mm": (size.perimeter_error, how),
-                f"{prefix}area_mm2": (size.area_error, how),
-            }
+            rows[f"{prefix}perimeter_mm"] = (size.perimeter_error, how)
+            if wall.program.closed:
+                rows[f"{prefix}area_mm2"] = (size.area_error, how)
     kerf = result.design.output.kerf
     return accuracy(rows, max(one.chord_error for one in result.contours), kerf, measured)

@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
 from gearcam.export.shared import (
     STEP_PART,
     Files,
@@ -150,6 +148,7 @@ def _inspection(result: CamResult, _: Measured) -> Files:
 
 def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> dict[str, Array]:
     theta, points, normals = wall.places(count)
+    driver = wall.mechanism.driver
     clearance = result.design.blank.clearance
     if clearance:
         from gearcam.parts.parallel import touches
@@ -158,7 +157,7 @@ def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> d
         theta, points, normals = theta[kept], points[kept], normals[kept]
         points = points - clearance * normals
     return {
-        "theta_deg": np.degrees(theta),
+        driver.column: driver.scale * theta,
         "x_mm": points.real,
         "y_mm": points.imag,
         "nx": normals.real,
@@ -167,11 +166,11 @@ def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> d
 
 
 def _tool_path(result: CamResult, measured: Measured) -> Files:
-    from gearcam.drawings import TOOL, Drawing, Feature
+    from gearcam.drawings import TOOL, Drawing, Feature, reach
     from gearcam.export.table import outline_bytes
 
     paths = result.form.paths(result, result.design.output.tool_radius)
-    tables = {f"{name}.csv": outline_bytes(path.vertices) for name, path in paths.items()}
+    tables = {f"{name}.csv": outline_bytes(reach(path)) for name, path in paths.items()}
     drawings = [
         Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))
         for name, path in paths.items()

@@ -14,7 +14,6 @@ from gearcam.cams.follow import follow
 from gearcam.cams.wall import PitchMotion
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Fact
-from gearcam.numerals import shown
 from gearcam.numeric.arguments import points
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import flatten_bulges
@@ -100,13 +99,15 @@ def followed(
         If the follower cannot rest on the profile.
     """
     outline = flatten_bulges(vertices, bulges, _SAGITTA * motion.tolerance)
-    side = np.array([-1.0 if motion.clockwise else 1.0, 1.0])
+    driver = motion.mechanism.driver
+    mirrored = motion.clockwise and not motion.mechanism.slide
+    side = np.array([-1.0 if mirrored else 1.0, 1.0])
     found = follow(outline * side, motion.mechanism, theta)
     scale, unit = (math.degrees(1.0), "deg") if motion.mechanism.oscillating else (1.0, "mm")
     asked = motion.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
     columns = {
-        "theta_deg": np.degrees(theta),
+        driver.column: driver.scale * theta,
         "s": scale * found.lift,
         "s_asked": scale * asked,
         "difference": difference,
@@ -121,11 +122,11 @@ def followed(
         "largest_difference": Fact(
             float(difference[worst]),
             "largest difference from the program",
-            place=f"at {shown(math.degrees(theta[worst]), scale=360.0)} deg",
+            place=driver.seen(float(theta[worst])),
             unit=unit,
             shown=True,
         ),
-        "at_deg": math.degrees(theta[worst]),
+        f"at_{driver.unit}": driver.scale * float(theta[worst]),
         "rms_difference": float(np.sqrt(np.mean(difference**2))),
         "error": Fact(
             float(scale * found.error.max()), "error of the profile's chords", unit=unit, shown=True

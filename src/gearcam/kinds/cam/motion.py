@@ -17,7 +17,7 @@ from gearcam.designs.kind import Examined, made_of, told_faults
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
-from gearcam.kinds.cam.forms.base import form_of
+from gearcam.kinds.cam.forms.base import SLIDING, form_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
 from gearcam.laws.rises.base import RISES
 from gearcam.registry import name_of
@@ -35,6 +35,9 @@ WITH_LAW: Final = tuple(name for name, owner in PHASES.items() if issubclass(own
 
 LIFT: Final = {"rise": "lift", "segment": "to"}
 """What a phase must give, as a length or as an angle, without the suffix of its unit."""
+
+SPAN: Final = "angle"
+"""What every phase gives: an angle, or a way where the cam slides."""
 
 _UNREADABLE: Final = RisePhase(angle=1.0, law=None)
 """Stands for a phase that cannot be read: without a lift, so that nothing is said of the sum."""
@@ -65,10 +68,10 @@ def rise_table(law: str) -> Table:
 
 
 def twins(known: Table) -> dict[str, tuple[str, ...]]:
-    """Return the keys that say the same as a length and as an angle, by their common word."""
+    """Return the keys that say the same as a length and as an angle, by their field."""
     words: dict[str, list[str]] = {}
     for key, entry in known.entries.items():
-        words.setdefault(entry.param.word or entry.name, []).append(key)
+        words.setdefault(entry.name, []).append(key)
     return {word: tuple(keys) for word, keys in words.items() if len(keys) > 1}
 
 
@@ -96,11 +99,15 @@ def examine_motion(
     types = quoted(PHASES)
     rule = f"[[{TITLE}]] for each phase, with type = {types}; or [{TITLE}] with rows or a lift"
     oscillating = _oscillating(document.get("follower", {}))
+    sliding = _sliding(document.get("cam", {}))
     if TITLE not in document:
         found.faults.append(Fault((TITLE,), f"there is no [[{TITLE}]]", allowed=rule))
     elif isinstance(raw, Mapping) and "type" in raw:
         hint = f"write [[{TITLE}]] in double brackets"
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
+    elif isinstance(raw, Mapping) and sliding:
+        message = "tells of a turn, and the cam has none"
+        found.faults.append(Fault((TITLE,), message, raw, f"[[{TITLE}]] with way_mm"))
     elif isinstance(raw, Mapping):
         _examine_turn(raw, oscillating, found, home)
     elif not isinstance(raw, list) or not raw:
@@ -108,8 +115,9 @@ def examine_motion(
         found.faults.append(Fault((TITLE,), message, raw, rule))
     else:
         before = len(found.faults)
-        phases = [_phase((TITLE, k), item, oscillating, found, home) for k, item in enumerate(raw)]
-        _examine_program(phases, raw, oscillating, found, half=form_of(document).half_turns)
+        kind = (oscillating, sliding)
+        phases = [_phase((TITLE, k), item, kind, found, home) for k, item in enumerate(raw)]
+        _examine_program(phases, raw, kind, found, half=form_of(document).half_turns)
         if len(found.faults) == before:
             found.parts[TITLE] = tuple(phases)
 
@@ -118,6 +126,12 @@ def _oscillating(follower: Any) -> bool | None:
     """Return whether a follower oscillates; None where its table does not say."""
     motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
     return motion == "oscillating" if motion in ("translating", "oscillating") else None
+
+
+def _sliding(cam: Any) -> bool:
+    """Return whether a cam slides; one of no known form turns."""
+    form = cam.get("form") if isinstance(cam, Mapping) else None
+    return form in SLIDING
 
 
 def _by_rows() -> type[MotionTable]:
@@ -163,9 +177,17 @@ def _examine_turn(
 
 
 def _phase(
-    at: Path, raw: Any, oscillating: bool | None, found: Examined, home: Callable[[str], str]
+    at: Path,
+    raw: Any,
+    kind: tuple[bool | None, bool],
+    found: Examined,
+    home: Callable[[str], str],
 ) -> Phase | None:
-    """Examine one phase; what can be read of it serves to judge the program."""
+    """Examine one phase; what can be read of it serves to judge the program.
+
+    `kind` is whether the follower oscillates and whether the cam slides.
+    """
+    oscillating, sliding = kind
     if not isinstance(raw, Mapping):
         rule = f"a table with type = {quoted(PHASES)}"
         found.faults.append(Fault(at, f"{show(raw)} is not a table", raw, rule))
@@ -174,7 +196,9 @@ def _phase(
     if not name:
         return None
     rest = {key: value for key, value in raw.items() if key != "type"}
-    own, make, problems = phase_table(name), PHASES[name], []
+    spans = list(_wrong_span(phase_table(name), rest, at, sliding))
+    rest = {key: value for key, value in rest.items() if all(key != one.path[-1] for one in spans)}
+    own, make, problems = phase_table(name).of_cams(sliding=sliding), PHASES[name], []
     if name not in WITH_LAW:
         faults = list(faults_of(own, rest, home=home, at=at))
     else:
@@ -182,16 +206,32 @@ def _phase(
         rest.pop("law", None)
         if not chose:  # whatever any law asks for may be meant
             rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
-        faults = list(faults_of(phase_table(name, chose), rest, home=home, at=at))
+        known = phase_table(name, chose).of_cams(sliding=sliding)
+        faults = list(faults_of(known, rest, home=home, at=at))
         law = None
         if chose:
             law, problems = made_of(rise_table(chose), RISES[chose].parameters, rest, faults, at)
         make = partial(make, law=law)
+    if spans:  # in place of what is missing
+        faults = [one for one in faults if one.path[-1] not in ("way_mm", "angle_deg")] + spans
     other = list(_wrong_kind(own, rest, at, oscillating))
     own = own.of_lifts(oscillating=bool(oscillating))
     phase, own_problems = made_of(own, make, rest, faults, at)
     found.faults += [*faults, *problems, *own_problems, *other]
-    return None if other else phase
+    return None if other or spans else phase
+
+
+def _wrong_span(known: Table, raw: Mapping[str, Any], at: Path, sliding: bool) -> Iterator[Fault]:
+    """Yield the faults of angles where the cam slides, and of ways where it turns."""
+    for key, entry in known.entries.items():
+        if key not in raw:
+            continue
+        if entry.slides is (not sliding):
+            message, rule = ("turns", "angle_deg") if entry.slides else ("slides", "way_mm")
+            yield Fault((*at, key), f"{show(raw[key])}: the cam {message}", raw[key], rule)
+        elif sliding and "_per_rad" in key:
+            message = f"{show(raw[key])}: the cam slides, a segment on it ends at rest"
+            yield Fault((*at, key), message, raw[key], "leave it out")
 
 
 def _wrong_kind(
@@ -212,25 +252,34 @@ def _asked(key: str) -> bool:
 def _examine_program(
     phases: Sequence[Phase | None],
     raw: Sequence[Any],
-    oscillating: bool | None,
+    kind: tuple[bool | None, bool],
     found: Examined,
     *,
     half: bool,
 ) -> None:
+    oscillating, sliding = kind
     if oscillating is None:
         return
     readable = [_UNREADABLE if phase is None else phase for phase in phases]
-    told = program_problems(readable, oscillating=oscillating, half=half and fill_half(readable))
+    told = program_problems(
+        readable,
+        oscillating=oscillating,
+        closed=not sliding,
+        half=half and fill_half(readable),
+    )
     for number, name, message, rule in told:
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))
         elif phases[number] is not None:
-            known = phase_table(raw[number]["type"]).of_lifts(oscillating=oscillating)
+            known = phase_table(raw[number]["type"]).of_cams(sliding=sliding)
+            known = known.of_lifts(oscillating=oscillating)
             at = (TITLE, number)
             found.faults += told_faults([(name, None, message, rule)], known, raw[number], at)
 
 
-def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | dict[str, Any]:
+def motion_of(
+    motion: Motion, *, oscillating: bool, sliding: bool = False
+) -> list[dict[str, Any]] | dict[str, Any]:
     """Return what a file would hold of a motion: a table for each phase, or one for the turn.
 
     Parameters
@@ -239,6 +288,8 @@ def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | di
         As a design has it.
     oscillating : bool
         Whether lifts are angles.
+    sliding : bool
+        Whether the cam slides.
 
     Returns
     -------
@@ -254,7 +305,7 @@ def motion_of(motion: Motion, *, oscillating: bool) -> list[dict[str, Any]] | di
         law = name_of(RISES, phase.law) if isinstance(phase, RisePhase) else ""
         if law:
             table |= {"law": law}
-        known = phase_table(name).of_lifts(oscillating=oscillating)
+        known = phase_table(name).of_cams(sliding=sliding).of_lifts(oscillating=oscillating)
         table |= known.document(phase)
         if isinstance(phase, RisePhase) and law:
             table |= rise_table(law).document(phase.law)

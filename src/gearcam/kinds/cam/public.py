@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.laws.motion_formula import MotionFormula
@@ -11,6 +12,6 @@ from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, Segm
 from gearcam.parts.blank import WheelBlank
 
 __all__ = [
-    "CamDesign", "CamOutputSpec", "CamResult", "CamSpec", "DwellPhase", "FollowerSpec",
+    "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec", "DwellPhase", "FollowerSpec",
     "MotionFormula", "MotionTable", "ReturnPhase", "RisePhase", "SegmentPhase", "WheelBlank",
 ]  # fmt: skip

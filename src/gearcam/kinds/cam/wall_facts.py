@@ -81,9 +81,9 @@ def curvature(wall: Wall) -> Tree:
 def trimming(wall: Wall) -> Tree:
     """Return where a `wall` is undercut, where its follower stands, what trimming costs it."""
     mechanism, corners = wall.mechanism, bool(wall.corners)
-    swings = mechanism.oscillating
+    swings, scale = mechanism.oscillating, mechanism.driver.scale
     return {
-        "undercut": [[math.degrees(low), math.degrees(high)] for low, high in wall.undercut_ranges],
+        "undercut": [[scale * low, scale * high] for low, high in wall.undercut_ranges],
         "start_angle_deg": math.degrees(mechanism.start) if swings else None,
         "lost_lift_deg": math.degrees(wall.shortfall) if corners and swings else None,
         "lost_lift_mm": wall.shortfall if corners and not swings else None,

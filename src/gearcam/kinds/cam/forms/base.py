@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
 
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.table import Table, table_of
+from gearcam.facts import Fact
 from gearcam.laws.program import Program, make_program
 from gearcam.registry import Registry
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
-    from gearcam.drawings import Drawing
+    from gearcam.drawings import Drawing, Path
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.numeric.contour import Contour
@@ -38,13 +39,25 @@ PLATE: Final[Keys] = {
         "face_offset",
     ),
     "cam": ("form", "prime_radius", "base_radius", "thickness", "rotation"),
+    "blank": (
+        "bore_diameter", "keyway_width", "keyway_depth", "keyway_angle", "bore_flat", "bolts",
+        "bolt_circle", "bolt_diameter", "bolt_angle", "hub_diameter", "hub_front", "hub_back",
+        "lightening_holes", "rim", "web", "density", "clearance", "clearance_bores",
+    ),
+    "output": ("pose", "motion_step"),
 }  # fmt: skip
 """What a plate that turns may be given."""
+
+SLIDING: Final = ("translating",)
+"""Names of the forms that slide: a design is read without loading them."""
+
+OWN_OUTPUT: Final = ("pose", "place", "motion_step", "way_step")
+"""What output of some forms has and of others has not."""
 
 
 def plate_keys(cam: tuple[str, ...] = (), follower: tuple[str, ...] = ()) -> Keys:
     """Return the keys of a plate that turns, and more of its `cam` and its `follower`."""
-    return {"follower": (*PLATE["follower"], *follower), "cam": (*PLATE["cam"], *cam)}
+    return PLATE | {"follower": (*PLATE["follower"], *follower), "cam": (*PLATE["cam"], *cam)}
 
 
 class Form(Protocol):
@@ -68,6 +81,11 @@ class Form(Protocol):
     assembly: ClassVar[str] = ""
     """Stem of the files with all parts where they stand; empty of forms with one part."""
 
+    @property
+    def slides(self) -> bool:
+        """Whether it slides: its motion is told along a way, not about a turn."""
+        return self.name in SLIDING
+
     rows: ClassVar[tuple[str, ...]] = ()
     """Facts of its own that stand in the tables of its drawings."""
 
@@ -79,7 +97,7 @@ class Form(Protocol):
         yield from ()
 
     def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
-        """Return the lift over a turn that a `design` asks for, to `tolerances`."""
+        """Return the lift that a `design` asks for, to `tolerances`."""
         motion, swings = design.motion, design.follower.oscillating
         make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
         return make(tolerances, oscillating=swings)
@@ -105,7 +123,7 @@ class Form(Protocol):
         """Return the assembled cam with its follower, at the angle of the design."""
 
     @abstractmethod
-    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
+    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
         """Return ways of the middle of a cutter of a `radius`, mm, by the stems of their files."""
 
     def rows_of(self, number: int, rows: tuple[str, ...]) -> tuple[str, ...]:  # noqa: ARG002
@@ -115,6 +133,19 @@ class Form(Protocol):
     def heights(self, result: CamResult) -> tuple[float, ...]:
         """Return the heights at which the parts stand in the assembly, mm."""
         return (0.0,) * len(result.parts)
+
+    def leading(self, result: CamResult) -> str:
+        """Return which of its `sizes` stands in the headline."""
+        return "base_radius_mm" if result.mechanism.flat else "prime_radius_mm"
+
+    def sizes(self, result: CamResult) -> dict[str, Any]:
+        """Return its sizes, as facts."""
+        mechanism = result.mechanism
+        return {
+            "rotation": Fact(result.design.cam.rotation, "cam turns"),
+            "prime_radius_mm": mechanism.least,
+            "base_radius_mm": mechanism.least - mechanism.radius,
+        }
 
     @abstractmethod
     def facts(self, result: CamResult) -> dict[str, Any]:
@@ -128,6 +159,7 @@ FORMS: Registry[Form] = Registry(
         "gearcam.kinds.cam.forms.groove": ("groove",),
         "gearcam.kinds.cam.forms.conjugate": ("conjugate",),
         "gearcam.kinds.cam.forms.yoke": ("yoke",),
+        "gearcam.kinds.cam.forms.translating": ("translating",),
     },
 )
 """The forms by name, each loaded when it is asked for."""
@@ -156,12 +188,13 @@ def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type])
     ------
     Fault
     """
-    if not owners.keys() <= parts.keys():
+    if not {"follower", "cam"} <= parts.keys():
         return
     form = FORMS[name]
     found = [
         fault
         for title, owner in owners.items()
+        if title in parts
         for fault in _key_faults(form, title, table_of(title, owner), parts[title])
     ]
     yield from found or form.faults(parts)
@@ -170,6 +203,8 @@ def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type])
 def _key_faults(form: Form, title: str, known: Table, made: Any) -> Iterator[Fault]:
     takes, needs = form.takes[title], form.needs.get(title, ())
     for key, entry in known.entries.items():
+        if title == "output" and entry.name not in OWN_OUTPUT:
+            continue
         value = getattr(made, entry.name)
         if value is None and entry.name in needs:
             yield Fault((title, key), f"is missing for a {form.name} cam", allowed=entry.param.doc)

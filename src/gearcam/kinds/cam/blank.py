@@ -1,0 +1,53 @@
+"""The blank of a cam: that of a wheel without teeth, or a plate with its bolts in a row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from gearcam.parts.blank import Problem, WheelBlank
+from gearcam.quantities import LENGTH, param
+
+
+def _size(*, doc: str) -> Any:
+    return param(LENGTH, default=None, gt=0, le=1e6, doc=doc)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CamBlank(WheelBlank):
+    """Bore, hub, holes, density of a cam; of a translating cam its plate and a row of bolts.
+
+    Parameters
+    ----------
+    timing_marks : bool
+        A cam has none.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CamBlank(length=120.0, height=40.0)
+    CamBlank(length=120, height=40)
+    """
+
+    timing_marks: bool = field(default=False)
+    length: float | None = _size(
+        doc="length of a translating cam's plate; as long as what is cut into it needs, if left out"
+    )
+    height: float | None = _size(
+        doc="height of a translating cam's plate, with one wall up to the largest lift"
+    )
+    bolt_spacing: float | None = _size(doc="from bolt to bolt of a row, about the plate's middle")
+    bolt_height: float | None = _size(doc="from the plate's lower edge to the row of bolts")
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield what is wrong by reading: field, None, message, allowed."""
+        plate = self.height is not None
+        for name, index, message, rule in super().problems():
+            if not (plate and name == "bolt_circle"):
+                yield name, index, message, rule
+        if plate and self.bolts:
+            rule = "bolts with bolt_diameter_mm, bolt_spacing_mm and bolt_height_mm"
+            for name in ("bolt_spacing", "bolt_height"):
+                if getattr(self, name) is None and (name == "bolt_height" or self.bolts > 1):
+                    yield name, None, "is missing beside bolts", rule

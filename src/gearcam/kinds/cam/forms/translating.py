@@ -1,0 +1,365 @@
+"""The translating cam: a plate that slides past its follower, with one wall or a groove."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from gearcam.cams.mechanism import make_sliding_mechanism
+from gearcam.cams.sliding import SlidingCam, make_sliding
+from gearcam.cams.wall import CHORD_TOLERANCE
+from gearcam.designs.faults import Fault, show
+from gearcam.errors import InfeasibleError, Way
+from gearcam.facts import Fact
+from gearcam.kinds.cam.blank import CamBlank
+from gearcam.kinds.cam.forms.base import FORMS, Form, Keys
+from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH
+from gearcam.kinds.cam.wall_facts import curvature, trimming
+from gearcam.laws.phases_of_lift import DwellPhase, Phase
+from gearcam.laws.program import Program, make_program
+from gearcam.numerals import shown
+
+if TYPE_CHECKING:
+    from gearcam.cams.sliding import SlidingWall
+    from gearcam.drawings import Drawing, Path, Shape
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.design import CamDesign
+    from gearcam.numeric.contour import Contour
+    from gearcam.parts.body import Opening, Part
+    from gearcam.tolerances import Tolerances
+
+_ROUNDING = 1e-9
+"""Part of the groove's half width by which a cutter's radius may differ from it: typed digits."""
+
+
+class Translating(Form):
+    """A plate that slides past its follower."""
+
+    name = "translating"
+    doc = "a plate that slides past its follower, with one wall or a groove"
+    takes: ClassVar[Keys] = {
+        "follower": (
+            "type", "motion", "roller_radius", "dome_radius", "arm", "pivot_distance", "axis",
+            "pivot_height",
+        ),
+        "cam": (
+            "form", "thickness", "walls", "run_in", "run_out", "groove_depth", "roller_clearance",
+            "side",
+        ),
+        "blank": (
+            "length", "height", "bolts", "bolt_diameter", "bolt_spacing", "bolt_height", "density",
+            "clearance",
+        ),
+        "output": ("place", "way_step"),
+    }  # fmt: skip
+    needs: ClassVar[Keys] = {"blank": ("height",)}
+    rows = (
+        "cam.way_mm", "cam.run_in_mm", "cam.run_out_mm", "cam.axis_deg", "cam.pivot_height_mm",
+        "cam.groove.width_mm", "cam.groove.depth_mm", "cam.roller_clearance_mm", "cam.lost_motion",
+    )  # fmt: skip
+
+    def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield faults of what a translating cam cannot have."""
+        follower, cam = parts["follower"], parts["cam"]
+        blank, output = parts.get("blank"), parts.get("output")
+        if follower.flat:
+            message = '"flat": the places of a flat face over a sliding cam envelop no wall'
+            yield Fault(("follower", "type"), message, "flat", "a round follower")
+        if follower.oscillating and follower.axis:
+            message = f"{show(math.degrees(follower.axis))}: an arm has no way that leans"
+            yield Fault(("follower", "axis_deg"), message, follower.axis, "leave it out")
+        if not follower.oscillating and follower.pivot_height:
+            message = f"{show(follower.pivot_height)}: a translating follower has no pivot"
+            rule = 'with motion = "oscillating"'
+            yield Fault(("follower", "pivot_height_mm"), message, follower.pivot_height, rule)
+        yield from _groove_faults(follower, cam, blank, output)
+        if output is not None and "curvature" in output.files:
+            message = "three-point curvature is studied on closed curves"
+            yield Fault(("output", "files"), message, "curvature", "other files")
+
+    def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
+        """Return the lift over the way, with its run before and after."""
+        swings = design.follower.oscillating
+        return make_program(_phases(design), tolerances, oscillating=swings, closed=False)
+
+    def make(self, design: CamDesign, program: Program) -> SlidingCam:
+        """Return the cam."""
+        cam, blank = design.cam, _blank(design)
+        way = math.fsum(float(one.angle) for one in _phases(design))
+        return make_sliding(
+            program,
+            make_sliding_mechanism(design.follower, way),
+            height=blank.height or 0.0,
+            length=blank.length,
+            groove=cam.walls == "both",
+            clearance=cam.roller_clearance or 0.0,
+            tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
+        )
+
+    def parts(self, result: CamResult) -> tuple[Part, ...]:
+        """Return the plate, with its wall or its groove, and its bolts."""
+        from gearcam.parts.body import Opening, Part, Recess
+        from gearcam.parts.openings import RIM, Workpiece, demand_apart
+
+        design, cam = result.design, _made(result)
+        thickness, depth = design.cam.thickness, design.cam.groove_depth
+        holes, recesses = list(_bolts(result)), []
+        taken = holes
+        if cam.groove is not None:
+            slot = Opening(kind="GROOVE", shape=cam.groove, name="groove")
+            taken = [*holes, slot]
+            if depth is None:
+                holes = taken
+            else:
+                front = design.cam.side != "back"
+                low, high = (thickness - depth, thickness) if front else (0.0, depth)
+                x, y = cam.lower.pitch_line[0].tolist()
+                recess = Recess(
+                    edge=cam.groove, low=low, high=high, front=front, width=cam.width, place=(x, y)
+                )
+                recesses = [recess]
+        work = Workpiece(name=STEM, module=thickness / RIM)
+        demand_apart(taken, design.blank, cam.edge.polygon, work)
+        return (
+            Part(
+                name=STEM,
+                contours=(cam.edge,),
+                width=thickness,
+                openings=tuple(holes),
+                recesses=tuple(recesses),
+                turns=False,
+            ),
+        )
+
+    def made(self, result: CamResult) -> tuple[Contour, ...]:
+        """Return the metal behind each wall, as made."""
+        return tuple(wall.contour for wall in _made(result).walls)
+
+    def drawings(self, result: CamResult) -> tuple[Drawing, ...]:
+        """Return the plate with its pitch curve."""
+        return (_drawing(result),)
+
+    def picture(self, result: CamResult) -> Drawing:
+        """Return the plate below its follower."""
+        from gearcam.kinds.cam.drawn import follower
+
+        place, (motion,) = result.design.output.place or 0.0, result.cam.motions
+        if place > (way := _cam(result).way):
+            raise InfeasibleError(
+                "the cam does not slide so far",
+                where="output.u_mm",
+                value=place,
+                limit=way,
+                unit="mm",
+                nearest="the limit is its whole way, included",
+                ways=(Way(near={"output.u_mm": way}),),
+            )
+        reach = 0.5 * float(np.ptp(result.profile.vertices))
+        shapes = follower(motion, place / motion.mechanism.slide, reach)
+        return _drawing(result, shapes, place)
+
+    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
+        """Return the way around the plate, or through the groove."""
+        from gearcam.drawings import Path
+        from gearcam.parts.parallel import moved, sized
+
+        cam, where = _made(result), "output.tool_radius_mm"
+        radius = radius or (cam.width / 2.0 if cam.groove else result.mechanism.radius)
+        if not radius:
+            raise InfeasibleError(
+                "the way of a cutter needs its radius",
+                where=where,
+                nearest="a round follower's own radius counts where none is given; this one has "
+                "none",
+            )
+        if cam.groove is None:
+            edge, side = cam.edge, 1.0
+        elif abs(2.0 * radius - cam.width) <= _ROUNDING * cam.width:
+            return {TOOL_PATH: Path(points=cam.lower.pitch_line, closed=False)}
+        else:
+            edge, side = cam.groove, -1.0
+        path = sized(lambda size: moved(edge, side * size), radius, where, "radius of the cutter")
+        return {TOOL_PATH: path}
+
+    def leading(self, result: CamResult) -> str:  # noqa: ARG002
+        """Return which of its sizes stands in the headline."""
+        return "way_mm"
+
+    def sizes(self, result: CamResult) -> dict[str, Any]:
+        """Return its sizes, as facts."""
+        given, cam = result.design, _cam(result)
+        swings, plate = given.follower.oscillating, cam.plate
+        return {
+            "way_mm": Fact(cam.way, "way"),
+            "run_in_mm": given.cam.run_in or None,
+            "run_out_mm": given.cam.run_out or None,
+            "axis_deg": math.degrees(given.follower.axis or 0.0) or None,
+            "pivot_height_mm": (given.follower.pivot_height or 0.0) if swings else None,
+            "length_mm": plate.right - plate.left,
+            "height_mm": plate.high - plate.low,
+        }
+
+    def facts(self, result: CamResult) -> dict[str, Any]:
+        """Return curvature, undercut and length of the walls, and the lost motion in a groove."""
+        cam, given = _cam(result), result.design.cam
+        mechanism, rows = cam.motion.mechanism, zip(cam.walls, result.contours, strict=True)
+        told = {
+            wall.key or "profile": {
+                "curvature": curvature(wall),
+                **{name: one for name, one in trimming(wall).items() if name != "start_angle_deg"},
+                "length_mm": wall.size.perimeter,
+                "least_vertices": wall.sampler.least,
+                "vertices": len(wall.line),
+                "chord_error_mm": made.chord_error,
+            }
+            for wall, made in rows
+        }
+        swings = mechanism.oscillating
+        start = {"start_angle_deg": math.degrees(mechanism.start) if swings else None}
+        clearance = result.design.blank.clearance
+        if cam.lost_motion is None:
+            return {**start, "clearance_mm": clearance or None, **told}
+        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+        return {
+            **start,
+            "roller_clearance_mm": given.roller_clearance or 0.0,
+            "lost_motion": Fact(
+                scale * cam.lost_motion.value,
+                "lost motion",
+                place=mechanism.driver.seen(cam.lost_motion.theta),
+                unit=unit,
+                shown=True,
+            ),
+            "groove": {
+                "width_mm": Fact(cam.width, "width of the groove"),
+                "depth_mm": Fact(given.groove_depth or given.thickness, "depth of the groove"),
+                "area_mm2": None if cam.groove is None else cam.groove.moments.area,
+                **told,
+            },
+        }
+
+
+def _groove_faults(follower: Any, cam: Any, blank: Any, output: Any) -> Iterator[Fault]:
+    """Yield the faults of grooves, and of keys that only they have."""
+    if cam.walls != "both":
+        for name in ("groove_depth", "roller_clearance", "side"):
+            value, key = getattr(cam, name), name if name == "side" else f"{name}_mm"
+            if value is not None:
+                message = f"{show(value)}: a cam with one wall has none"
+                yield Fault(("cam", key), message, value, 'with walls = "both"')
+        return
+    if follower.type != "roller":
+        message = f"{show(follower.type)}: a groove holds a roller"
+        yield Fault(("follower", "type"), message, follower.type, '"roller"')
+    if cam.groove_depth is not None and cam.groove_depth >= cam.thickness:
+        message = f"{show(cam.groove_depth)}: the groove has no floor"
+        rule = f"below the thickness of {shown(cam.thickness)} mm; left out, it goes through"
+        yield Fault(("cam", "groove_depth_mm"), message, cam.groove_depth, rule)
+    if cam.side is not None and cam.groove_depth is None:
+        message = f"{show(cam.side)}: the groove goes through"
+        yield Fault(("cam", "side"), message, cam.side, "with groove_depth_mm")
+    if blank is not None and blank.clearance:
+        message = f"{show(blank.clearance)}: walls of a groove are moved by their clearance"
+        rule = "cam.roller_clearance_mm"
+        yield Fault(("blank", "clearance_mm"), message, blank.clearance, rule)
+    if output is not None and cam.groove_depth is not None:
+        yield from _milled_faults(output)
+
+
+def _milled_faults(output: Any) -> Iterator[Fault]:
+    """Yield the faults of files for cutters where a groove has a floor."""
+    if output.kerf:
+        message = f"{show(output.kerf)}: a groove with a floor is milled, not cut through"
+        yield Fault(("output", "kerf_mm"), message, output.kerf, "leave it out")
+    if "cut-svg" in output.files:
+        message = "a groove with a floor is milled, not cut through"
+        rule = "other files, such as dxf and tool-path"
+        yield Fault(("output", "files"), message, "cut-svg", rule)
+
+
+def _phases(design: CamDesign) -> list[Phase]:
+    """Return the phases of a design with its run before and after."""
+    motion = design.motion
+    if not isinstance(motion, Sequence):
+        raise TypeError("a translating cam is told by phases")
+    before, after = ([DwellPhase(angle=run)] if run else [] for run in design.cam.runs)
+    return [*before, *motion, *after]
+
+
+def _blank(design: CamDesign) -> CamBlank:
+    """Return the blank, which is one of a cam."""
+    blank = design.blank
+    if not isinstance(blank, CamBlank):
+        raise TypeError(f"{blank!r} is no blank of a cam")
+    return blank
+
+
+def _cam(result: CamResult) -> SlidingCam:
+    """Return the cam, which is one of this form."""
+    cam = result.cam
+    if not isinstance(cam, SlidingCam):
+        raise TypeError(f"{cam!r} is no translating cam")
+    return cam
+
+
+def _made(result: CamResult) -> SlidingCam:
+    """Return the cam as made: the wall of a cam with one stands back by the blank's clearance."""
+    cam, clearance = _cam(result), result.design.blank.clearance
+    if not clearance:
+        return cam
+    lower: SlidingWall = cam.lower
+    wide = replace(lower.mechanism, radius=lower.mechanism.radius + clearance)
+    return replace(cam, lower=replace(lower, mechanism=wide))
+
+
+def _bolts(result: CamResult) -> Iterator[Opening]:
+    """Yield the bolt holes: a row about the middle of the plate's length."""
+    from gearcam.parts.body import Opening
+    from gearcam.parts.shapes import Circle
+
+    blank, plate = _blank(result.design), _cam(result).plate
+    for number in range(blank.bolts):
+        aside = (number - 0.5 * (blank.bolts - 1)) * (blank.bolt_spacing or 0.0)
+        place = (0.5 * (plate.left + plate.right) + aside, plate.low + (blank.bolt_height or 0.0))
+        shape = Circle(center=np.array(place), diameter=blank.bolt_diameter)
+        yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
+
+
+def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0) -> Drawing:
+    """Return the plate with its pitch curve, moved by its way below a follower."""
+    from gearcam.drawings import (
+        BLANK,
+        CENTER,
+        CROSS_SIZE,
+        FOLLOWER,
+        GROOVE,
+        OUTER_WALL,
+        PITCH,
+        PROFILE,
+        Cross,
+        Drawing,
+        Feature,
+        Path,
+        part_features,
+        place,
+    )  # fmt: skip
+
+    part, cam = result.part, _cam(result)
+    moving = [
+        replace(one, layer=GROOVE) if one.layer == OUTER_WALL else one
+        for one in part_features(part, outline=PROFILE if cam.groove is None else BLANK)
+    ]
+    if cam.motion.mechanism.radius:
+        moving.append(Feature(layer=PITCH, shape=Path(points=cam.lower.pitch_line, closed=False)))
+    features = list(place(moving, 0.0, (way, 0.0)))
+    features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
+    size = CROSS_SIZE * float(np.ptp(part.contour.vertices))
+    features.append(Feature(layer=CENTER, shape=Cross(center=np.zeros(2), size=size)))
+    return Drawing(name=part.name, features=tuple(features))
+
+
+FORMS.register(Translating())

@@ -1,0 +1,132 @@
+"""Random translating cams are what their rollers leave of a plate, or are refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import HealthCheck, given, settings
+from hypothesis import Phase as Stage
+from hypothesis import strategies as st
+
+from gearcam.cams.mechanism import make_sliding_mechanism
+from gearcam.cams.sliding import SlidingCam, make_sliding
+from gearcam.cams.spec import FollowerSpec
+from gearcam.errors import InfeasibleError
+from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
+from gearcam.laws.program import make_program
+from gearcam.tolerances import DEFAULT
+from property.test_cams import programs, rounded
+
+CHORD = 2e-3
+HIGH = 1e3
+
+Given = tuple[dict[str, Any], float, float, tuple[float, float], list[Any]]
+
+
+@st.composite
+def plates(draw: st.DrawFn) -> Given:
+    way = draw(rounded(20, 200))
+    follower: dict[str, Any] = {"type": "roller", "roller_radius": draw(rounded(0.02, 0.2)) * way}
+    if draw(st.booleans()):
+        arm = draw(rounded(0.5, 2)) * way
+        follower |= {"motion": "oscillating", "arm": arm, "pivot_distance": arm}
+        follower["pivot_height"] = draw(rounded(-0.8, 0.8)) * arm
+    else:
+        follower["axis"] = draw(st.sampled_from([0.0, 0.0, 0.3, -0.5]))
+    runs = draw(st.tuples(*[st.sampled_from([0.0, 0.1, 0.5])] * 2))
+    return (
+        follower,
+        way,
+        draw(st.sampled_from([0.0, 0.05, 1.0])),
+        runs,
+        draw(programs("motion" in follower)),
+    )
+
+
+def made_of(design: Given) -> SlidingCam | InfeasibleError:
+    follower, way, clearance, runs, phases = design
+    if any(isinstance(one, SegmentPhase) for one in phases):
+        phases = [
+            replace(one, velocity=None, acceleration=None) if isinstance(one, SegmentPhase) else one
+            for one in phases
+        ]
+    spec = FollowerSpec(**follower)
+    share = way / sum(one.angle for one in phases)
+    phases = [replace(one, angle=one.angle * share) for one in phases]
+    before, after = ([DwellPhase(angle=run * way)] if run else [] for run in runs)
+    try:
+        motion = make_program(
+            [*before, *phases, *after], DEFAULT, oscillating=spec.oscillating, closed=False
+        )
+        found = make_sliding_mechanism(spec, way * (1.0 + sum(runs)))
+        made = make_sliding(
+            motion, found, height=HIGH, groove=True, clearance=clearance, tolerance=CHORD
+        )
+        assert made.groove is not None
+        assert all(wall.contour.runs for wall in made.walls)
+    except InfeasibleError as error:
+        return error
+    return made
+
+
+def centers_of(design: Given, made: SlidingCam) -> Any:
+    """Middles of rollers in the cam's frame, by the geometry of the follower."""
+    spec, motion = FollowerSpec(**design[0]), made.motion.program
+    theta = np.union1d(np.linspace(0.0, 2.0 * np.pi, 20001), motion.knots)
+    lift, way = motion.derivatives(theta, 0)[0], made.way * theta / (2.0 * np.pi)
+    if not spec.oscillating:
+        return lift * 1j * np.exp(-1j * spec.axis) - way
+    assert spec.arm is not None
+    assert spec.pivot_distance is not None
+    swing = lift - np.arcsin(spec.pivot_height / spec.arm)
+    arm = -np.cos(swing) + 1j * np.sin(swing)
+    return spec.pivot_distance + 1j * spec.pivot_height + spec.arm * arm - way
+
+
+def demand_plate(design: Given) -> None:
+    made = made_of(design)
+    if isinstance(made, InfeasibleError):
+        assert made.nearest or made.limit is not None
+        return
+    points = centers_of(design, made)
+    line = np.column_stack([points.real, points.imag])
+    region = shapely.LineString(line).buffer(0.5 * made.width, quad_segs=256)
+    assert made.groove is not None
+    groove = made.groove.polygon
+    off = shapely.symmetric_difference(groove, shapely.Polygon(region.exterior)).area
+    assert off < 3.0 * CHORD * region.length + 1e-9
+    for wall in made.walls:
+        metal = wall.contour.polygon
+        assert metal.is_valid
+        assert shapely.intersection(metal, region).area < 3.0 * CHORD * region.length
+    assert made.lost_motion is not None
+    lost = made.lost_motion.value
+    assert np.isfinite(lost)
+    assert lost >= 0.0
+
+
+quick = settings(
+    derandomize=True,
+    database=None,
+    deadline=None,
+    max_examples=20,
+    phases=[Stage.generate, Stage.shrink],
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+
+
+@quick
+@given(plates())
+def test_any_groove_is_the_band_of_its_roller(design: Given) -> None:
+    demand_plate(design)
+
+
+@pytest.mark.slow
+@settings(quick, max_examples=500)
+@given(plates())
+def test_five_hundred_plates(design: Given) -> None:
+    demand_plate(design)

@@ -1,0 +1,329 @@
+"""Translating cams: reading, refusals, parts, files, follow, Python."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+
+import gearcam
+from gearcam.cams.sliding import SlidingCam
+from gearcam.designs import loads
+from gearcam.errors import DesignError, InfeasibleError
+from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.design import CamDesign
+from helpers_pairs import PROFILES
+from helpers_step_read import read_step
+
+FILE = (PROFILES / "translating_cam.toml").read_text("utf-8")
+ONE = """
+kind = "cam"
+name = "one"
+[[motion]]
+type = "rise"
+way_mm = 60
+law = "3-4-5"
+lift_mm = 15
+[[motion]]
+type = "dwell"
+way_mm = 30
+[[motion]]
+type = "return"
+way_mm = 40
+law = "cycloidal"
+[follower]
+type = "roller"
+roller_radius_mm = 6
+[cam]
+form = "translating"
+run_in_mm = 20
+run_out_mm = 20
+thickness_mm = 10
+[blank]
+height_mm = 40
+"""
+DEEP = "groove_depth_mm = 8\n"
+
+
+def read(text: str, *changes: tuple[str, str]) -> CamDesign:
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    made = loads(text)
+    assert isinstance(made, CamDesign)
+    return made
+
+
+def built(text: str, *changes: tuple[str, str]) -> CamResult:
+    made = gearcam.build(read(text, *changes))
+    assert isinstance(made, CamResult)
+    return made
+
+
+def cam_of(result: CamResult) -> SlidingCam:
+    assert isinstance(result.cam, SlidingCam)
+    return result.cam
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "key", "words"),
+    [
+        (FILE, "way_mm = 30", "angle_deg = 30", "motion[1].angle_deg", "the cam slides; way_mm"),
+        (FILE, "way_mm = 30", "way_mm = 'rest'", "motion[1].way_mm", "not a number; a number"),
+        (FILE, "way_mm = 30\n", "", "motion[1].way_mm", "is missing"),
+        (FILE, 'form = "translating"', 'form = "disc"', "motion[0].way_mm", "turns; angle_deg"),
+        (ONE, 'type = "roller"\nroller_radius_mm = 6', 'type = "flat"', "follower.type",
+         "envelop no wall"),
+        (FILE, "height_mm = 60\n", "", "blank.height_mm", "is missing for a translating cam"),
+        (FILE, "height_mm = 60", "height_mm = 60\nbore_diameter_mm = 9", "blank.bore_diameter_mm",
+         "translating cam has none"),
+        (FILE, "u_mm = 80", "theta_deg = 80", "output.theta_deg", "translating cam has none"),
+        (FILE, "[cam]", "[cam]\nprime_radius_mm = 40", "cam.prime_radius_mm", "has none"),
+        (FILE, DEEP, "groove_depth_mm = 12\n", "cam.groove_depth_mm", "no floor"),
+        (FILE, DEEP, 'side = "front"\n', "cam.side", "goes through"),
+        (FILE, 'walls = "both"\n', "", "cam.groove_depth_mm", "one wall has none"),
+        (FILE, "bolt_height_mm = 8\n", "", "blank.bolt_height_mm", "is missing beside bolts"),
+        (FILE, "[output]", "[output]\nkerf_mm = 0.2", "output.kerf_mm", "milled"),
+        (FILE, '"stl"', '"curvature"', "output.files", "closed curves"),
+        (FILE, "density", "clearance_mm = 0.1\ndensity", "blank.clearance_mm", "roller_clearance"),
+        (ONE, "[cam]", "pivot_height_mm = 5\n[cam]", "follower.pivot_height_mm", "no pivot"),
+        (ONE, "law = \"3-4-5\"\nlift_mm = 15", "law = \"3-4-5\"", "motion[0].lift_mm", "missing"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_by_reading(text: str, old: str, new: str, key: str, words: str) -> None:
+    with pytest.raises(DesignError) as caught:
+        read(text, (old, new))
+    told = {one.key: f"{one.message}; {one.allowed}" for one in caught.value.problems}
+    assert words in told[key]
+
+
+def test_a_turn_is_no_way() -> None:
+    text = ONE[: ONE.index("[[motion]]")] + ONE[ONE.index("[follower]") :]
+    with pytest.raises(DesignError, match="tells of a turn"):
+        loads(text + '[motion]\nlift = "theta"\n')
+
+
+@pytest.mark.parametrize(
+    ("text", "change", "where", "limit"),
+    [
+        (ONE, ("height_mm = 40", "height_mm = 14.9"), "blank.height_mm", 15.0),
+        (FILE, ("height_mm = 60", "height_mm = 27"), "blank.height_mm", 27.05),
+        (ONE, ("height_mm = 40", "height_mm = 40\nlength_mm = 169"), "blank.length_mm", 170.0),
+        (FILE, ("height_mm = 60", "height_mm = 60\nlength_mm = 182"), "blank.length_mm", 182.05),
+    ],
+)
+def test_plates_that_are_too_small(
+    text: str, change: tuple[str, str], where: str, limit: float
+) -> None:
+    with pytest.raises(InfeasibleError) as caught:
+        _ = built(text, change).cam
+    assert caught.value.where == where
+    assert caught.value.limit == pytest.approx(limit)
+    key, value = change[1].rsplit(" = ", 1)[0], math.nextafter(limit, math.inf)
+    assert cam_of(built(text, (change[0], f"{key} = {value!r}"))).walls
+
+
+def test_arms_that_cannot() -> None:
+    arm = "arm_mm = 70\npivot_distance_mm = 65\npivot_height_mm = {}\n[cam]"
+    swing = (
+        ("[follower]", '[follower]\nmotion = "oscillating"'),
+        ("lift_mm = 15", "lift_deg = 12"),
+    )
+    with pytest.raises(InfeasibleError, match="does not reach down") as caught:
+        _ = built(ONE, *swing, ("[cam]", arm.format(70))).cam
+    assert caught.value.limit == pytest.approx(70.0)
+    high = (("lift_mm = 15", "lift_deg = 120"), swing[0], ("[cam]", arm.format(25)))
+    with pytest.raises(InfeasibleError, match="stands upright") as caught:
+        _ = built(ONE, *high).cam
+    assert caught.value.limit == pytest.approx(90.0 + math.degrees(math.asin(25.0 / 70.0)))
+
+
+def test_a_wall_that_is_undercut_where_its_way_begins() -> None:
+    steep = (("radius_mm = 6", "radius_mm = 12"), ("way_mm = 60", "way_mm = 20"))
+    with pytest.raises(InfeasibleError, match="where its way begins") as caught:
+        _ = cam_of(built(FILE, *steep, ("run_in_mm = 20\n", ""))).groove
+    (way,) = caught.value.ways
+    run = way.far["cam.run_in_mm"]
+    made = cam_of(built(FILE, *steep, ("run_in_mm = 20", f"run_in_mm = {run}")))
+    assert made.groove is not None
+    assert made.walls[1].corners
+
+
+def test_the_motion_is_told_along_the_way() -> None:
+    result = built(ONE)
+    table = result.motion()
+    assert table["u_mm"][[0, -1]].tolist() == [0.0, 170.0]
+    middle = result.motion([50.0])
+    assert middle["velocity_mm_per_mm"][0] == pytest.approx(1.875 * 15.0 / 60.0)
+    assert middle["lift_mm"][0] == pytest.approx(7.5)
+    half = result.motion([20.0 + 1e-9])["jerk_mm_per_mm3"][0]
+    assert half == pytest.approx(60.0 * 15.0 / 60.0**3, rel=1e-6)
+    assert result.facts["motion.peak_velocity"] == pytest.approx(0.75)
+
+
+def test_contact_in_both_frames() -> None:
+    result = built(FILE)
+    for wall, side in (("lower", 1.0), ("upper", -1.0)):
+        table = result.contact(np.linspace(0.0, 170.0, 18), wall=wall)
+        np.testing.assert_allclose(table["fixed_x_mm"], table["x_mm"] + table["u_mm"], atol=1e-12)
+        lift = result.motion(table["u_mm"])["lift_mm"]
+        np.testing.assert_allclose(
+            np.hypot(table["fixed_x_mm"], table["fixed_y_mm"] - lift), 6.025, atol=1e-12
+        )
+        assert np.all(side * table["ny"] > 0.5)
+
+
+def test_charts_go_along_the_way() -> None:
+    result = built(FILE)
+    for name in result.charts:
+        chart = result.chart(name)
+        assert chart.x == "way u, mm"
+        assert chart.lines[0].x[-1] == pytest.approx(170.0)
+
+
+@pytest.mark.parametrize("depth", [None, 8.0])
+def test_the_solid_is_the_plate_less_its_groove(depth: float | None) -> None:
+    result = built(FILE, *([] if depth else [(DEEP, "")]))
+    (mesh,) = result.solids.values()
+    cam = cam_of(result)
+    assert cam.groove is not None
+    bolts = 2.0 * 0.25 * math.pi * 6.6**2
+    plate = 12.0 * (194.1 * 60.0 - bolts)
+    expected = plate - cam.groove.moments.area * (depth or 12.0)
+    assert mesh.is_watertight
+    assert mesh.volume == pytest.approx(expected, abs=10.0)
+    assert result.part.volume == pytest.approx(expected, rel=1e-9)
+    (solid,) = read_step(result.files("step")["cam.step"])
+    assert solid.volume == pytest.approx(expected, rel=1e-6)
+
+
+def test_one_wall_is_the_edge_of_its_plate() -> None:
+    result = built(ONE, ("height_mm = 40", "height_mm = 40\nlength_mm = 180"))
+    cam = cam_of(result)
+    x, y = cam.edge.vertices.T
+    assert (x.min(), x.max()) == (-175.0, 5.0)
+    assert (y.min(), y.max()) == pytest.approx((-31.0, 9.0), abs=1e-3)
+    # below the pitch curve, where both laws rise by half on the mean, less the roller's strip
+    under = 170.0 * 31.0 + 15.0 * (0.5 * 60.0 + 30.0 + 0.5 * 40.0)
+    expected = under - 6.0 * cam.lower.size.perimeter + 10.0 * 25.0
+    assert cam.edge.moments.area == pytest.approx(expected, rel=1e-9)
+    (mesh,) = result.solids.values()
+    assert mesh.volume == pytest.approx(10.0 * cam.edge.moments.area, rel=1e-5)
+
+
+def test_clearance_is_taken_off_the_wall_alone() -> None:
+    result = built(ONE, ("height_mm = 40", "height_mm = 40\nclearance_mm = 0.5"))
+    x, y = result.contour.vertices.T
+    assert (x.min(), x.max(), y.min()) == (-170.0, 0.0, -31.0)
+    wall = shapely.LineString(cam_of(result).lower.line)
+    points = shapely.points(result.contour.vertices[(y > -7.0) & (x > -169.0) & (x < -1.0)])
+    np.testing.assert_allclose(shapely.distance(points, wall), 0.5, atol=2e-3)
+    rows = result.files("inspection")["inspection.csv"].decode().splitlines()
+    table = np.loadtxt(rows, delimiter=",", skiprows=1)
+    on = shapely.distance(shapely.points(table[:, 1:3]), result.contour.polygon.boundary)
+    assert on.max() < 2e-3
+
+
+def test_files_of_a_groove(tmp_path: Path) -> None:
+    result = built(FILE)
+    assert set(result.files("csv")) == {"profile_lower.csv", "profile_upper.csv", "motion.csv"}
+    assert set(result.files("inspection")) == {"inspection_lower.csv", "inspection_upper.csv"}
+    text = result.files("dxf")["cam.dxf"].decode()
+    layers = {"GROOVE", "PITCH", "BLANK", "HOLE", "CENTER"}
+    assert {name for name in layers if f"\n{name}\n" in text} == layers
+    for name in ("cam.svg", "cam_drawing.svg"):
+        kind = "svg" if name == "cam.svg" else "drawing-svg"
+        ET.fromstring(result.files(kind)[name])
+    file = tmp_path / "lower.csv"
+    file.write_bytes(result.files("csv")["profile_lower.csv"])
+    found = result.follow(file).columns
+    np.testing.assert_allclose(found["s"], found["s_asked"], atol=0.04)
+    drawing = tmp_path / "cam.dxf"
+    drawing.write_bytes(result.files("dxf")["cam.dxf"])
+    with pytest.raises(DesignError, match="one closed outline"):
+        result.follow(drawing)
+
+
+def test_a_profile_is_followed() -> None:
+    result = built(ONE, ("height_mm = 40", "height_mm = 40\n[output]\nchord_tolerance_mm = 1e-4"))
+    study = result.follow(cam_of(result).edge.vertices)
+    difference = study.columns["difference"]
+    assert np.abs(difference).max() < 2e-4
+    assert "u_mm" in study.columns
+
+
+def test_the_kerf_of_a_groove_that_goes_through() -> None:
+    result = built(FILE, (DEEP, ""), ("[output]", "[output]\nkerf_mm = 0.4"))
+    (drawing,) = result.form.drawings(result)
+    from gearcam.drawings import cut_drawing
+
+    paths = {one.layer: one.shape for one in cut_drawing(drawing, 0.4).features}
+    cam = cam_of(result)
+    assert cam.groove is not None
+    groove = shapely.Polygon(paths["GROOVE_KERF"].points(0.0))
+    assert groove.area == pytest.approx(cam.groove.polygon.buffer(-0.2).area, rel=1e-4)
+    blank = shapely.Polygon(paths["BLANK_KERF"].points(0.0))
+    assert blank.area == pytest.approx(shapely.box(0, 0, 194.1, 60).buffer(0.2).area, rel=1e-4)
+    assert set(result.files("dxf")) == {"cam.dxf"}
+
+
+def test_the_way_of_a_tool() -> None:
+    result = built(FILE)
+    rows = result.files("tool-path")["tool_path.csv"].decode().splitlines()
+    points = np.loadtxt(rows, delimiter=",", skiprows=1)
+    np.testing.assert_allclose(points, cam_of(result).lower.pitch_line, atol=1e-6)
+    design = replace(result.design, output=replace(result.design.output, tool_radius=4.0))
+    rows = gearcam.build(design).files("tool-path")["tool_path.csv"].decode().splitlines()
+    path = shapely.LinearRing(np.loadtxt(rows, delimiter=",", skiprows=1))
+    middle = shapely.LineString(cam_of(result).lower.pitch_line)
+    away = shapely.distance(shapely.points(path.coords), middle)
+    np.testing.assert_allclose(away, 2.025, atol=2e-3)
+    design = replace(result.design, output=replace(result.design.output, tool_radius=6.1))
+    with pytest.raises(InfeasibleError):
+        gearcam.build(design).files("tool-path")
+
+
+def test_findings_are_told_along_the_way() -> None:
+    result = built(FILE, ("pressure_angle_deg = 37", "pressure_angle_deg = 30"))
+    (found,) = [one for one in result.findings if one.code == "pressure-angle"]
+    assert found.where == "return, at 130 mm"
+    sharp = built(ONE, ("radius_mm = 6", "radius_mm = 22"))
+    cut = [one for one in sharp.findings if one.code == "undercut"]
+    assert len(cut) == 1
+    assert cut[0].where.endswith(" mm")
+    hard = built(ONE, ('"cycloidal"', '"constant-velocity"'))
+    (first, second) = [one for one in hard.findings if one.code == "hard-shock"]
+    assert (first.where, second.where) == ("at 110 mm", "at 150 mm")
+    assert first.unit == "mm/mm"
+    assert first.value == pytest.approx(-15.0 / 40.0)
+
+
+def test_a_cam_made_in_python_is_the_one_of_the_file() -> None:
+    phases = [
+        gearcam.RisePhase(angle=60.0, law=gearcam.rises.Polynomial345(), lift=15.0),
+        gearcam.DwellPhase(angle=30.0),
+        gearcam.ReturnPhase(angle=40.0, law=gearcam.rises.Cycloidal()),
+    ]
+    design = gearcam.CamDesign(
+        name="one",
+        motion=phases,
+        follower=gearcam.FollowerSpec(type="roller", roller_radius=6.0),
+        cam=gearcam.CamSpec(form="translating", run_in=20.0, run_out=20.0),
+        blank=gearcam.CamBlank(height=40.0),
+    )
+    assert design == read(ONE)
+
+
+def test_the_picture_stands_where_it_is_asked() -> None:
+    result = built(FILE)
+    with pytest.raises(InfeasibleError, match="slide so far") as caught:
+        built(FILE, ("u_mm = 80", "u_mm = 171")).files("svg")
+    assert caught.value.limit == pytest.approx(170.0)
+    drawing = result.form.picture(result)
+    x = drawing.features[0].shape.points(0.0)[:, 0]
+    assert (x.min(), x.max()) == pytest.approx((80.0 - 182.05, 80.0 + 12.05))
