@@ -155,7 +155,7 @@ class Mechanism(Brief):
     @property
     def below(self) -> bool:
         """Whether a round follower stands below the axis, and comes nearer as it rises."""
-        return not self.flat and self.start < 0.0
+        return not (self.flat or self.slide) and self.start < 0.0
 
     @property
     def away(self) -> int:
