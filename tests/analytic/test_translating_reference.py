@@ -12,6 +12,7 @@ import pytest
 
 from gearcam.cams.follow import follow
 from gearcam.cams.lost_motion import Rest
+from gearcam.cams.measures import over_the_end
 from gearcam.cams.mechanism import make_sliding_mechanism
 from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import FollowerSpec
@@ -223,3 +224,9 @@ def test_places_are_even_along_the_way_with_both_ends() -> None:
     theta, points, _ = cam.lower.places(16)
     np.testing.assert_allclose(np.diff(theta), 2.0 * math.pi / 15.0)
     assert points[[0, -1]] == pytest.approx([-6j, -150.0 - 6j])
+
+
+def test_stretches_at_both_ends_of_a_way_are_two() -> None:
+    stretches = [(0.0, 1.0), (6.0, 2.0 * math.pi)]
+    assert over_the_end(stretches, closed=False) == [[one] for one in stretches]
+    assert len(over_the_end(stretches)) == 1

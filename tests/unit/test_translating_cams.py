@@ -216,6 +216,28 @@ def test_one_wall_is_the_edge_of_its_plate() -> None:
     assert mesh.volume == pytest.approx(10.0 * cam.edge.moments.area, rel=1e-5)
 
 
+@pytest.mark.parametrize("walls", ["lower", "both"])
+def test_beyond_a_slope_the_plate_follows_the_roller(walls: str) -> None:
+    """The way ends on a rise or on a return: the roller there must not meet the plate."""
+    text = ONE[: ONE.index("[[motion]]")] + ONE[ONE.index("[follower]") :]
+    for law, lift in (("rise", 9.0), ("return", 9.0)):
+        motion = f'[[motion]]\ntype = "{law}"\nway_mm = 20\nlaw = "constant-velocity"\n'
+        runs = "run_in_mm = 20\nrun_out_mm = 20\n"
+        cam = cam_of(
+            built(
+                text.replace("[follower]", f"{motion}lift_mm = {lift}\n[follower]"),
+                (runs, f'walls = "{walls}"\n'),
+                ("height_mm = 40", "height_mm = 40\nlength_mm = 60"),
+            )
+        )
+        rollers = [
+            shapely.Point(point).buffer(6.0, quad_segs=256) for point in cam.lower.pitch_line
+        ]
+        taken = shapely.union_all(rollers)
+        for wall in cam.walls:
+            assert shapely.intersection(wall.contour.polygon, taken).area < 0.02
+
+
 def test_clearance_is_taken_off_the_wall_alone() -> None:
     result = built(ONE, ("height_mm = 40", "height_mm = 40\nclearance_mm = 0.5"))
     x, y = result.contour.vertices.T
@@ -254,6 +276,7 @@ def test_a_profile_is_followed() -> None:
     study = result.follow(cam_of(result).edge.vertices)
     difference = study.columns["difference"]
     assert np.abs(difference).max() < 2e-4
+    assert study.columns["error"].max() < 0.02  # the plate's corners are no curve
     assert "u_mm" in study.columns
 
 

@@ -118,12 +118,12 @@ def trimmed(
             if not _backwards(made[0], undercut):
                 return made
     if segments.curve.program.open:
-        run = _RUNS * abs(segments.inset)
+        run, runs = _RUNS * abs(segments.inset), ("cam.run_in_mm", "cam.run_out_mm")
         raise InfeasibleError(
             "the wall is undercut where its way begins or ends: what is left cannot be told",
             where="[cam]",
             nearest="longer run_in_mm and run_out_mm leave room for what is cut away",
-            ways=(Way(far={"cam.run_in_mm": run, "cam.run_out_mm": run}),),
+            ways=(Way(near=dict.fromkeys(runs, 0.0), far=dict.fromkeys(runs, run)),),
         )
     raise InfeasibleError(
         "the profile crosses itself so often that what is left cannot be told",

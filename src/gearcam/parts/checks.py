@@ -105,7 +105,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
         yield float(rim.distance(edges[0][0])), "groove and the outline"
         floor = recess.low if recess.front else part.width - recess.high
         yield floor, "groove's floor and the other face"
-        islands = [LinearRing(one.shape.points(part.tolerance)) for one in recess.openings]
+        islands = [LinearRing(one.shape.points(part.tolerance)) for one in recess.openings] or [rim]
         for opening, (ring, radius) in zip(part.openings, rings, strict=True):
             for island in islands:
                 wall = float(ring.distance(island)) - radius
