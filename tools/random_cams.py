@@ -168,6 +168,37 @@ def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str,
     return follower, cam
 
 
+def _held(d: Draw, design: dict[str, Any], lift: float) -> None:
+    """Make conjugate cams, or a yoke, of a design whose follower can be held from both sides."""
+    follower, wheel = design["follower"], design["cam"]
+    kind, swings = follower["type"], "motion" in follower
+    if kind == "roller" and d.chance(0.7):
+        radius = follower["roller_radius_mm"]
+        prime = wheel.get("prime_radius_mm") or wheel["base_radius_mm"] + radius
+        wheel["form"] = "conjugate"
+        wheel["gap_mm"] = short(radius * d.even(0, 1))
+        follower["roller2_radius_mm"] = short(radius * d.even(0.7, 1.3))
+        if d.chance(0.5):
+            follower["preload_mm"] = short(min(10.0, radius * d.log(1e-4, 1e-2)))
+        if swings:
+            follower["arm2_mm"] = follower["arm_mm"]
+        if d.chance(0.5):
+            wheel["prime_radius2_mm"] = short(prime * d.even(0.9, 1.2))
+        elif swings:
+            arm, pivot = follower["arm_mm"], follower["pivot_distance_mm"]
+            cosine = (arm**2 + pivot**2 - prime**2) / (2 * arm * pivot)
+            start = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
+            follower["arms_angle_deg"] = short(lift + start * d.even(1.9, 2.2))
+        else:
+            follower["roller_distance_mm"] = short(lift + prime * d.even(1.9, 2.2))
+    elif not swings and not follower.get("offset_mm") and isinstance(design["motion"], list):
+        wheel["form"] = "yoke"
+        share = d.even(0.4, 0.9)
+        rise = {"type": "rise", "law": d.pick(["cycloidal", "3-4-5", "modified-sine"])}
+        rise |= {"angle_deg": short(180 * share), "lift_mm": lift}
+        design["motion"] = [rise, {"type": "dwell", "angle_deg": "rest"}]
+
+
 def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
     """Return a cam; rises and followers take turns.
 
@@ -207,4 +238,6 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         design["motion"] = _turn(d, lift, unit)
     elif d.chance(0.1):
         d.pick(phases)["angle_deg"] = "rest"
+    if d.chance(0.3):
+        _held(d, design, lift)
     return design | {"output": output}
