@@ -1,4 +1,4 @@
-"""Random cams: every form, rise and follower, segments, whole turns, both directions, blanks.
+"""Random cams: every rise, every follower, segments, whole turns, both directions, blanks.
 
 Lifts and sizes are drawn in radii of the cam, so that the radius may be anything.
 """
@@ -168,10 +168,42 @@ def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str,
     return follower, cam
 
 
-def _groove(d: Draw, design: dict[str, Any], size: float) -> None:
+def _held(d: Draw, design: dict[str, Any], lift: float) -> None:
+    """Make conjugate cams, or a yoke, of a design whose follower can be held from both sides."""
+    follower, wheel = design["follower"], design["cam"]
+    kind, swings = follower["type"], "motion" in follower
+    if kind == "roller" and d.chance(0.7):
+        radius = follower["roller_radius_mm"]
+        prime = wheel.get("prime_radius_mm") or wheel["base_radius_mm"] + radius
+        wheel["form"] = "conjugate"
+        wheel["gap_mm"] = short(radius * d.even(0, 1))
+        follower["roller2_radius_mm"] = short(radius * d.even(0.7, 1.3))
+        if d.chance(0.5):
+            follower["preload_mm"] = short(min(10.0, radius * d.log(1e-4, 1e-2)))
+        if swings:
+            follower["arm2_mm"] = follower["arm_mm"]
+        if d.chance(0.5):
+            wheel["prime_radius2_mm"] = short(prime * d.even(0.9, 1.2))
+        elif swings:
+            arm, pivot = follower["arm_mm"], follower["pivot_distance_mm"]
+            cosine = (arm**2 + pivot**2 - prime**2) / (2 * arm * pivot)
+            start = math.degrees(math.acos(max(-1.0, min(1.0, cosine))))
+            follower["arms_angle_deg"] = short(lift + start * d.even(1.9, 2.2))
+        else:
+            follower["roller_distance_mm"] = short(lift + prime * d.even(1.9, 2.2))
+    elif not swings and not follower.get("offset_mm") and isinstance(design["motion"], list):
+        wheel["form"] = "yoke"
+        share = d.even(0.4, 0.9)
+        rise = {"type": "rise", "law": d.pick(["cycloidal", "3-4-5", "modified-sine"])}
+        rise |= {"angle_deg": short(180 * share), "lift_mm": lift}
+        design["motion"] = [rise, {"type": "dwell", "angle_deg": "rest"}]
+
+
+def _groove(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
     """Mill a groove around the pitch curve into a disc."""
     given, radius = design["cam"], design["follower"]["roller_radius_mm"]
-    reach = size + 2 * radius + _height(design)
+    follower = design["follower"]
+    reach = size + 2 * radius + lift * (math.radians(follower.get("arm_mm", 57.3)))
     given |= {
         "form": "groove",
         "outer_diameter_mm": short(2 * reach * d.even(1.05, 1.6)),
@@ -185,61 +217,35 @@ def _groove(d: Draw, design: dict[str, Any], size: float) -> None:
         design["follower"]["roller2_radius_mm"] = short(radius * d.even(0.6, 1.5))
 
 
-def _conjugate(d: Draw, design: dict[str, Any], size: float) -> None:
-    """Set a second disc beside the first, which brings the follower back."""
-    follower, given = design["follower"], design["cam"]
-    radius, swings = follower["roller_radius_mm"], follower.get("motion") == "oscillating"
-    given["form"] = "conjugate"
-    prime = size + radius
-    way = d.pick(["prime_radius2_mm", "between"])
-    if way != "between":
-        given[way] = short(prime * d.even(0.8, 1.3))
-    elif swings:
-        follower["arms_angle_deg"] = d.even(40, 140)
-    else:
-        follower["roller_distance_mm"] = short((2 * prime + _height(design)) * d.even(0.9, 1.2))
-    if swings and d.chance(0.5):
-        follower["arm2_mm"] = short(follower["arm_mm"] * d.even(0.8, 1.2))
-    for table, key, value in (
-        (given, "gap_mm", size * d.log(1e-3, 0.1)),
-        (follower, "roller2_radius_mm", radius * d.even(0.6, 1.4)),
-        (follower, "preload_mm", size * d.log(1e-5, 1e-3)),
-    ):
-        if d.chance(0.5):
-            table[key] = short(value)
-
-
-def _height(design: dict[str, Any]) -> float:
-    """Return about the lift of a follower, mm."""
-    motion, follower = design["motion"], design["follower"]
-    phases = motion if isinstance(motion, list) else [motion]
-    lifts = [value for phase in phases for key, value in phase.items() if key.startswith("lift_mm")]
-    highest = [max(value) if isinstance(value, list) else value for value in lifts]
-    return float(sum(highest)) if highest else 0.3 * follower.get("arm_mm", 0.0)
-
-
-def _yoke(d: Draw, design: dict[str, Any], size: float) -> None:
-    """Put the cam between two faces or rollers: half a turn decides the other half."""
-    law, lift = d.pick(["cycloidal", "3-4-5", "modified-sine"]), short(size * d.log(0.01, 0.3))
-    first, second = short(d.even(5, 60)), short(d.even(5, 60))
-    rise = {"type": "rise", "law": law, "angle_deg": 180 - first - second, "lift_mm": lift}
-    dwells = [{"type": "dwell", "angle_deg": angle} for angle in (first, second)]
-    design["motion"] = [dwells[0], rise, dwells[1]]
-    design["follower"].pop("offset_mm", None)
-    design["cam"]["form"] = "yoke"
-
-
-def _another_form(d: Draw, design: dict[str, Any], size: float) -> None:
-    """Make a disc cam one of another form that has such a follower."""
+def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
+    """Make the cam a plate that slides: ways in place of angles."""
     follower = design["follower"]
-    forms: list[Callable[[Draw, dict[str, Any], float], None]] = []
-    if follower["type"] == "roller":
-        forms += [_groove, _conjugate]
-    if follower["type"] in ("roller", "flat") and "motion" not in follower:
-        forms.append(_yoke)
-    if forms:
-        d.pick(forms)(d, design, size)
-        design.pop("blank", None)
+    for phase in design["motion"]:
+        phase["way_mm"] = short(phase.pop("angle_deg") / 40 * size)
+    follower.pop("offset_mm", None)
+    if "arm_mm" in follower:
+        follower["pivot_height_mm"] = short(follower["arm_mm"] * d.even(-0.5, 0.5))
+    elif d.chance(0.5):
+        follower["axis_deg"] = d.even(-30, 30)
+    given = {"form": "translating", "thickness_mm": design["cam"]["thickness_mm"]}
+    for key in ("run_in_mm", "run_out_mm"):
+        if d.chance(0.7):
+            given[key] = short(size * d.even(0.1, 1))
+    if follower["type"] == "roller" and d.chance(0.5):
+        given["walls"] = "both"
+        if d.chance(0.5):
+            given["roller_clearance_mm"] = short(size * d.log(1e-4, 1e-2))
+    design["cam"] = given
+    design["blank"] = {"height_mm": short(size * d.even(2, 6))}
+    if d.chance(0.5):
+        design["blank"]["length_mm"] = short(size * d.even(9, 20))
+    if d.chance(0.3):
+        design["blank"] |= {
+            "bolts": 2,
+            "bolt_diameter_mm": short(0.1 * size),
+            "bolt_spacing_mm": short(size * d.even(2, 6)),
+            "bolt_height_mm": short(size * d.even(0.2, 0.6)),
+        }
 
 
 def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
@@ -281,6 +287,15 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         design["motion"] = _turn(d, lift, unit)
     elif d.chance(0.1):
         d.pick(phases)["angle_deg"] = "rest"
-    if d.chance(0.35):
-        _another_form(d, design, size)
+    if d.chance(0.3):
+        _held(d, design, lift)
+    elif kind == "roller" and d.chance(0.3):
+        _groove(d, design, size, lift)
+        design.pop("blank", None)
+    elif kind != "flat" and isinstance(design["motion"], list) and d.chance(0.2):
+        if all(phase["angle_deg"] != "rest" for phase in phases):
+            _slide(d, design, size)
+            for key, own in (("theta_deg", "u_mm"), ("motion_step_deg", "way_step_mm")):
+                if key in output:
+                    output[own] = short(abs(output.pop(key)) / 40 * size)
     return design | {"output": output}

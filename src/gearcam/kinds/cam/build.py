@@ -134,7 +134,8 @@ class CamResult(Result):
             ``rho_pitch_mm`` and ``rho_profile_mm``, radii of curvature of pitch curve and profile
             before trimming: positive where convex, infinite where straight, that of the profile
             negative on a convex pitch curve where it is undercut. At a knot the values after it
-            count.
+            count. Of conjugate cams and grooves names of columns tell which, such as
+            ``pressure_angle_2_deg`` and ``rho_profile_outer_mm``.
 
         Raises
         ------
