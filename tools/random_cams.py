@@ -217,6 +217,21 @@ def _groove(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
         design["follower"]["roller2_radius_mm"] = short(radius * d.even(0.6, 1.5))
 
 
+def _bar(d: Draw, size: float) -> dict[str, Any]:
+    """Return the blank of a plate that slides."""
+    blank: dict[str, Any] = {"height_mm": short(size * d.even(2, 6))}
+    if d.chance(0.5):
+        blank["length_mm"] = short(size * d.even(9, 20))
+    if d.chance(0.3):
+        blank |= {
+            "bolts": 2,
+            "bolt_diameter_mm": short(0.1 * size),
+            "bolt_spacing_mm": short(size * d.even(2, 6)),
+            "bolt_height_mm": short(size * d.even(0.2, 0.6)),
+        }
+    return blank
+
+
 def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
     """Make the cam a plate that slides: ways in place of angles."""
     follower = design["follower"]
@@ -236,16 +251,24 @@ def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
         if d.chance(0.5):
             given["roller_clearance_mm"] = short(size * d.log(1e-4, 1e-2))
     design["cam"] = given
-    design["blank"] = {"height_mm": short(size * d.even(2, 6))}
-    if d.chance(0.5):
-        design["blank"]["length_mm"] = short(size * d.even(9, 20))
+    design["blank"] = _bar(d, size)
+    output = design["output"]
+    for key, own in (("theta_deg", "u_mm"), ("motion_step_deg", "way_step_mm")):
+        if key in output:
+            output[own] = short(abs(output.pop(key)) / 40 * size)
+
+
+def _form(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
+    """Give some cams another form than a disc's, where their follower and motion suit it."""
+    motion, kind = design["motion"], design["follower"]["type"]
+    told = isinstance(motion, list) and all(phase["angle_deg"] != "rest" for phase in motion)
     if d.chance(0.3):
-        design["blank"] |= {
-            "bolts": 2,
-            "bolt_diameter_mm": short(0.1 * size),
-            "bolt_spacing_mm": short(size * d.even(2, 6)),
-            "bolt_height_mm": short(size * d.even(0.2, 0.6)),
-        }
+        _held(d, design, lift)
+    elif kind == "roller" and d.chance(0.3):
+        _groove(d, design, size, lift)
+        design.pop("blank", None)
+    elif kind != "flat" and told and d.chance(0.2):
+        _slide(d, design, size)
 
 
 def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
@@ -270,10 +293,11 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
     if d.chance(0.5):
         wheel["rotation"] = d.pick(["ccw", "cw"])
     phases = _program(d, law, lift, "deg" if swings else "mm")
+    output: dict[str, Any] = {"chord_tolerance_mm": min(1.0, short(size * d.log(1e-5, 1e-3)))}
     design: dict[str, Any] = {"motion": phases, "follower": follower, "cam": wheel}
     if d.chance(0.5):
         design["blank"] = blank(d, 0.8 * size, 0.05 * size, both=False)
-    output: dict[str, Any] = {"chord_tolerance_mm": min(1.0, short(size * d.log(1e-5, 1e-3)))}
+    design["output"] = output
     if 10 < size < 100 and d.chance(0.3):
         del output["chord_tolerance_mm"]
     if d.chance(0.3):
@@ -287,15 +311,5 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         design["motion"] = _turn(d, lift, unit)
     elif d.chance(0.1):
         d.pick(phases)["angle_deg"] = "rest"
-    if d.chance(0.3):
-        _held(d, design, lift)
-    elif kind == "roller" and d.chance(0.3):
-        _groove(d, design, size, lift)
-        design.pop("blank", None)
-    elif kind != "flat" and isinstance(design["motion"], list) and d.chance(0.2):
-        if all(phase["angle_deg"] != "rest" for phase in phases):
-            _slide(d, design, size)
-            for key, own in (("theta_deg", "u_mm"), ("motion_step_deg", "way_step_mm")):
-                if key in output:
-                    output[own] = short(abs(output.pop(key)) / 40 * size)
-    return design | {"output": output}
+    _form(d, design, size, lift)
+    return design

@@ -63,7 +63,7 @@ def test_every_law_and_rise_and_follower_is_drawn() -> None:
     assert {key.rpartition("_")[0] or key for key in turns} == {
         *("file", "theta", "lift", "smoothing_tolerance")
     }
-    assert "rest" in {phase["angle_deg"] for phase in moves}
+    assert "rest" in {phase.get("angle_deg") for phase in moves}
     assert {phase["type"] for phase in moves} == choices("cam", "motion", "type")
     for kind in ("rise", "return"):
         drawn = {phase["law"] for phase in moves if phase["type"] == kind}

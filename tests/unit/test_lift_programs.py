@@ -390,11 +390,5 @@ def test_a_smooth_law_has_no_jumps() -> None:
     assert made.continuity == 3
 
 
-def test_degrees_of_an_arm_become_radians() -> None:
-    made = there_and_back("cycloidal", 20.0, DEGREES, swings=True)
-    assert made.range[1] == pytest.approx(math.radians(20.0), rel=1e-14)
-    assert made.peaks[0] == pytest.approx(2 * math.radians(20.0) / UP, rel=1e-12)
-
-
 def test_every_phase_of_files_is_tried() -> None:
     assert set(PHASES) == {"rise", "dwell", "return", "segment"}

@@ -1,4 +1,4 @@
-"""Lift programs of cams that slide: open, their phases parts of a way."""
+"""Lift programs of arms, and of cams that slide: open, their phases parts of a way."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from gearcam.laws.phases_of_lift import ReturnPhase, RisePhase, SegmentPhase, pr
 from gearcam.laws.program import make_program
 from gearcam.laws.rises.base import RISES
 from gearcam.tolerances import DEFAULT
+from helpers_cams import there_and_back
 
 
 def test_an_open_program_ends_where_its_way_does() -> None:
@@ -38,3 +39,9 @@ def test_an_open_program_begins_at_rest_before_a_segment() -> None:
     end = ReturnPhase(angle=1.0, law=RISES["constant-velocity"].parameters())
     made = make_program([SegmentPhase(angle=1.0, to=5.0), end], DEFAULT, closed=False)
     assert made.derivatives(np.array([0.0]), 2)[1][0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_degrees_of_an_arm_become_radians() -> None:
+    made = there_and_back("cycloidal", 20.0, (80.0, 70.0, 110.0, 100.0), swings=True)
+    assert made.range[1] == pytest.approx(math.radians(20.0), rel=1e-14)
+    assert made.peaks[0] == pytest.approx(2 * math.radians(20.0) / math.radians(80.0), rel=1e-12)
