@@ -196,6 +196,8 @@ def test_the_solid_is_the_plate_less_its_groove(depth: float | None) -> None:
     plate = 12.0 * (194.1 * 60.0 - bolts)
     expected = plate - cam.groove.moments.area * (depth or 12.0)
     assert mesh.is_watertight
+    places = [one["center_mm"] for one in result.facts["part.openings"] if one["kind"] == "hole"]
+    np.testing.assert_allclose(places, [[-165.0, -14.5], [-5.0, -14.5]])
     assert mesh.volume == pytest.approx(expected, abs=10.0)
     assert result.part.volume == pytest.approx(expected, rel=1e-9)
     (solid,) = read_step(result.files("step")["cam.step"])

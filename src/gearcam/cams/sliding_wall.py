@@ -3,8 +3,6 @@
 A *stretch* is a part of a contour: runs, and the vertices of its polygon. Beyond its ends a wall
 follows the roller until it is level, and so to the plate's end.
 
-Refused: walls that are undercut where their way begins or ends.
-
 Depends on wall and numeric.
 """
 
@@ -20,9 +18,8 @@ import numpy as np
 
 from gearcam.cams.wall import OVERSAMPLING, Wall
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs
+from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run
 
 _DENSE = 1 / 40
@@ -30,10 +27,6 @@ _DENSE = 1 / 40
 
 _FEWEST = 8
 """Fewest chords of an arc."""
-
-_COVERED = 2.0
-"""Chord errors by which a wall may come nearer to the follower's first and last place than it is
-wide."""
 
 _ALIKE = 1e-9
 """Distance of corners, mm, below which they are one: rounding."""
@@ -75,25 +68,7 @@ class SlidingWall(Wall):
     @cached_property
     def line(self) -> Array:
         """Vertices of the wall, (n, 2), mm, from the beginning of the way to its end."""
-        points = self.sampler.chords[1]
-        centers = as_complex(self.pitch_line[[0, -1]])
-        room = np.abs(points[:, None] - centers).min(axis=0)
-        covered = room < self.mechanism.radius - _COVERED * self.tolerance
-        if covered.any():
-            key = "cam.run_in_mm" if covered[0] else "cam.run_out_mm"
-            lack = 2.0 * self.mechanism.radius
-            end = "begins" if covered[0] else "ends"
-            raise InfeasibleError(
-                f"where its way {end} the follower cuts away what it needs elsewhere: the "
-                f"{self.called} is undercut there",
-                where=key,
-                value=float(room[covered].min()),
-                limit=self.mechanism.radius,
-                unit="mm",
-                nearest="these are distances from the follower's centre",
-                ways=(Way(far={key: lack}),),
-            )
-        return as_pairs(points)
+        return as_pairs(self.sampler.chords[1])
 
     @cached_property
     def pitch_line(self) -> Array:
