@@ -25,6 +25,7 @@ motion = [
     {{ type = "dwell", angle_deg = 90 }},
 ]
 """
+GROOVE = 'form = "groove", outer_diameter_mm = 110, thickness_mm = 20, groove_depth_mm = 12, '
 RADIUS = 6.0
 ALLOWED = 1e-3
 NOTE = """\
@@ -39,6 +40,26 @@ time. Reading the design counts for no side."""
 def profile(design: Any) -> Any:
     """The profile's polygon; nothing kept from an earlier call."""
     return gearcam.build(design).profile.vertices
+
+
+def walls(design: Any) -> Any:
+    """The polygons of all walls; nothing kept from an earlier call."""
+    return [wall.contour.vertices for wall in gearcam.build(design).cam.walls]
+
+
+def groove_against_disc(tries: int = 25) -> Result:
+    """(r) Both walls of a groove against the disc cam of the same program."""
+    disc = load(CAM.format(tolerance=ALLOWED))
+    groove = load(CAM.format(tolerance=ALLOWED).replace("cam = {", "cam = { " + GROOVE))
+    made = in_turns({"groove": lambda: walls(groove), "disc": lambda: walls(disc)}, tries)
+    found = made[0].over(made[1])
+    return Result(
+        title="(r) A groove against the disc cam of the same program",
+        asked="at most 2.2 times the time at 1 um",
+        found=f"{found:.2f} times",
+        passed=found <= 2.2,
+        body=[*table(made), "", "The walls of the reference cam as polygons, from its design."],
+    )
 
 
 def blank() -> Any:

@@ -46,6 +46,7 @@ def main() -> int:
         cases.whole_process,
         cam_cases.against_subtraction,
         cam_cases.cam_growth,
+        cam_cases.groove_against_disc,
         cases.growth,
         cases.against_whole_outlines,
         cases.against_sweep,
