@@ -55,8 +55,8 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
             for one in phases
         ]
     spec = FollowerSpec(**follower)
-    share = way / sum(one.angle for one in phases)
-    phases = [replace(one, angle=one.angle * share) for one in phases]
+    share = way / sum(float(one.angle) for one in phases)
+    phases = [replace(one, angle=float(one.angle) * share) for one in phases]
     before, after = ([DwellPhase(angle=run * way)] if run else [] for run in runs)
     try:
         motion = make_program(
@@ -75,16 +75,14 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
 
 def centers_of(design: Given, made: SlidingCam) -> Any:
     """Middles of rollers in the cam's frame, by the geometry of the follower."""
-    spec, motion = FollowerSpec(**design[0]), made.motion.program
+    given, motion = design[0], made.motion.program
     theta = np.union1d(np.linspace(0.0, 2.0 * np.pi, 20001), motion.knots)
     lift, way = motion.derivatives(theta, 0)[0], made.way * theta / (2.0 * np.pi)
-    if not spec.oscillating:
-        return lift * 1j * np.exp(-1j * spec.axis) - way
-    assert spec.arm is not None
-    assert spec.pivot_distance is not None
-    swing = lift - np.arcsin(spec.pivot_height / spec.arm)
+    if "arm" not in given:
+        return lift * 1j * np.exp(-1j * given["axis"]) - way
+    swing = lift - np.arcsin(given["pivot_height"] / given["arm"])
     arm = -np.cos(swing) + 1j * np.sin(swing)
-    return spec.pivot_distance + 1j * spec.pivot_height + spec.arm * arm - way
+    return given["pivot_distance"] + 1j * given["pivot_height"] + given["arm"] * arm - way
 
 
 def demand_plate(design: Given) -> None:

@@ -14,6 +14,7 @@ import shapely
 import gearcam
 from gearcam.cams.sliding import SlidingCam
 from gearcam.designs import loads
+from gearcam.drawings import cut_drawing, reach
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign
@@ -285,14 +286,12 @@ def test_a_profile_is_followed() -> None:
 def test_the_kerf_of_a_groove_that_goes_through() -> None:
     result = built(FILE, (DEEP, ""), ("[output]", "[output]\nkerf_mm = 0.4"))
     (drawing,) = result.form.drawings(result)
-    from gearcam.drawings import cut_drawing
-
     paths = {one.layer: one.shape for one in cut_drawing(drawing, 0.4).features}
     cam = cam_of(result)
     assert cam.groove is not None
-    groove = shapely.Polygon(paths["GROOVE_KERF"].points(0.0))
+    groove = shapely.Polygon(reach(paths["GROOVE_KERF"]))
     assert groove.area == pytest.approx(cam.groove.polygon.buffer(-0.2).area, rel=1e-4)
-    blank = shapely.Polygon(paths["BLANK_KERF"].points(0.0))
+    blank = shapely.Polygon(reach(paths["BLANK_KERF"]))
     assert blank.area == pytest.approx(shapely.box(0, 0, 194.1, 60).buffer(0.2).area, rel=1e-4)
     assert set(result.files("dxf")) == {"cam.dxf"}
 
@@ -350,5 +349,5 @@ def test_the_picture_stands_where_it_is_asked() -> None:
         built(FILE, ("u_mm = 80", "u_mm = 171")).files("svg")
     assert caught.value.limit == pytest.approx(170.0)
     drawing = result.form.picture(result)
-    x = drawing.features[0].shape.points(0.0)[:, 0]
+    x = reach(drawing.features[0].shape)[:, 0]
     assert (x.min(), x.max()) == pytest.approx((80.0 - 182.05, 80.0 + 12.05))
