@@ -71,10 +71,17 @@ def highest_corners(
     (n,) array, mm
         `highest` where it does no harm.
     """
-    result = highest.copy()
     if toothing.track.concave.radius == math.inf and mate.cutter.kc == 0.0:
-        return result
-    sf, sigma = flanks
+        return highest.copy()
+    # a closed pair repeats with its lobes
+    teeth = len(highest) // 2
+    count = math.gcd(toothing.teeth, mate.teeth) if toothing.closed and mate.closed else teeth
+    sf, sigma, highest = (v.reshape(2, -1)[:, :count].ravel() for v in (*flanks, highest))
+    flanks, result = (sf, sigma), highest.copy()
+
+    def of_all() -> Array:
+        return np.tile(result.reshape(2, -1), teeth // count).ravel()
+
     hollow, ring = mate.track.hollow, mate.track.ring
     internal = ring or toothing.track.ring
     near = _deep(toothing, mate.cutter, flanks, highest)
@@ -83,7 +90,7 @@ def highest_corners(
     tight = min(toothing.cutter.teeth, mate.cutter.teeth) < _FEW and not internal
     at = np.flatnonzero(near | tight)
     if at.size == 0:
-        return result
+        return of_all()
     import shapely
 
     body = shapely.Polygon(mate_outline()).buffer(2.0 * (tolerance if hollow else -tolerance))
@@ -108,7 +115,7 @@ def highest_corners(
         bad = hits(at, middle)
         low, high = np.where(bad, low, middle), np.where(bad, middle, high)
     result[at] = low
-    return result
+    return of_all()
 
 
 def _paths(
