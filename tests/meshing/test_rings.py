@@ -9,6 +9,7 @@ import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
+from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, touches
 from gearcam.meshing.numbers import numbers
@@ -251,3 +252,11 @@ def test_columns_of_a_ring() -> None:
         driven_angles("asymmetric", np.radians(found["phi1_deg"])), abs=1e-12
     )
     assert result.chart("curvature").lines[1].y.min() == pytest.approx(-bend.max(), abs=3e-4)
+
+
+def test_flanks_that_hug_each_other_do_not_interfere() -> None:
+    """In a large ring of nearly as many teeth a patch is a strip as long as its flanks."""
+    made = job(Constant(), (200, 250), module=2.0, backlash=0.1, internal=True)
+    found = study(made.gears, MeshingSpec(steps=6))
+    assert not found.every("interferes").any()
+    assert numbers(found)["pairs_in_contact"]["min"] >= 3

@@ -21,7 +21,7 @@ CLEAR = -0.05
 COARSE = 5e-3
 """Chord tolerance, in modules, with which ways out are sought: they are proven with a fine one."""
 
-QUICK = [2, 5, 6, 7, 10, 11, 13, 14, 16, 18, 19, 20]
+QUICK = [2, 5, 6, 7, 10, 13, 14, 16]
 """Designs of which few need a way out: the search takes seconds."""
 
 

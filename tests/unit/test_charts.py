@@ -70,8 +70,10 @@ def test_extremes_are_those_of_the_facts(path):
         ratios = result.chart("ratio").lines[0].y
         told = facts["pair.ratio"]
         assert (ratios.min(), ratios.max()) == pytest.approx((told["min"], told["max"]), rel=steps)
-        radii = sum(line.y for line in result.chart("radii").lines)
-        assert radii == pytest.approx(result.pair.center_distance, rel=1e-12)
+        one, two = (line.y for line in result.chart("radii").lines)
+        assert (two + result.pair.rolling.mate * one) == pytest.approx(
+            result.pair.center_distance, rel=1e-12
+        )
 
 
 def test_both_sides_of_a_knot_are_drawn():

@@ -14,7 +14,7 @@ from gearcam.findings import Remark, check
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing import drive_checks
 from gearcam.meshing.settings import KIND
-from gearcam.meshing.study import Meshing, trespasses
+from gearcam.meshing.study import Meshing, explained
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.quantities import NUMBER, Param
@@ -56,7 +56,7 @@ def _at(meshing: Meshing, chosen: Mask) -> str:
 
 
 @check("interference", kind=KIND, severity="error", unit="mm")
-def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
     """Report interference, as an error.
 
     Looks at: overlap where none may be, or deeper than the overclosure.
@@ -67,13 +67,15 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: A
     backlash = meshing.every("backlash")
     worst = int(np.where(np.isfinite(backlash), backlash, np.inf).argmin())
     deepest = -float(backlash[worst])
+    limit = meshing.setup.noise
     where = f"no room between both sides, phi1 = {shown(math.degrees(meshing.phi1[worst]))} deg"
     for block in meshing.blocks:
         found, turning = block.overlaps, meshing.setup.turning
-        bad = np.where(trespasses(meshing.setup, found), found.depth, 0.0)
+        most = explained(meshing.setup, found)
+        bad = np.where(found.depth > most, found.depth, 0.0)
         if bad.size and bad.max() > deepest:
             k = int(bad.argmax())
-            deepest = float(bad[k])
+            deepest, limit = float(bad[k]), float(most[k])
             one, two = (
                 f"tooth {tooth}" if tooth is not np.ma.masked else "the body"
                 for tooth in (
@@ -87,7 +89,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: A
         f"The wheels run into each other at {_at(meshing, hit)}.",
         where,
         deepest,
-        limit=meshing.setup.noise,
+        limit=limit,
     )
 
 

@@ -39,8 +39,11 @@ _SHARE = 1.0 / 200.0
 BLOCK = 120
 """Phases that are studied at once: few enough for progress, many enough to be fast."""
 
-DEEPER = 1.25
-"""Depth of overlap, over what the overclosure explains, from which flanks count as interfering."""
+DEEPER = 1.6
+"""Depth of overlap, over what the overclosure explains, from which flanks count as interfering.
+
+Depths are told as if patches ended in points: of one as long as its flanks, a strip between flanks
+that hug each other as in a ring, it is 1.5 times what it is."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -274,7 +277,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     backlash = (first_touches[COAST][0] - first_touches[DRIVE][0]) * along
     # too little room for both sides is hidden from the outlines by the overclosure
     interferes = backlash < -setup.noise
-    interferes[ahead.step[trespasses(setup, ahead)]] = True
+    interferes[ahead.step[ahead.depth > explained(setup, ahead)]] = True
     return Block(
         first=first,
         phi1=phi1,
@@ -291,8 +294,8 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     )
 
 
-def trespasses(setup: Setup, found: Overlaps) -> Mask:
-    """Return which overlaps should not be, or are deeper than the overclosure explains.
+def explained(setup: Setup, found: Overlaps) -> Array:
+    """Return up to which depth overlaps are explained by the overclosure and by chords.
 
     Parameters
     ----------
@@ -303,8 +306,7 @@ def trespasses(setup: Setup, found: Overlaps) -> Mask:
 
     Returns
     -------
-    (n,) bool array
+    (n,) array, mm
     """
-    expected = on_side(found, setup.side)
     deepest = DEEPER * abs(setup.spec.overclosure) * setup.lever
-    return found.depth > np.where(expected, deepest, 0.0) + setup.noise
+    return np.where(on_side(found, setup.side), deepest, 0.0) + setup.noise

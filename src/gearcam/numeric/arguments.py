@@ -193,7 +193,7 @@ def one_of(name: str, value: object, known: Sequence[str]) -> str:
         If it is none of them.
     """
     if not isinstance(value, str) or value not in known:
-        rule = ", ".join(f'"{word}"' for word in known)
+        rule = ", ".join(f'"{word}"' for word in known if word) or "leave it out"
         raise refused(f"{_text(value)} is not known here", name, value, rule)
     return value
 

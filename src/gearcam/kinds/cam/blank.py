@@ -42,7 +42,7 @@ class CamBlank(WheelBlank):
 
     def problems(self) -> Iterator[Problem]:
         """Yield what is wrong by reading: field, None, message, allowed."""
-        plate = self.height is not None
+        plate = not {self.length, self.height, self.bolt_spacing, self.bolt_height} <= {None}
         for name, index, message, rule in super().problems():
             if not (plate and name == "bolt_circle"):
                 yield name, index, message, rule
