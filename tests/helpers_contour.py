@@ -15,7 +15,7 @@ import numpy as np
 
 from gearcam.drawings import Drawing
 from gearcam.numeric.contour import Contour, Run
-from gearcam.parts.body import Opening
+from gearcam.parts.body import Opening, Part
 from gearcam.parts.shapes import Circle
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -165,3 +165,8 @@ def bore(diameter: float) -> tuple[Opening, ...]:
 def layers(drawing: Drawing) -> list[str]:
     """The layers in use, in order of first use."""
     return list(dict.fromkeys(feature.layer for feature in drawing.features))
+
+
+def edges(part: Part) -> list[Contour]:
+    """The outlines of a part that are no circles."""
+    return [edge for edge in part.contours if isinstance(edge, Contour)]

@@ -324,7 +324,7 @@ def test_a_cam_is_cut_without_its_pitch_curve(kerf: float) -> None:
     made = job.files("cut-svg", {})
     assert set(made) == {"cam_cut.svg", "cut.svg"}
     (line,) = sheet_of(made["cam_cut.svg"]).lines
-    size = job.cam.size
+    size = job.cam.walls[0].size
     wanted = size.area + 0.5 * kerf * size.perimeter + math.pi * (0.5 * kerf) ** 2
     assert line.region.area == pytest.approx(wanted, abs=2e-3 * size.perimeter)
     assert line.group == "cut-outer"

@@ -160,7 +160,7 @@ def test_a_cam_s_path_has_the_area_that_steiner_says() -> None:
     """A parallel at d of a closed curve: A + L*d + pi*d^2, A and L by quadrature."""
     made, d = cam(kerf=0.3), 0.15
     ((path,),) = (regions(made.files("dxf", {})["cam.dxf"])["PROFILE_KERF"],)
-    size = made.cam.size
+    size = made.cam.walls[0].size
     wanted = size.area + size.perimeter * d + math.pi * d**2
     assert path.area == pytest.approx(wanted, abs=size.perimeter * 1e-3)
     (true, *_) = cut_drawing(wheel_drawing(made.part), 0.3).contours
@@ -173,7 +173,7 @@ def test_a_cam_s_path_has_the_area_that_steiner_says() -> None:
 def test_clearance_makes_another_part() -> None:
     """Volume and profile of a cam by Steiner's formula; every file follows."""
     made, c = cam(clearance=0.25), 0.25
-    size, width = made.cam.size, made.design.cam.thickness
+    size, width = made.cam.walls[0].size, made.design.cam.thickness
     area = size.area - size.perimeter * c + math.pi * c**2
     mesh = trimesh.load(io.BytesIO(made.files("stl", {})["cam.stl"]), file_type="stl")
     assert isinstance(mesh, trimesh.Trimesh)

@@ -32,7 +32,7 @@ from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
 from gearcam.sheets import pair_sheet, wheel_sheet
 from gearcam.sheets.sheet import Sheet
-from helpers_contour import disc_contour, gear_contour
+from helpers_contour import disc_contour, edges, gear_contour
 from helpers_pairs import PROFILES
 
 STYLE = DxfStyle(tolerance=1e-3)
@@ -86,7 +86,7 @@ def d_bore() -> Part:
 def fine_points(part: Part) -> np.ndarray:
     """Points on the true curve, a hundred for each of its dense ones: arcs with their tangents."""
     found = []
-    for run in part.contours[-1].runs:
+    for run in edges(part)[-1].runs:
         start, end = (points @ [1.0, 1j] for points in (run.points[:-1], run.points[1:]))
         way = end - start
         # the arc that leaves the first point along its tangent and meets the second
@@ -181,7 +181,7 @@ def test_every_dimension_is_the_parts_own(
 ) -> None:
     part, sizes, sheet = wheel
     assert faults(data, sizes, told(sheet)) == []
-    assert measure_dxf(data, part.contours) <= 1e-3
+    assert measure_dxf(data, edges(part)) <= 1e-3
 
 
 def test_a_wrong_bore_is_caught() -> None:
@@ -241,7 +241,7 @@ def test_r12_has_lines_and_texts_instead(wheel: tuple[Part, list[float], Sheet])
     texts = [decode_dxf_unicode(one.dxf.text).replace("%%c", "Ø") for one in document.query("TEXT")]
     assert {one.text.text for one in sheet.drawn} <= set(texts)
     assert TITLE in texts
-    assert measure_dxf(data, wheel[0].contours) <= 1e-3
+    assert measure_dxf(data, edges(wheel[0])) <= 1e-3
 
 
 def root_of(sheet: Sheet) -> ET.Element:

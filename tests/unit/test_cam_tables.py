@@ -47,7 +47,7 @@ def test_the_curvature_from_three_points_of_a_circle_is_exact() -> None:
 
 def test_an_undercut_profile_has_no_curvature_study() -> None:
     steep = FLAT.replace("base_radius_mm = 30", "base_radius_mm = 5")
-    assert made(steep).cam.undercut
+    assert made(steep).cam.walls[0].undercut
     with pytest.raises(InfeasibleError, match="cusps"):
         made(steep).files("curvature")
 
