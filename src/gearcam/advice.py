@@ -7,6 +7,7 @@ the change is kept if it is not refused, what was an error is gone, and no other
 
 from __future__ import annotations
 
+import json
 import re
 import time
 from collections.abc import Iterable, Mapping
@@ -18,6 +19,7 @@ from gearcam.designs.design import Design, document_of, value_at
 from gearcam.designs.kind import KINDS
 from gearcam.display import Brief
 from gearcam.errors import DesignError, InfeasibleError, Way
+from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.findings import Finding
@@ -52,6 +54,16 @@ class Remedy(Brief):
     changes: Changes
     less: Changes = field(default_factory=dict)
     design: Design
+
+    @property
+    def text(self) -> str:
+        """The changes as a design file holds them: ``pair.x = 0.2 and pair.teeth = [52, 52]``."""
+        return _text(self.changes)
+
+    @property
+    def next_less(self) -> str:
+        """The next smaller change in the same way; nothing where none was tried."""
+        return _text(self.less)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +125,18 @@ def remedies(
         gave_up=search.gave_up,
         seconds=patience,
     )
+
+
+def _text(changes: Changes) -> str:
+    return " and ".join(f"{key} = {_value(value)}" for key, value in changes.items())
+
+
+def _value(value: object) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, float):
+        return shown(value, 10)
+    return json.dumps(value)
 
 
 def _builds(result: Result) -> bool:

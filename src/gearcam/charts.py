@@ -110,13 +110,10 @@ class Chart:
         for line in self.lines:
             style: dict[str, Any] = {"ls": "", "marker": ".", "ms": 3.0} if line.dots else {}
             ax.plot(line.x, line.y, label=line.label, **style)
-        low, high = self._range
-        near = _FAR * (high - low)
+        low, high = self.range
         for limit in self.limits:
-            seen = low - near <= limit.value <= high + near
             text = f"{limit.label}: {shown(limit.value)}"
-            if seen:
-                low, high = min(low, limit.value), max(high, limit.value)
+            if low <= limit.value <= high:
                 ax.axhline(limit.value, color="0.35", ls="--", lw=1.0, label=text)
             else:
                 ax.plot([], [], color="0.35", ls=" ", label=f"{text}, beyond this chart")
@@ -129,12 +126,19 @@ class Chart:
         return ax
 
     @property
-    def _range(self) -> tuple[float, float]:
-        """Smallest and largest value of all lines; of a level one some room about it."""
+    def range(self) -> tuple[float, float]:
+        """Smallest and largest value of all lines and of the limits that are near them.
+
+        Of a level line some room about it.
+        """
         values = np.concatenate([line.y[np.isfinite(line.y)] for line in self.lines])
         low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
         room = 0.0 if high - low > 1e-9 * max(abs(low), abs(high)) else 0.05 * abs(high) or 1.0
-        return low - room, high + room
+        low, high = low - room, high + room
+        levels = [limit.value for limit in self.limits]
+        near = _FAR * (high - low)
+        seen = [one for one in levels if low - near <= one <= high + near]
+        return min(low, *seen, low), max(high, *seen, high)
 
 
 Charts = Mapping[str, Callable[[Any], Chart]]

@@ -6,7 +6,6 @@ Results go to stdout, what went wrong to stderr; piped output is plain text.
 from __future__ import annotations
 
 import contextlib
-import json
 import logging
 import os
 import sys
@@ -17,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
 from gearcam.facts import lined_up
-from gearcam.numerals import decimal, shown
+from gearcam.numerals import shown, size_of, with_unit
 
 if TYPE_CHECKING:
     from gearcam.advice import Remedies
@@ -47,22 +46,10 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
         yield "findings: none"
         return
     yield "findings"
-    rows = [
-        (one.severity, one.code, one.where, _number(one.value, one.unit), _limit(one))
-        for one in findings
-    ]
+    rows = [(one.severity, one.code, one.where, one.told, one.held) for one in findings]
     for row, finding in zip(lined_up(rows), findings, strict=True):
         yield f"  {row}"
         yield wrapped(finding.message, first="      ", rest="      ")
-
-
-def _limit(finding: Finding) -> str:
-    """Return the limit of a finding in words: what was found is on its wrong side."""
-    value, limit = finding.value, finding.limit
-    if value is None or limit is None:
-        return ""
-    words = "at most" if value > limit else "at least"
-    return f"{words} {_number(limit, finding.unit)}"
 
 
 def all_lines(written: Written) -> Iterator[str]:
@@ -97,18 +84,11 @@ def _stale_lines(stale: Mapping[str, str | None]) -> Iterator[str]:
         yield wrapped(f"stale: {told}; {way}", first="")
 
 
-def _number(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{shown(value)} {unit}".rstrip()
-
-
 def _size(path: Path) -> str:
     try:
-        count = path.stat().st_size
+        return size_of(path.stat().st_size)
     except OSError:
         return ""
-    if count < 1000:
-        return f"{count} B"
-    return f"{decimal(count / 1e3, 1)} kB" if count < 1e6 else f"{decimal(count / 1e6, 1)} MB"
 
 
 def fault_text(error: Exception, file: str) -> str:
@@ -125,7 +105,7 @@ def infeasible_text(error: InfeasibleError) -> str:
     lines = [f"{error.what}, at {error.where}" if error.where else error.what]
     numbers = (("value", error.value), ("limit", error.limit))
     shown = [
-        f"{name} {_number(number, error.unit)}" for name, number in numbers if number is not None
+        f"{name} {with_unit(number, error.unit)}" for name, number in numbers if number is not None
     ]
     lines += [", ".join(shown)] if shown else []
     lines += error.nearest.split("; ") if error.nearest else []
@@ -137,27 +117,14 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
     if found.found:
         yield "built without errors with one of these:"
     for remedy in found.found:
-        less = f"  (not yet with {_changes(remedy.less)})" if remedy.less else ""
-        yield f"  {_changes(remedy.changes)}{less}"
+        less = f"  (not yet with {remedy.next_less})" if remedy.less else ""
+        yield f"  {remedy.text}{less}"
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more" if found.found else "a remedy"
         yield f"the search for {sought} was given up after {shown(found.seconds)} s"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
-
-
-def _changes(changes: Mapping[str, object]) -> str:
-    return " and ".join(f"{key} = {_value(value)}" for key, value in changes.items())
-
-
-def _value(value: object) -> str:
-    """Write a value as a design file holds it."""
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, float):
-        return shown(value, 10)
-    return json.dumps(value)
 
 
 def wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:

@@ -15,7 +15,7 @@ from functools import wraps
 from typing import Any, Final, Literal, NamedTuple
 
 from gearcam.display import Brief
-from gearcam.numerals import settled
+from gearcam.numerals import settled, with_unit
 from gearcam.quantities import NUMBER, Param
 
 Severity = Literal["note", "warning", "error"]
@@ -60,6 +60,19 @@ class Finding(Brief):
     def __post_init__(self) -> None:
         if self.value is not None and self.limit is not None:
             object.__setattr__(self, "value", settled(self.value, self.limit))
+
+    @property
+    def told(self) -> str:
+        """The number found with its unit, in words."""
+        return with_unit(self.value, self.unit)
+
+    @property
+    def held(self) -> str:
+        """The limit in words: what was found is on its wrong side."""
+        if self.value is None or self.limit is None:
+            return ""
+        words = "at most" if self.value > self.limit else "at least"
+        return f"{words} {with_unit(self.limit, self.unit)}"
 
     def as_dict(self) -> dict[str, Any]:
         """Return the finding for JSON: what does not exist is left out."""

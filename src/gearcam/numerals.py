@@ -47,6 +47,18 @@ def shown(value: float, digits: int = 6, scale: float = 0.0) -> str:
     return f"{settled(float(value), scale) + 0.0:.{digits}g}"
 
 
+def with_unit(value: float | None, unit: str) -> str:
+    """Return a `value` as people are shown it, with its `unit`; nothing where there is none."""
+    return "" if value is None else f"{shown(value)} {unit}".rstrip()
+
+
+def size_of(count: int) -> str:
+    """Return a `count` of bytes as people read it: ``812 B``, ``3.4 kB``, ``1.2 MB``."""
+    if count < 1000:
+        return f"{count} B"
+    return f"{decimal(count / 1e3, 1)} kB" if count < 1e6 else f"{decimal(count / 1e6, 1)} MB"
+
+
 def decimal(value: float, decimals: int = 3) -> str:
     """Return a `value` with up to as many `decimals`: no exponent, no idle zeros, no ``-0``."""
     text = f"{value:.{decimals}f}".rstrip("0").rstrip(".") if decimals else f"{value:.0f}"

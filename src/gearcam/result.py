@@ -39,6 +39,8 @@ FORMAT: Final = 3
 
 PICTURE: Final = "svg"
 """The kind of file that is a picture."""
+REPORT: Final = "report"
+"""The kind of file that tells of the others and is made last."""
 
 Progress = Callable[[str, int, int], None]
 """Called with a stage's name, the stages done and their number."""
@@ -68,6 +70,7 @@ class Result(Displayed):
         self.design = design
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
+        self.sizes: dict[str, int] = {}  # bytes of the files of a build so far
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.design, self.tolerances)  # computed again where it is read
@@ -105,7 +108,7 @@ class Result(Displayed):
         return trimeshes(meshes(self.parts, {}))
 
     def picture(self) -> str:
-        """Return the picture of the file kind ``svg``, or a refusal in words; none without it."""
+        """Return the picture of the file kind ``svg``, or a refusal; none without it."""
         if PICTURE not in KINDS[self.design.kind].formats:
             return ""
         try:
@@ -130,7 +133,7 @@ class Result(Displayed):
 
     @cached_property
     def design_hash(self) -> str:
-        """The hash of the design; its CSV files count as they were when they were first read."""
+        """The hash of the design, its CSV files as they were first read."""
         return hash_of(self.design)
 
     @cached_property
@@ -149,8 +152,7 @@ class Result(Displayed):
     def to_dict(self) -> dict[str, Any]:
         """Return what ``summary.json`` holds, but for the files: facts, findings, design, versions.
 
-        Plain numbers, texts, lists and dictionaries, in the units that the names say. What cannot
-        be made raises `InfeasibleError`.
+        Plain values, in the units of their names. What cannot be made raises `InfeasibleError`.
         """
         return self.document(self.facts, self.findings)
 
@@ -161,10 +163,8 @@ class Result(Displayed):
 
         Parameters
         ----------
-        facts : Facts
-            What is known.
-        findings : sequence of Finding
-            What checks found.
+        facts, findings
+            What is known, and what checks found.
         files : mapping, optional
             What it says of files.
 
@@ -296,7 +296,7 @@ class Result(Displayed):
         files : str or sequence of str, optional
             Kinds of files, one or more, instead of those the design lists.
         progress : callable, optional
-            Called with a stage's name, the stages done and their number.
+            As `Progress` says.
 
         Returns
         -------
@@ -312,7 +312,7 @@ class Result(Displayed):
         WriteError
             If the disk refuses.
         """
-        kinds = demand_formats(self.design, files)
+        kinds = sorted(demand_formats(self.design, files), key=lambda kind: kind == REPORT)
         steps = [*self.stages, *kinds, "writing"]
 
         def tell(step: str) -> None:
@@ -328,6 +328,7 @@ class Result(Displayed):
             tell(kind)
             with self.stage(kind):
                 contents |= self.files(kind, measured)
+            self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
         there: dict[str, str | None] = dict.fromkeys(contents)
         return self._write_all(directory, contents, there, measured, self.findings)

@@ -12,7 +12,7 @@ from gearcam.quantities import ANGLE, LENGTH, TEXT, param
 
 FORMATS: Final = (
     "dxf", "cut-svg", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg",
-    "inspection",
+    "inspection", "report",
 )  # fmt: skip
 """What ``output.files`` of any kind may list."""
 

@@ -17,6 +17,7 @@ from gearcam.export.shared import (
     sheet_bytes,
     sheet_rows,
 )
+from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
@@ -196,6 +197,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "drawing-dxf": partial(_sheet, "dxf"),
     "drawing-svg": partial(_sheet, "svg"),
     "inspection": _inspection,
+    "report": report_files,
     "tool-path": _tool_path,
     "curvature": _curvature,
 }

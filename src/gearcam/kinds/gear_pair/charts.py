@@ -19,7 +19,9 @@ from gearcam.numeric.arrays import Array
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
 
-_ANGLE: Final = "driver angle phi1, deg"
+DRIVER: Final = "driver angle phi1, deg"
+"""What charts and scenes call the driver's place."""
+
 _APART: Final = 1.5
 """Steps between points of contact of a pair that is not in contact between them."""
 
@@ -47,7 +49,7 @@ def _of_centrodes(
             for name, label in names.items()
             if name in table
         )
-    return Chart(title=title, x=_ANGLE, y=unit, lines=lines)
+    return Chart(title=title, x=DRIVER, y=unit, lines=lines)
 
 
 def _ratio(result: GearPairResult) -> Chart:
@@ -55,7 +57,7 @@ def _ratio(result: GearPairResult) -> Chart:
         table = result.motion(_phases(result))
         line = Line(label="rack", x=table["phi1_deg"], y=table["velocity_mm_per_rad"])
         title, unit = "Velocity of the rack", "velocity, mm/rad"
-        return Chart(title=title, x=_ANGLE, y=unit, lines=(line,))
+        return Chart(title=title, x=DRIVER, y=unit, lines=(line,))
     return _of_centrodes("Transmission ratio", "ratio i21", {"ratio": "ratio i21"}, result)
 
 
@@ -83,7 +85,7 @@ def _pressure_angle(result: GearPairResult) -> Chart:
     limit = limit_of(KIND, "pressure-angle", result.design.limits)
     return Chart(
         title="Pressure angle of the tooth force at the pitch point",
-        x=_ANGLE,
+        x=DRIVER,
         y="pressure angle, deg",
         lines=tuple(
             Line(label=f"driving {way}", x=np.degrees(phi1), y=np.degrees(alpha + sign * lean))
@@ -124,7 +126,7 @@ def _sliding(result: GearPairResult) -> Chart:
         lines.append(Line(label=label, x=np.insert(x, cuts, np.nan), y=np.insert(y, cuts, np.nan)))
     return Chart(
         title="Sliding on the driver's flank, tip outward, as designed",
-        x=_ANGLE,
+        x=DRIVER,
         y="sliding over the driver's speed, mm/rad",
         lines=tuple(lines),
     )

@@ -21,9 +21,10 @@ from gearcam.export.shared import (
 )
 from gearcam.kinds.gear_pair.columns import POINTS
 from gearcam.numerals import shown
+from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing, Placement
+    from gearcam.drawings import Drawing, Path, Placement
     from gearcam.export.dxf import DxfStyle
     from gearcam.kinds.gear_pair.build import GearPairResult
     from gearcam.parts.body import Part
@@ -54,19 +55,27 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
     return files | {"centrodes.csv": table_bytes(centrodes)}
 
 
-def _pair_drawing(result: GearPairResult) -> Drawing:
-    from gearcam.drawings import Path, pair_drawing
+def centrode_paths(result: GearPairResult) -> list[Path]:
+    """Return the centrodes of a `result` as chains, each in its wheel's own frame, driver first."""
+    from gearcam.drawings import Path
 
     lobes = result.law.lobes
     ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
     if result.pair.on_rack:
         ends[1] = result.centrode_angles()[-1]
-    centrodes = []
+    paths = []
     for gear, end in zip(result.gears, ends, strict=True):
         closed = gear.toothing.closed
         turn = np.linspace(0.0, end, 721)[: -1 if closed else None]
-        centrodes.append(Path(points=gear.centrode(turn), closed=closed))
-    return pair_drawing(result.parts, result.pair.shift, centrodes, placements=placements(result))
+        paths.append(Path(points=gear.centrode(turn), closed=closed))
+    return paths
+
+
+def _pair_drawing(result: GearPairResult) -> Drawing:
+    from gearcam.drawings import pair_drawing
+
+    paths = centrode_paths(result)
+    return pair_drawing(result.parts, result.pair.shift, paths, placements=placements(result))
 
 
 def placements(result: GearPairResult) -> tuple[Placement, Placement]:
@@ -161,5 +170,6 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "drawing-dxf": partial(_sheets, "dxf"),
     "drawing-svg": partial(_sheets, "svg"),
     "inspection": _inspection,
+    "report": report_files,
 }
 """What makes each kind of file: contents by name; what is measured on them is written down."""

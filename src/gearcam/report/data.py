@@ -1,0 +1,157 @@
+"""What a page draws, as data that JSON holds.
+
+Lengths are in mm, turns in rad, the driver's places in the unit of its axis; points are flat lists
+``x0, y0, x1, y1, ...``. Numbers are rounded far below what a screen or a print shows. What is no
+number is null.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam import drawings
+from gearcam.charts import Chart
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.scenes import SAGITTA, ContactPoints, MovingBody, Scene, extent
+
+_MM: Final = 4
+"""Decimals of lengths, mm: a tenth of a micrometre."""
+
+_RAD: Final = 7
+"""Decimals of turns, rad: less than a tenth of a micrometre at a radius of 1 m."""
+
+_DIGITS: Final = 6
+"""Digits of a chart's values, of the largest."""
+
+
+def scene_data(scene: Scene) -> dict[str, Any]:
+    """Return a scene as JSON holds it.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves.
+
+    Returns
+    -------
+    dict
+        ``driver``, the label of its axis; ``places``; ``closed``; ``start``; ``box``, the left,
+        bottom, right and top of all places; ``pitch``, flat points, or null; ``contacts`` by name,
+        each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or null; ``bodies``, each
+        with ``name`` and ``called``, ``metal`` and ``floor`` (closed chains, filled by the even-odd
+        rule), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y``
+        (a number where it never changes), and ``teeth`` (``[first, last]`` vertices of
+        ``metal[0]``) or null.
+    """
+    return {
+        "title": scene.title,
+        "driver": scene.driver,
+        "places": _rounded(scene.places, _MM),
+        "closed": scene.closed,
+        "start": scene.start,
+        "box": [round(value, _MM) for value in extent(scene)],
+        "bodies": [_body(body) for body in scene.bodies],
+        "contacts": {name: _contacts(one) for name, one in scene.contacts.items()},
+        "pitch": None if scene.pitch is None else _flat(scene.pitch),
+    }
+
+
+def _body(body: MovingBody) -> dict[str, Any]:
+    metal, floor, lines = [], [], []
+    for feature in body.features:
+        kind = feature.kind
+        for points, closed in drawings.chains(feature.shape, SAGITTA):
+            flat = _rounded(points.ravel(), _MM)
+            solid = kind in (*drawings.OUTER, *drawings.THROUGH, drawings.FOLLOWER)
+            if kind == drawings.OUTER_WALL or feature.metal:
+                floor.append(flat)
+            elif solid and closed:
+                metal.append(flat)
+            else:
+                dashed = kind in drawings.DASHED
+                lines.append({"layer": kind, "points": flat, "closed": closed, "dashed": dashed})
+    return {
+        "name": body.name,
+        "called": body.called,
+        "metal": metal,
+        "floor": floor,
+        "lines": lines,
+        "turn": _steady(body.turn, _RAD),
+        "x": _steady(body.shift.real, _MM),
+        "y": _steady(body.shift.imag, _MM),
+        "teeth": None if body.teeth is None else body.teeth.tolist(),
+    }
+
+
+def _contacts(contacts: ContactPoints) -> dict[str, Any]:
+    return {
+        "start": contacts.start.tolist(),
+        "x": _rounded(contacts.point.real, _MM),
+        "y": _rounded(contacts.point.imag, _MM),
+        "fx": _rounded(contacts.force.real, _DIGITS),
+        "fy": _rounded(contacts.force.imag, _DIGITS),
+        "teeth": None if contacts.teeth is None else contacts.teeth.tolist(),
+    }
+
+
+def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
+    """Return a chart as JSON holds it.
+
+    Parameters
+    ----------
+    name : str
+        Under which a result gives it.
+    chart : Chart
+        The chart.
+    driver : str
+        Label of the driver's axis; a chart over it moves with the parts.
+
+    Returns
+    -------
+    dict
+        ``name``, ``title``, ``x``, ``y`` (labels), ``moves``, ``range`` (of the vertical axis, with
+        the limits that are near), ``lines`` (``label``, ``x``, ``y``, ``dots``) and ``limits``
+        (``label``, ``value``, ``seen``).
+    """
+    low, high = chart.range
+    return {
+        "name": name,
+        "title": chart.title,
+        "x": chart.x,
+        "y": chart.y,
+        "moves": chart.x == driver,
+        "range": [low, high],
+        "lines": [
+            {"label": one.label, "x": _digits(one.x), "y": _digits(one.y), "dots": one.dots}
+            for one in chart.lines
+        ],
+        "limits": [
+            {"label": one.label, "value": one.value, "seen": low <= one.value <= high}
+            for one in chart.limits
+        ],
+    }
+
+
+def _steady(values: Array, decimals: int) -> list[float | None] | float:
+    return _rounded(values, decimals) if np.ptp(values) else round(float(values[0]), decimals)
+
+
+def _flat(points: Plane) -> list[float | None]:
+    return _rounded(np.ascontiguousarray(points).view(np.float64), _MM)
+
+
+def _digits(values: Array) -> list[float | None]:
+    """Return values in so many digits as the largest has."""
+    known = np.abs(values[np.isfinite(values)])
+    size = float(known.max(initial=0.0))
+    return _rounded(values, _DIGITS - math.ceil(math.log10(size)) if size else 0)
+
+
+def _rounded(values: Array, decimals: int) -> list[float | None]:
+    made = np.round(np.asarray(values, dtype=float), decimals) + 0.0  # no -0
+    if np.isfinite(made).all():
+        return made.tolist()
+    return [value if math.isfinite(value) else None for value in made.tolist()]

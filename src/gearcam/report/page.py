@@ -1,0 +1,150 @@
+"""The page: blocks from facts and findings, data for the script, all in one file.
+
+A *document* is what a page shows of one result, as JSON holds it: ``title``; ``blocks``, HTML by
+the name of the place where it stands; ``scene`` and ``charts`` (see `gearcam.report.data`). The
+page holds one and shows it when it is opened; a page that is served is given others.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.advice import remedies
+from gearcam.designs.kind import KINDS
+from gearcam.numerals import shown, size_of
+from gearcam.report.data import chart_data, scene_data
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+    from gearcam.findings import Finding
+    from gearcam.result import Result
+
+PAGE: Final = "report.html"
+"""Name of the file."""
+
+BLOCKS: Final = ("verdict", "findings", "files", "facts", "accuracy")
+"""Places of the page that are written from facts, each a template."""
+
+_HOME: Final = Path(__file__).parent
+
+_VERDICTS: Final = {
+    "error": "Do not cut this yet",
+    "warning": "Look before you cut",
+    "note": "Ready to cut",
+}
+"""What the worst finding means."""
+
+
+def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) -> bytes:
+    """Return a page.
+
+    Parameters
+    ----------
+    document : mapping
+        What it shows (see `document`).
+    live : mapping, optional
+        What the script needs of a server that gives it others; a page of its own where left out.
+
+    Returns
+    -------
+    bytes
+        HTML, UTF-8: scripts, styles and data are within.
+    """
+    return (
+        _templates()
+        .get_template("page.html")
+        .render(
+            document=document,
+            data=_embedded(document),
+            live=_embedded(live) if live else "",
+            style=_own("uPlot/uPlot.min.css", "page.css"),
+            script=_own("uPlot/uPlot.iife.min.js", "page.js"),
+        )
+        .encode()
+    )
+
+
+def document(result: Result, measured: Mapping[str, Any] = MappingProxyType({})) -> dict[str, Any]:
+    """Return what a page shows of a result.
+
+    Parameters
+    ----------
+    result : Result
+        Of any kind.
+    measured : mapping
+        What was measured on its files, by group of facts.
+
+    Returns
+    -------
+    dict
+        ``title``, ``kind``, ``blocks``, ``scene``, ``charts``.
+
+    Raises
+    ------
+    InfeasibleError
+        If the design cannot be made.
+    """
+    scene = KINDS[result.design.kind].room("scene").scene(result)
+    return {
+        "title": result.design.name,
+        "kind": result.design.kind,
+        "scene": scene_data(scene),
+        "charts": [chart_data(name, result.chart(name), scene.driver) for name in result.charts],
+        "blocks": blocks(result, measured),
+    }
+
+
+def blocks(result: Result, measured: Mapping[str, Any] = MappingProxyType({})) -> dict[str, str]:
+    """Return the HTML of every one of `BLOCKS`, told of a `result` and of what was `measured`."""
+    facts = result.facts_with(measured)
+    told = {
+        "title": result.design.name,
+        "facts": facts,
+        "findings": result.findings,
+        "verdict": _verdict(result.findings),
+        "remedies": remedies(result),
+        "files": {name: size_of(size) for name, size in result.sizes.items()},
+        "accuracy": facts.document.get("accuracy", {}),
+        "timings": result.timings,
+    }
+    return {name: _templates().get_template(f"{name}.html").render(told) for name in BLOCKS}
+
+
+def _verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
+    """Return the worst severity there is, a note where there is none, and what it means."""
+    found = {one.severity for one in findings}
+    worst = next((one for one in _VERDICTS if one in found), "note")
+    return worst, _VERDICTS[worst]
+
+
+@cache
+def _templates() -> Environment:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    templates = Environment(
+        loader=FileSystemLoader(_HOME),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters["shown"] = shown
+    return templates
+
+
+@cache
+def _own(*names: str) -> str:
+    """Return files of this folder, one after the other, as they stand."""
+    return "\n".join((_HOME / name).read_text(encoding="utf-8") for name in names)
+
+
+def _embedded(data: Any) -> str:
+    """Return data as JSON that no end of a script can hide in."""
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c")

@@ -1,0 +1,150 @@
+"""Scenes: parts that move, as data.
+
+A *scene* shows bodies while the driver goes through its *cycle*: a turn of a closed pair or of a
+cam, the travel of an open pair, the way of a cam that slides. A *body* is rigid: what it looks like
+is drawn once, in its own frame, and a placement for each *place* of the driver tells where it
+stands. What moves with no body, the points of contact and the pitch point, is told in the fixed
+frame. The folder of a kind makes its scene from the arrays of a result (see
+`gearcam.designs.kind`); nothing here knows what moves.
+
+Refused: arrays that do not belong to the places.
+
+Depends on drawings, numpy only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from gearcam.display import Brief
+from gearcam.drawings import Feature, chains
+from gearcam.numeric.arrays import Array, Ints, Plane
+
+PLACES: Final = 720
+"""Steps of the driver in a cycle, and one more place for its end."""
+
+SAGITTA: Final = 1e-3
+"""Chord error of arcs and circles in a scene, mm; outlines keep their own."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MovingBody(Brief):
+    """A rigid body.
+
+    Parameters
+    ----------
+    name : str
+        As its part is called; ``follower`` of a follower.
+    called : str
+        For people.
+    features : tuple of Feature
+        What it looks like, in its own frame; what is drawn later lies on top.
+    turn : (n,) array, rad
+        Counter-clockwise at each place, without jumps.
+    shift : (n,) complex array, mm
+        Place of its origin.
+    teeth : (k, 2) array of int
+        First and last vertex of each tooth on its outline, tooth 1 first; the last is the smaller
+        where a tooth lies over the outline's start. None where nothing contacts tooth by tooth.
+    """
+
+    name: str
+    called: str
+    features: tuple[Feature, ...]
+    turn: Array
+    shift: Plane
+    teeth: Ints | None = None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ContactPoints(Brief):
+    """Where bodies touch, in the fixed frame, place after place.
+
+    Parameters
+    ----------
+    start : (n + 1,) array of int
+        The rows of place k are ``start[k]`` to ``start[k + 1]``, the last excluded.
+    point : (m,) complex array, mm
+        Points of contact.
+    force : (m,) complex array
+        Unit direction in which the first body presses there: the line of action.
+    teeth : (m, 2) array of int
+        Teeth that touch, of the first and the second body, from 1; none where bodies have none.
+    """
+
+    start: Ints
+    point: Plane
+    force: Plane
+    teeth: Ints | None = None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Scene(Brief):
+    """Bodies over a cycle of the driver.
+
+    Parameters
+    ----------
+    title : str
+        What is seen.
+    driver : str
+        The driver's place with its unit, as charts call their axis: ``driver angle phi1, deg``.
+    places : (n,) array
+        Of the driver, rising, in that unit; the last is the end of the cycle.
+    closed : bool
+        Whether the cycle repeats: its end is the next one's beginning.
+    start : float
+        The place that is shown first.
+    bodies : tuple of MovingBody
+        What moves, and what stands; what comes later lies on top.
+    contacts : mapping of str to ContactPoints
+        Points of contact by what they are.
+    pitch : (n,) complex array, mm, optional
+        The pitch point.
+    """
+
+    title: str
+    driver: str
+    places: Array
+    closed: bool
+    start: float = 0.0
+    bodies: tuple[MovingBody, ...]
+    contacts: Mapping[str, ContactPoints] = field(default_factory=dict)
+    pitch: Plane | None = None
+
+    def __post_init__(self) -> None:
+        for body in self.bodies:
+            if not body.turn.shape == body.shift.shape == self.places.shape:
+                raise ValueError(f"{body.name}: a placement for each place of the driver")
+        for name, contacts in self.contacts.items():
+            if len(contacts.start) != len(self.places) + 1:
+                raise ValueError(f"{name}: a row of contacts for each place of the driver")
+
+
+def still(features: tuple[Feature, ...], places: Array) -> MovingBody:
+    """Return the `features` that do not move, a body named ``frame``, over all `places`."""
+    turn, shift = np.zeros(len(places)), np.zeros(len(places), dtype=np.complex128)
+    return MovingBody(name="frame", called="frame", features=features, turn=turn, shift=shift)
+
+
+def extent(scene: Scene) -> tuple[float, float, float, float]:
+    """Return the box of a `scene` in every place: left, bottom, right, top, mm.
+
+    It holds the circles that turning bodies sweep, so that nothing leaves it on the way.
+    """
+    low, high = [], []
+    for body in scene.bodies:
+        points = np.vstack([p for f in body.features for p, _ in chains(f.shape, SAGITTA)])
+        if np.ptp(body.turn) > 0.0:
+            size = float(np.hypot(*points.T).max()) * np.ones(2)
+            near, far = -size, size
+        else:
+            near, far = points.min(axis=0), points.max(axis=0)
+        way = body.shift.view(np.float64).reshape(-1, 2)
+        low.append(near + way.min(axis=0))
+        high.append(far + way.max(axis=0))
+    (left, bottom), (right, top) = np.min(low, axis=0), np.max(high, axis=0)
+    return float(left), float(bottom), float(right), float(top)
