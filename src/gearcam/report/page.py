@@ -41,7 +41,12 @@ _VERDICTS: Final = {
 """What the worst finding means."""
 
 
-def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) -> bytes:
+def page(
+    document: Mapping[str, Any],
+    *,
+    live: Mapping[str, Any] | None = None,
+    solids: Mapping[str, str] | None = None,
+) -> bytes:
     """Return a page.
 
     Parameters
@@ -50,6 +55,8 @@ def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) 
         What it shows (see `document`).
     live : mapping, optional
         What the script needs of a server that gives it others; a page of its own where left out.
+    solids : mapping, optional
+        A view of them (see `gearcam.report.solids`).
 
     Returns
     -------
@@ -63,8 +70,10 @@ def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) 
             document=document,
             data=_embedded(document),
             live=_embedded(live) if live else "",
-            style=_own("uPlot/uPlot.min.css", "page.css"),
-            script=_own("uPlot/uPlot.iife.min.js", "page.js"),
+            solids=solids or {},
+            view=_embedded((solids or {}).get("view", "")),
+            style=_own("uPlot/uPlot.min.css", "page.css", "solids.css"),
+            script=_own("uPlot/uPlot.iife.min.js", "page.js", "solids.js"),
         )
         .encode()
     )
