@@ -31,6 +31,17 @@ PAGE: Final = "report.html"
 BLOCKS: Final = ("verdict", "findings", "files", "facts", "accuracy")
 """Places of the page that are written from facts, each a template."""
 
+SCRIPTS: Final = (
+    "uPlot/uPlot.iife.min.js",
+    "scene.js",
+    "parts.js",
+    "saves.js",
+    "charts.js",
+    "page.js",
+    "solids.js",
+)
+"""What is the page's script, each part after those that it needs."""
+
 _HOME: Final = Path(__file__).parent
 
 _VERDICTS: Final = {
@@ -73,7 +84,8 @@ def page(
             solids=solids or {},
             view=_embedded((solids or {}).get("view", "")),
             style=_own("uPlot/uPlot.min.css", "page.css", "solids.css"),
-            script=_own("uPlot/uPlot.iife.min.js", "page.js", "solids.js"),
+            script=_own(*SCRIPTS),
+            licence=_own("uPlot/LICENSE"),
         )
         .encode()
     )
@@ -119,7 +131,7 @@ def blocks(result: Result, measured: Mapping[str, Any] = MappingProxyType({})) -
         "verdict": _verdict(result.findings),
         "remedies": remedies(result),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
-        "accuracy": facts.document.get("accuracy", {}),
+        "errors": _errors(facts.document.get("accuracy", {})),
         "timings": result.timings,
     }
     return {name: _templates().get_template(f"{name}.html").render(told) for name in BLOCKS}
@@ -130,6 +142,12 @@ def _verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
     found = {one.severity for one in findings}
     worst = next((one for one in _VERDICTS if one in found), "note")
     return worst, _VERDICTS[worst]
+
+
+def _errors(accuracy: Mapping[str, Any]) -> dict[str, str]:
+    """Return how each error is known, by the name of its fact."""
+    how = accuracy.get("how", {})
+    return {f"accuracy.{name}": how.get(name, "") for name in accuracy if name != "how"}
 
 
 @cache

@@ -53,7 +53,7 @@
 
   function paint(inside) {
     let count = 0;
-    inside.scene.background.set(dark.matches ? 0x16181c : 0xffffff);
+    inside.scene.background.set(dark.matches ? 0x1a2027 : 0xffffff);
     inside.tracklight.intensity = 1.1;
     inside.scene.traverse((one) => {
       if (!one.isMesh) return;
