@@ -177,6 +177,11 @@ KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
 
 
+def all_formats() -> tuple[str, ...]:
+    """Return every kind of file that a design of some kind can give."""
+    return tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
+
+
 def _names() -> tuple[str, ...]:
     return _folders(tuple(importlib.import_module(_HOME).__path__))
 

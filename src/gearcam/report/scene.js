@@ -135,7 +135,7 @@ function columnOf(toothed, body) {
 }
 
 function* bodyMarks(body, pose, tone) {
-  const ink = body.name === "frame" ? "text" : `ink-${tone}`;
+  const ink = body.ink ?? (body.name === "frame" ? "text" : `ink-${tone}`);
   yield { chains: body.metal, closed: true, fill: `fill-${tone}`, ink, pose };
   yield { chains: body.floor, closed: true, fill: `floor-${tone}`, ink, pose };
   for (const line of body.lines.filter((one) => !one.dashed)) {
