@@ -7,7 +7,8 @@ names it, and only that of a file is loaded. Its modules:
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
 - `facts`: ``facts(result, measured)`` returns what is known of it;
 - `files`: ``FILES``, what makes each kind of file; where it has ``report`` among them,
-  ``assembled(result, measured)`` returns its solids where they stand;
+  ``assembled(result, measured)`` returns its solids where they stand and ``framed(result)`` what
+  a notebook shows;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
 - `advice`: ``ways(...)`` yields changes that may help where it is refused or has errors;
 - `public`: in its ``__all__`` the classes that people who write Python make designs of (the

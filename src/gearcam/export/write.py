@@ -235,7 +235,14 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def write_new(path: str | os.PathLike[str], text: str) -> None:
-    """Write the `text` of a new file at a `path`.
+    """Write a file that is not there yet.
+
+    Parameters
+    ----------
+    path : path
+        Where.
+    text : str
+        Its content.
 
     Raises
     ------
