@@ -27,7 +27,7 @@ def build(name: str, **changes: Any) -> Any:
 def bodies_of(view: str) -> dict[str, Any]:
     """The meshes in a view, by name, where they stand."""
     (data,) = re.findall(r'base64_data="([^"]+)"', view)
-    scene = trimesh.load(
+    scene: Any = trimesh.load(
         file_obj=trimesh.util.wrap_as_stream(base64.b64decode(data)), file_type="glb"
     )
     found = {}

@@ -13,7 +13,7 @@ import gearcam
 from gearcam.cli import main
 from gearcam.compare.page import _over, document, joined
 from gearcam.compare.table import lines, rows
-from gearcam.compare.variants import settings_of, variants_of
+from gearcam.compare.variants import Variant, settings_of, variants_of
 from gearcam.errors import DesignError
 from helpers_pairs import PROFILES
 
@@ -199,6 +199,11 @@ def test_limits_that_differ_are_told_of_whom() -> None:
     assert len(joined("pressure_angle", variants_of([ELLIPSE], THREE)).limits) == 1
 
 
+def moved(variant: Variant, phi1: np.ndarray) -> Any:
+    result: Any = variant.result
+    return result.motion(phi1)
+
+
 def test_outlines_are_laid_over_each_other_and_each_moves_by_its_own_law() -> None:
     variants = variants_of([ELLIPSE], {**THREE, **COARSE})
     scene = document(variants, "three")["scene"]
@@ -208,7 +213,7 @@ def test_outlines_are_laid_over_each_other_and_each_moves_by_its_own_law() -> No
     places = np.radians(np.array(scene["places"]))
     for body, variant in zip(gears, variants, strict=True):
         turn = np.array(body["turn"])
-        wanted = variant.result.motion(places)["phi2_deg"]
+        wanted = moved(variant, places)["phi2_deg"]
         np.testing.assert_allclose(np.degrees(turn - turn[0]), wanted - wanted[0], atol=1e-4)
         chains = body["metal"] or [line["points"] for line in body["lines"] if line["closed"]]
         assert max(map(len, chains)) > 500
@@ -226,7 +231,7 @@ def test_ways_of_different_length_are_shown_over_the_longest() -> None:
     gears = [one for one in scene["bodies"] if one["name"] == "gear2"]
     for body, variant, end in zip(gears, variants, ends, strict=True):
         turn = np.degrees(np.array(body["turn"]))
-        wanted = variant.result.motion(np.radians(np.minimum(places, end)))["phi2_deg"]
+        wanted = moved(variant, np.radians(np.minimum(places, end)))["phi2_deg"]
         np.testing.assert_allclose(turn - turn[0], wanted - wanted[0], atol=0.01)  # between places
 
 
@@ -235,7 +240,7 @@ def test_what_repeats_goes_on_where_another_is_still_on_its_way() -> None:
     assert variant.scene is not None
     places = np.linspace(0.0, 900.0, 1801)
     body = next(one for one in _over(variant.scene, places).bodies if one.name == "gear2")
-    wanted = variant.result.motion(np.radians(places))["phi2_deg"]
+    wanted = moved(variant, np.radians(places))["phi2_deg"]
     np.testing.assert_allclose(np.degrees(body.turn - body.turn[0]), wanted - wanted[0], atol=1e-3)
 
 
