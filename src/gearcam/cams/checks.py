@@ -128,13 +128,12 @@ def _stretches(pairs: list[tuple[float, float]], told: Callable[[float], str]) -
 def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
     """Yield place, jump and unit of every knot whose derivative of this order jumps."""
     lead = cam.motions[0]
-    swings = lead.mechanism.oscillating
-    driver = lead.mechanism.driver
-    unit = ("deg/" if swings else "mm/") + driver.per + ("2" if order == 2 else "")
+    driver, (scale, unit) = lead.mechanism.driver, lead.mechanism.outward
+    unit = f"{unit}/{driver.per}{order if order > 1 else ''}"
     for jump in lead.program.jumps:
         if jump.order == order:
-            by = (jump.after - jump.before) / driver.rate**order
-            yield f"at {driver.told(jump.theta)}", math.degrees(by) if swings else by, unit
+            by = scale * (jump.after - jump.before) / driver.rate**order
+            yield f"at {driver.told(jump.theta)}", by, unit
 
 
 @check("hard-shock", kind=KIND)

@@ -153,6 +153,11 @@ class Mechanism(Brief):
         return (self.arm or self.pivot) if self.oscillating else 1.0
 
     @property
+    def outward(self) -> tuple[float, str]:
+        """What turns a lift, mm or rad, into what people are told, and the unit: mm or deg."""
+        return (math.degrees(1.0), "deg") if self.oscillating else (1.0, "mm")
+
+    @property
     def below(self) -> bool:
         """Whether a round follower stands below the axis, and comes nearer as it rises."""
         return not (self.flat or self.slide) and self.start < 0.0

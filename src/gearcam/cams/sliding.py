@@ -125,11 +125,8 @@ class SlidingCam(Brief, Cam):
     @cached_property
     def facts(self) -> Facts:
         """What the cam knows of itself; the facts of its result tell more."""
-        low, high = self.motion.program.range
-        swings = self.motion.mechanism.oscillating
-        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
         tree = {
-            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "total_lift": self.motion.total_lift,
             "way_mm": Fact(self.way, "way"),
             "area_mm2": self.edge.moments.area,
         }

@@ -30,15 +30,12 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 
-RIM: Final = 2.7
-"""Rim below the roots, in modules, where the design gives none: 1.2 tooth depths."""
-
 _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
 
 
-_FINE: Final = 1e-4
-"""Sagitta of chords that stand for openings when it is asked what they meet, modules."""
+_FINE: Final = 4e-5
+"""Sagitta of chords that stand for openings when it is asked what they meet, in rims."""
 
 _RIMS: Final = 32
 """Chords of a quarter of a circle around the outline's corners."""
@@ -59,8 +56,8 @@ class Workpiece:
     ----------
     name : str
         What a person calls it.
-    module : float, mm
-        Sizes that the design leaves open follow it.
+    rim : float, mm
+        What lightening holes leave below the edge where the design gives none.
     travel : float or None, rad
         How far an open wheel turns; None for a closed one.
     wheel : int or None
@@ -68,7 +65,7 @@ class Workpiece:
     """
 
     name: str
-    module: float
+    rim: float
     travel: float | None = None
     wheel: int | None = None
 
@@ -146,7 +143,7 @@ def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> P
     from shapely import Polygon, intersection_all
 
     regions = [
-        Polygon(edge.points(_FINE * work.module), [hole.points(_FINE * work.module) for hole in at])
+        Polygon(edge.points(_FINE * work.rim), [hole.points(_FINE * work.rim) for hole in at])
         for edge, at in zip(edges, [[hole] for hole in inner] or [[]] * len(edges), strict=True)
     ]
     made: Any = intersection_all(regions)
@@ -215,7 +212,7 @@ def demand_apart(
     """
     from shapely import Polygon
 
-    edges = [opening.shape.points(_FINE * work.module) for opening in found]
+    edges = [opening.shape.points(_FINE * work.rim) for opening in found]
     regions = [Polygon(edge) for edge in edges]
     for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
         if not solid.contains(region):
@@ -340,7 +337,7 @@ def _lightening(
     """Yield the largest circle in each sector that keeps rim and web."""
     from shapely import Point, Polygon, maximum_inscribed_circle, union_all
 
-    rim = blank.rim if blank.rim is not None else RIM * work.module
+    rim = blank.rim if blank.rim is not None else work.rim
     web = blank.web if blank.web is not None else rim
     count = blank.lightening_holes
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)

@@ -156,8 +156,7 @@ class CamResult(Result):
         driver = self.mechanism.driver
         motions, walls = self.cam.motions, self.cam.walls
         found = motions[0].motion(theta)
-        oscillating = self.design.follower.oscillating
-        unit, scale = ("deg", math.degrees(1.0)) if oscillating else ("mm", 1.0)
+        scale, unit = self.mechanism.outward
         names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
         columns = {
             driver.column: driver.scale * theta,

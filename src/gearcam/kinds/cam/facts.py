@@ -61,13 +61,12 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
 def _motion(result: CamResult) -> Tree:
     """Lift in mm or deg; what jumps has a peak, what is infinite has none."""
     program, driver = result.program, result.mechanism.driver
-    swings = result.design.follower.oscillating
-    scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+    scale, unit = result.mechanism.outward
     low, high = program.range
     return {
         "unit": unit,
         "lift": Fact(extent(low, high, scale), "lift", unit=unit, shown=True),
-        "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+        "total_lift": result.cam.motions[0].total_lift,
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
         "deviation": _deviation(program, scale, unit),
         **{
@@ -108,6 +107,7 @@ def _cam(result: CamResult) -> Tree:
         **result.form.sizes(result),
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": pressure(result, result.cam.motions[0]),
+        "lost_motion": _lost_motion(result),
         **result.form.facts(result),
     }
 
@@ -145,6 +145,16 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
             )
             made[kind] = Fact(ends_of(found, math.degrees(1.0)), unit="deg")
     return made
+
+
+def _lost_motion(result: CamResult) -> Fact | None:
+    """Return what the follower moves while the cam stands still, if two walls hold it."""
+    lost, mechanism = result.cam.lost_motion, result.mechanism
+    if lost is None:
+        return None
+    scale, unit = mechanism.outward
+    place = mechanism.driver.seen(lost.theta)
+    return Fact(scale * lost.value, "lost motion", place=place, unit=unit, shown=True)
 
 
 def _part(result: CamResult) -> Tree | list[Tree]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from pathlib import Path
 from typing import Any
@@ -103,7 +102,7 @@ def followed(
     mirrored = motion.clockwise and not motion.mechanism.slide
     side = np.array([-1.0 if mirrored else 1.0, 1.0])
     found = follow(outline * side, motion.mechanism, theta)
-    scale, unit = (math.degrees(1.0), "deg") if motion.mechanism.oscillating else (1.0, "mm")
+    scale, unit = motion.mechanism.outward
     asked = motion.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
     columns = {

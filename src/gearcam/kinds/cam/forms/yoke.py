@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.cams.disc import CHORD_TOLERANCE
-from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.yoke import YokeCam, make_yoke
 from gearcam.designs.faults import Fault, show
 from gearcam.drawings import FOLLOWER, Feature, placed
 from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Fact
 from gearcam.kinds.cam.forms.base import FORMS
-from gearcam.kinds.cam.forms.disc import Disc
+from gearcam.kinds.cam.forms.disc import Disc, disc_cam
 from gearcam.laws.half_turns import agreeing, completed, miss
 from gearcam.laws.phases_of_lift import fill_half
 from gearcam.laws.program import Program, make_program
@@ -65,12 +63,7 @@ class Yoke(Disc):
 
     def make(self, design: CamDesign, program: Program) -> YokeCam:
         """Return the cam."""
-        return make_yoke(
-            program,
-            make_mechanism(design.follower, design.cam),
-            clockwise=design.cam.clockwise,
-            tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
-        )
+        return make_yoke(disc_cam(design, program))
 
     def picture(self, result: CamResult) -> Drawing:
         """Return the plate, turned, between both sides of its follower."""
