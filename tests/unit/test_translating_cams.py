@@ -167,6 +167,15 @@ def test_the_motion_is_told_along_the_way() -> None:
     assert result.facts["motion.peak_velocity"] == pytest.approx(0.75)
 
 
+@pytest.mark.parametrize("ways", [-1e-3, [0.0, 170.001], math.inf])
+def test_ways_beyond_the_cam_are_refused(ways: float | list[float]) -> None:
+    result = built(ONE)
+    for table in (result.motion, result.contact):
+        with pytest.raises(DesignError, match="mm, from 0 to 170"):
+            table(ways)
+    np.testing.assert_array_equal(result.motion([0.0, 170.0 + 1e-12])["lift_mm"], 0.0)
+
+
 def test_contact_in_both_frames() -> None:
     result = built(FILE)
     for wall, side in (("lower", 1.0), ("upper", -1.0)):
@@ -266,12 +275,37 @@ def test_files_of_a_groove(tmp_path: Path) -> None:
         ET.fromstring(result.files(kind)[name])
     file = tmp_path / "lower.csv"
     file.write_bytes(result.files("csv")["profile_lower.csv"])
-    found = result.follow(file).columns
-    np.testing.assert_allclose(found["s"], found["s_asked"], atol=0.04)
+    for profile, wall in ((file, None), (result.cam.walls[1].outline, "upper")):
+        study = result.follow(profile, wall=wall)
+        np.testing.assert_allclose(study.columns["difference"], 0.0, atol=1.2e-3)
+        assert study.columns["error"].max() < 2e-3  # a dwell's long chord is straight
+    codes = [one.code for one in result.follow(result.cam.walls[1].outline).findings]
+    assert "other-profile" in codes
     drawing = tmp_path / "cam.dxf"
     drawing.write_bytes(result.files("dxf")["cam.dxf"])
     with pytest.raises(DesignError, match="one closed outline"):
         result.follow(drawing)
+
+
+SWUNG = (
+    ('motion = "translating"', 'motion = "oscillating"\narm_mm = 60\npivot_distance_mm = 50'),
+    ("radius_mm = 6", "radius_mm = 6\npivot_height_mm = 3"),
+    ("lift_mm = 15", "lift_deg = 15"),
+)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [(("radius_mm = 6", "radius_mm = 6\naxis_deg = 12"),), SWUNG],
+    ids=["leans", "swings"],
+)
+def test_both_walls_are_followed(changes: tuple[tuple[str, str], ...]) -> None:
+    result = built(FILE, *changes)
+    assert len(result.cam.walls) == 2
+    for wall in result.cam.walls:
+        study = result.follow(wall.outline, wall=wall.key)
+        lever = math.radians(60.0) if changes is SWUNG else 1.0
+        assert np.abs(study.columns["difference"]).max() * lever < 1.5e-3
 
 
 def test_a_profile_is_followed() -> None:

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.cams.spec import FOLLOWED, POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.cams.spec import KIND as CAM_KIND
-from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import home_of
 from gearcam.designs.faults import Fault, show
@@ -251,7 +251,7 @@ KIND: Final = DesignKind(
     later=_later,
     formats=CAM_FORMATS,
     rooms=("gearcam.cams.checks", "gearcam.parts.checks"),
-    checks=(CAM_KIND, PARTS_KIND),
+    checks=(CAM_KIND, PARTS_KIND, FOLLOWED),
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
