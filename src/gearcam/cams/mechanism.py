@@ -234,7 +234,10 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
     low, high = abs(pivot - arm), pivot + arm
     if not low < size < high:
         what, parts = "the arm cannot reach the prime circle", "arm and pivot"
-        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high)
+        key, least = "follower.pivot_distance_mm", abs(arm - size)
+        near = least if pivot <= least else arm + size
+        way = Way(near={key: near}, far={key: max(arm, size)})
+        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, way)
     return Mechanism(start=swing(pivot, arm, size), arm=arm, pivot=pivot, **kind)
 
 

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
 
-
 _FINE: Final = 4e-5
 """Sagitta of chords that stand for openings when it is asked what they meet, in rims."""
 
@@ -62,12 +61,15 @@ class Workpiece:
         How far an open wheel turns; None for a closed one.
     wheel : int or None
         1 or 2; None of what stands alone.
+    within : str
+        What its openings keep within, in words.
     """
 
     name: str
     rim: float
     travel: float | None = None
     wheel: int | None = None
+    within: str = "the outline"
 
     def key(self, name: str) -> str:
         """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""
@@ -216,7 +218,7 @@ def demand_apart(
     regions = [Polygon(edge) for edge in edges]
     for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
         if not solid.contains(region):
-            raise _no_room(opening, solid, "the outline", work, blank.widening)
+            raise _no_room(opening, solid, work.within, work, blank.widening)
         away = np.hypot(*edge.T)
         if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
             raise _no_room(opening, solid, "the edge of the hub", work, blank.widening)
@@ -228,6 +230,8 @@ def demand_apart(
 _SMALLER: Final = (
     ("bolt", "bolt_diameter_mm", 0.1),
     ("bolt", "bolt_circle_mm", 0.1),
+    ("bolt", "bolt_height_mm", 0.1),
+    ("bolt", "bolt_spacing_mm", 0.1),
     ("hub", "hub_diameter_mm", 0.1),
     ("bore", "bore_diameter_mm", 0.1),
 )
@@ -240,16 +244,14 @@ def _no_room(
     """Return the refusal of what meets something; diameters as the design gives them."""
     from shapely import Point
 
-    shape, value, limit = opening.shape, None, None
-    nearest = "each needs a place of its own"
-    if isinstance(shape, Circle) and what == "the outline":
+    shape, value, limit, nearest = opening.shape, None, None, "each needs a place of its own"
+    if isinstance(shape, Circle) and what == work.within:
         center = Point(*shape.center)
         inside = solid.contains(center)
         value = shape.diameter - widening
         limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
-        nearest = "its middle lies outside the roots"
-        if limit:
-            nearest = "the limit is the room around its middle"
+        outside = f"its middle does not lie within {what}"
+        nearest = "the limit is the room around its middle" if limit else outside
     return work.refusal(
         f"the {opening.name} meets {what}",
         value=value,

@@ -44,11 +44,11 @@ def disc_cam(design: CamDesign, program: Program) -> DiscCam:
     )
 
 
-def workpiece(name: str, thickness: float) -> Workpiece:
-    """Return what the blank of a cam is made into: its `name`, and its `thickness`, mm."""
+def workpiece(name: str, thickness: float, within: str = "the outline") -> Workpiece:
+    """Return what a blank becomes: its `name`, `thickness`, mm, what openings keep `within`."""
     from gearcam.parts.openings import Workpiece
 
-    return Workpiece(name=name, rim=_RIM_PART * thickness)
+    return Workpiece(name=name, rim=_RIM_PART * thickness, within=within)
 
 
 def plate_part(

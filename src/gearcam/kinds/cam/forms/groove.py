@@ -99,7 +99,7 @@ class Groove(Form):
                 [contour],
                 thickness,
                 result.design.blank,
-                workpiece(STEM, thickness),
+                workpiece(STEM, thickness, within="the groove's inner wall"),
                 recesses=recesses,
                 room=[*within, result.profiles[0]],
             ),
