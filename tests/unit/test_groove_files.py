@@ -128,6 +128,19 @@ def test_files_of_a_groove() -> None:
 FILE_DESIGN = read()
 
 
+def test_an_unknown_key_is_answered_with_those_of_the_form() -> None:
+    for table, key, known, foreign in (
+        ("cam", "foo", "roller_clearance_mm", "run_in_mm"),
+        ("follower", "foo", "roller2_radius_mm", "pivot_height_mm"),
+        ("output", "foo", "motion_step_deg", "way_step_mm"),
+    ):
+        with pytest.raises(DesignError) as caught:
+            FILE_DESIGN.with_({f"{table}.{key}": 1})
+        (problem,) = caught.value.problems
+        assert known in problem.allowed.split(", ")
+        assert foreign not in problem.allowed.split(", ")
+
+
 def test_contact_of_each_wall() -> None:
     result = gearcam.build(FILE_DESIGN)
     inner, outer = result.contact(), result.contact(wall="outer")
@@ -185,7 +198,12 @@ def test_the_paths_of_a_smaller_tool_keep_to_the_walls() -> None:
         ("outer_diameter_mm = 110\n", "", "cam.outer_diameter_mm", "is missing for a groove cam"),
         ("groove_depth_mm = 12\n", "", "cam.groove_depth_mm", "is missing for a groove cam"),
         ("depth_mm = 12", "depth_mm = 20", "cam.groove_depth_mm", "no floor.*thickness of 20 mm"),
-        ("_mm = 6", "_mm = 6\nroller2_radius_mm = 6", "follower.roller2_radius_mm", "another rad"),
+        (
+            "_mm = 6",
+            "_mm = 6\nroller2_radius_mm = 6",
+            "follower.roller2_radius_mm",
+            "6.0: is.*another",
+        ),
         ('"front"', '"left"', "cam.side", '"front" or "back"'),
         ('"roller"\nroller_radius_mm = 6', '"point"', "follower.type", '"roller"'),
         ("bore_dia", "clearance_mm = 0.1\nbore_dia", "blank.clearance_mm", "roller_clearance_mm"),

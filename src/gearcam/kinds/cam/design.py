@@ -19,7 +19,7 @@ from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_fau
 from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
 from gearcam.kinds.cam.blank import CamBlank
-from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_schema
+from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_keys, form_schema
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
@@ -248,6 +248,7 @@ KIND: Final = DesignKind(
     one_of={"cam": ("prime_radius_mm", "base_radius_mm", {"form": SLIDING})},
     conditions={"cam": partial(form_schema, "cam", CamSpec)},
     rules=_rules,
+    listed=form_keys,
     later=_later,
     formats=CAM_FORMATS,
     rooms=("gearcam.cams.checks", "gearcam.parts.checks"),

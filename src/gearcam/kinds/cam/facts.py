@@ -95,6 +95,7 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
 def _cam(result: CamResult) -> Tree:
     design, mechanism = result.design, result.mechanism
     given, swings = design.follower, mechanism.oscillating
+    takes = result.form.takes["follower"]
     return {
         "form": design.cam.form,
         "follower": f"{given.motion} {given.type}",
@@ -103,7 +104,7 @@ def _cam(result: CamResult) -> Tree:
         "pivot_distance_mm": given.pivot_distance,
         "arm_mm": given.arm,
         "face_offset_mm": given.face_offset or None,
-        "offset_mm": None if swings or mechanism.slide else given.offset,
+        "offset_mm": None if swings or "offset" not in takes else given.offset,
         **result.form.sizes(result),
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": pressure(result, result.cam.motions[0]),

@@ -49,7 +49,8 @@ class Groove(Form):
             message = f"{show(follower.type)}: a groove holds a roller"
             yield Fault(("follower", "type"), message, follower.type, '"roller"')
         if follower.roller2_radius == follower.roller_radius:
-            message = "is that of the first roller: each of two needs its own room in the groove"
+            message = f"{show(follower.roller2_radius)}: is that of the first roller: each of two "
+            message += "needs its own room in the groove"
             rule = "another radius, or one roller"
             yield Fault(("follower", "roller2_radius_mm"), message, follower.roller_radius, rule)
         if cam.groove_depth >= cam.thickness:
