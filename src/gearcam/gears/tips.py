@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
 
@@ -26,6 +27,10 @@ ROUGH = 1e3
 
 _STEPS = 25
 """Steps of Newton's method; four or five serve where curves do cross."""
+
+_PAST = 0.5
+"""Share of its last step that a place has to be past an end for its crossing to be so too: each
+step of Newton's method is much shorter than the one before."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -54,6 +59,13 @@ class TipEnds(Brief):
     height: Array
     full: Mask
 
+    def replaced(self, which: Ints, ends: TipEnds) -> TipEnds:
+        """Return the same with other ends of some flanks."""
+        made = deepcopy(self)
+        made.phi[which], made.foot[which] = ends.phi, ends.foot
+        made.height[which], made.full[which] = ends.height, ends.full
+        return made
+
 
 def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> TipEnds:
     """Find where flanks meet the addendum curve, the parallel of the centrode at the addendum.
@@ -78,7 +90,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     allowed reach; the others are searched in their bracket.
     """
     addendum = toothing.cutter.addendum
-    phi, foot, height = _quick(toothing, sf, sigma)
+    phi, foot, height = _quick(toothing, sf, sigma, highest)
     reach = sigma * (sf - toothing.track.arc_length(phi))
     full = np.isfinite(height) & (reach > 0.0) & (reach <= highest)
     full &= np.abs(toothing.track.arc_length(foot) - sf) <= _around(toothing)
@@ -90,7 +102,9 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     return TipEnds(phi=phi, foot=foot, height=height, full=full)
 
 
-def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, Array]:
+def _quick(
+    toothing: Toothing, sf: Array, sigma: Array, highest: Array
+) -> tuple[Array, Array, Array]:
     """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
@@ -100,8 +114,11 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
         slide = base.speed * (1.0 + base.kappa * addendum) * base.t
         return base.p + addendum * w * base.t, slide
 
+    def past(s: Array) -> Array:
+        return sigma * (sf - s) - highest
+
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess))
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), past)
     return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
 
 
@@ -122,6 +139,7 @@ def cross(
     one: _Way,
     two: _Way,
     phi: Array,
+    past: Callable[[Array], Array] | None = None,
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
@@ -133,6 +151,9 @@ def cross(
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
         Driver angles to begin with, on both.
+    past : callable, optional
+        ``past(s)`` returns how far arc lengths on the first curve are past its end, mm: crossings
+        there are given up as soon as they are seen to be, which leaves a miss.
 
     Returns
     -------
@@ -142,16 +163,20 @@ def cross(
         How far their points are apart one step before.
     """
     miss = np.full(phi.shape[1:], np.inf, dtype=complex)
+    before, sought = miss.real, np.ones(miss.shape, dtype=bool)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(_STEPS):
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
-            miss = p - q
+            miss, s = p - q, frames.s[0]
+            if past is not None:
+                sought &= past(s) <= _PAST * np.abs(s - before)
+                before = s
             # both steps over one determinant: the curves' directions against each other
             steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
             steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
             phi = phi + np.where(np.isfinite(steps).all(axis=0), steps, 0.0)
-            if not np.any(np.abs(miss) > near(toothing)):
+            if not np.any(sought & (np.abs(miss) > near(toothing))):
                 break
     return phi[0], phi[1], np.abs(miss)
 
