@@ -25,12 +25,9 @@ fastest, along an ellipse of eccentricity 0.99, so far."""
 ROUGH = 1e3
 """Times that distance within which curves meet that Newton's method has no better place of."""
 
-_STEPS = 25
-"""Steps of Newton's method; four or five serve where curves do cross."""
-
-_PAST = 0.5
-"""Share of its last step that a place has to be past an end for its crossing to be so too: each
-step of Newton's method is much shorter than the one before."""
+_STEPS, _USUAL = 25, 6
+"""Steps of Newton's method; those that serve where curves do cross, after which nothing is sought
+any longer that is not where it is wanted."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -114,11 +111,12 @@ def _quick(
         slide = base.speed * (1.0 + base.kappa * addendum) * base.t
         return base.p + addendum * w * base.t, slide
 
-    def past(s: Array) -> Array:
-        return sigma * (sf - s) - highest
+    def wanted(s: Array) -> Mask:
+        beyond = sigma * (sf - s)
+        return (beyond > 0.0) & (beyond <= highest)
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), past)
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), wanted)
     return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
 
 
@@ -139,7 +137,7 @@ def cross(
     one: _Way,
     two: _Way,
     phi: Array,
-    past: Callable[[Array], Array] | None = None,
+    wanted: Callable[[Array], Mask] | None = None,
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
@@ -151,9 +149,9 @@ def cross(
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
         Driver angles to begin with, on both.
-    past : callable, optional
-        ``past(s)`` returns how far arc lengths on the first curve are past its end, mm: crossings
-        there are given up as soon as they are seen to be, which leaves a miss.
+    wanted : callable, optional
+        ``wanted(s)`` tells at which arc lengths of the first curve, mm, crossings are wanted; what
+        leads elsewhere may be given up, with a miss left. Everywhere if left out.
 
     Returns
     -------
@@ -163,15 +161,14 @@ def cross(
         How far their points are apart one step before.
     """
     miss = np.full(phi.shape[1:], np.inf, dtype=complex)
-    before, sought = miss.real, np.ones(miss.shape, dtype=bool)
+    sought = np.ones(phi.shape[1:], dtype=bool)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        for _ in range(_STEPS):
+        for number in range(_STEPS):
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
-            miss, s = p - q, frames.s[0]
-            if past is not None:
-                sought &= past(s) <= _PAST * np.abs(s - before)
-                before = s
+            miss = p - q
+            if wanted is not None and number >= _USUAL:
+                sought &= wanted(frames.s[0])
             # both steps over one determinant: the curves' directions against each other
             steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
             steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
