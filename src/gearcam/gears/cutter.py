@@ -126,11 +126,12 @@ class Cutter(Brief):
         Involutes of one base circle are parallels: a point aside of a flank by an arc v of the
         pitch circle is ``v*cos(alpha)`` away, as with the rack.
         """
-        kc, lean, slope = self.kc, self.alpha, math.tan(self.alpha)
-        straight = kc * self.half_space < _FLAT
-        if straight:
-            down, aside = depth, np.abs(x - middle)
+        kc, slope, tip = self.kc, math.tan(self.alpha), self.offset - self.half_space
+        # across and along: from the centre of the tip's arc
+        if kc * self.half_space < _FLAT:
+            down, aside, lean = depth, np.abs(x - middle), self.alpha
             narrower = down * slope
+            across, along = aside + tip, down - self.depth
         else:
             radius = np.hypot(x, 1.0 / kc + depth)
             down = radius - 1.0 / kc
@@ -139,13 +140,10 @@ class Cutter(Brief):
             roll = np.sqrt(np.maximum(over * over - 1.0, 0.0))
             rise = roll - np.arctan(roll) - (slope - self.alpha)
             narrower = np.where(over < 1.0, math.inf, rise / kc)
-        flank = (aside - self.half_space + narrower) * math.cos(self.alpha)
-        # from the centre of the tip's arc
-        across, along = aside - self.half_space + self.offset, down - self.depth
-        if not straight:
-            center = 1.0 / kc + self.depth
+            center, turned = 1.0 / kc + self.depth, kc * (aside + tip)
+            across, along = radius * np.sin(turned), radius * np.cos(turned) - center
             lean = math.acos(math.cos(self.alpha) / (kc * center))
-            across, along = radius * np.sin(kc * across), radius * np.cos(kc * across) - center
+        flank = (aside - self.half_space + narrower) * math.cos(self.alpha)
         arc = (across > 0.0) & (along * math.cos(lean) > across * math.sin(lean))
         round_tip = np.hypot(across, along) - self.tip_radius
         gap = np.where(arc, round_tip, np.maximum(flank, down - self.dedendum))
