@@ -138,8 +138,25 @@ def test_what_is_left_of_corners_is_what_the_whole_outline_leaves(
         with monkeypatch.context() as patch:
             patch.setattr(corners._Paths, "doubtful", all_of)
             assert np.array_equal(highest(wheel, mate, outline, chords)[0], allowed)
-        changed += np.count_nonzero(allowed < reach)
+        lower = allowed < reach
+        assert np.all(allowed[lower] < reach[lower] - 1e-6)
+        changed += np.count_nonzero(lower)
+        demand_ends(build_outline(wheel, mate, chords, DEFAULT), allowed)
     assert changed > 0
+
+
+def demand_ends(outline: Outline, allowed: Array) -> None:
+    """Demand that flanks end where they are allowed to, and ends are told as they are."""
+    toothing, tips = outline.toothing, outline.flanks.tips
+    sf, sigma = toothing.flanks
+    reach = sigma * (sf - toothing.track.arc_length(tips.phi))
+    assert np.all(reach <= allowed + 1e-9)
+    base = toothing.frames(tips.foot)
+    away = toothing.flank_points(toothing.frames(tips.phi), sf, sigma) - base.p
+    seen = np.conj(toothing.turn * base.t) * away
+    assert seen.real == pytest.approx(tips.height, abs=1e-9)
+    assert seen.imag == pytest.approx(0.0, abs=1e-9)
+    assert np.array_equal(tips.full, tips.height == toothing.cutter.addendum)
 
 
 def test_nothing_is_seen_of_corners_where_an_open_mate_has_no_space() -> None:

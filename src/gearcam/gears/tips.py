@@ -25,9 +25,9 @@ fastest, along an ellipse of eccentricity 0.99, so far."""
 ROUGH = 1e3
 """Times that distance within which curves meet that Newton's method has no better place of."""
 
-_STEPS, _USUAL = 25, 6
-"""Steps of Newton's method; those that serve where curves do cross, after which nothing is sought
-any longer that is not where it is wanted."""
+_STEPS, _QUICK = 25, 8
+"""Steps of Newton's method, and where there is another way; four or five serve where curves do
+cross."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -87,7 +87,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     allowed reach; the others are searched in their bracket.
     """
     addendum = toothing.cutter.addendum
-    phi, foot, height = _quick(toothing, sf, sigma, highest)
+    phi, foot, height = _quick(toothing, sf, sigma)
     reach = sigma * (sf - toothing.track.arc_length(phi))
     full = np.isfinite(height) & (reach > 0.0) & (reach <= highest)
     full &= np.abs(toothing.track.arc_length(foot) - sf) <= _around(toothing)
@@ -99,9 +99,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     return TipEnds(phi=phi, foot=foot, height=height, full=full)
 
 
-def _quick(
-    toothing: Toothing, sf: Array, sigma: Array, highest: Array
-) -> tuple[Array, Array, Array]:
+def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, Array]:
     """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
@@ -111,12 +109,8 @@ def _quick(
         slide = base.speed * (1.0 + base.kappa * addendum) * base.t
         return base.p + addendum * w * base.t, slide
 
-    def wanted(s: Array) -> Mask:
-        beyond = sigma * (sf - s)
-        return (beyond > 0.0) & (beyond <= highest)
-
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), wanted)
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), _QUICK)
     return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
 
 
@@ -137,7 +131,7 @@ def cross(
     one: _Way,
     two: _Way,
     phi: Array,
-    wanted: Callable[[Array], Mask] | None = None,
+    most: int = _STEPS,
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
@@ -149,9 +143,8 @@ def cross(
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
         Driver angles to begin with, on both.
-    wanted : callable, optional
-        ``wanted(s)`` tells at which arc lengths of the first curve, mm, crossings are wanted; what
-        leads elsewhere may be given up, with a miss left. Everywhere if left out.
+    most : int
+        Steps at most.
 
     Returns
     -------
@@ -161,19 +154,16 @@ def cross(
         How far their points are apart one step before.
     """
     miss = np.full(phi.shape[1:], np.inf, dtype=complex)
-    sought = np.ones(phi.shape[1:], dtype=bool)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        for number in range(_STEPS):
+        for _ in range(most):
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
             miss = p - q
-            if wanted is not None and number >= _USUAL:
-                sought &= wanted(frames.s[0])
             # both steps over one determinant: the curves' directions against each other
             steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
             steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
             phi = phi + np.where(np.isfinite(steps).all(axis=0), steps, 0.0)
-            if not np.any(sought & (np.abs(miss) > near(toothing))):
+            if not np.any(np.abs(miss) > near(toothing)):
                 break
     return phi[0], phi[1], np.abs(miss)
 
