@@ -16,7 +16,7 @@ from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.tips import find_tips
 from gearcam.laws.ratio.centrodes import LogSpiral
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Mask
 from gearcam.tolerances import DEFAULT
 from helpers_pairs import job
 from helpers_rings import CHORDS, random_ring, ring
@@ -43,7 +43,7 @@ CLEAR = {
 }
 """Rings whose corners come deep, but touch nothing."""
 
-LOWERED = [16, 59]
+LOWERED = [16, 177, 258]
 """Random rings of which some corners would run into the mate."""
 
 
@@ -120,14 +120,26 @@ def test_corners_that_touch_nothing_need_no_outline_and_stay_as_they_are(name: s
         assert np.array_equal(allowed, reach)
 
 
-def all_of(_paths: object, some: Ints, _reach: Array) -> Ints:
-    """As though nothing were seen of corners."""
-    return some
+def runs_in(of: Toothing, mate: Outline, reach: Array) -> Mask:
+    """Whether corners of a reach go deeper than they may into metal below the mate's centrode."""
+    sf, sigma = of.flanks
+    ends = of.frames(of.track.angle(sf - sigma * reach))
+    phi = of.track.angle(sf[:, None] + of.pitch * np.linspace(-1.25, 1.25, 121))
+    own, other = of.frames(phi), mate.toothing.frames(phi)
+    away = of.flank_points(ends, sf, sigma)[:, None] - own.p
+    path = other.p + other.t / own.t * away
+    turn = np.linspace(0.0, mate.toothing.track.around, 10001)[1:]
+    curve = mate.toothing.frames(turn).p
+    ring, centrode = mate.toothing.track.ring, shapely.Polygon(np.stack([curve.real, curve.imag]).T)
+    less = 2.0 * mate.tolerance
+    body = shapely.Polygon(mate.points).buffer(less if ring else -less)
+    metal, below = (shapely.contains_xy(each, path.real, path.imag) for each in (body, centrode))
+    return np.any((metal != ring) & (below != ring), axis=1)
 
 
 @pytest.mark.parametrize("seed", LOWERED)
-def test_what_is_left_of_corners_is_what_the_whole_outline_leaves(
-    seed: int, monkeypatch: pytest.MonkeyPatch
+def test_corners_are_lowered_as_far_as_the_mates_whole_outline_asks_and_no_further(
+    seed: int,
 ) -> None:
     pair, changed = random_ring(seed).pair, 0
     one, two = pair.toothings
@@ -135,14 +147,24 @@ def test_what_is_left_of_corners_is_what_the_whole_outline_leaves(
     for wheel, mate in ((one, two), (two, one)):
         outline = build_outline(mate, wheel, chords, DEFAULT, follow=False)
         allowed, reach = highest(wheel, mate, outline, chords)
-        with monkeypatch.context() as patch:
-            patch.setattr(corners._Paths, "doubtful", all_of)
-            assert np.array_equal(highest(wheel, mate, outline, chords)[0], allowed)
         lower = allowed < reach
-        assert np.all(allowed[lower] < reach[lower] - 1e-6)
-        changed += np.count_nonzero(lower)
+        assert not runs_in(wheel, outline, allowed).any()
+        assert np.array_equal(lower, runs_in(wheel, outline, reach))
+        assert runs_in(wheel, outline, allowed + reach / 2**13)[lower].all()
         demand_ends(build_outline(wheel, mate, chords, DEFAULT), allowed)
+        changed += np.count_nonzero(lower)
     assert changed > 0
+
+
+def test_tips_that_meet_above_the_rings_centrode_are_not_what_lowers_corners() -> None:
+    pair = random_ring(59).pair
+    wheel, mate = pair.toothings
+    chords = CHORDS * pair.module
+    outline = build_outline(mate, wheel, chords, DEFAULT, follow=False)
+    allowed, reach = highest(wheel, mate, outline, chords)
+    lower = allowed < reach
+    assert np.count_nonzero(lower) == 3  # of three lobes
+    assert runs_in(wheel, outline, allowed + reach / 2**13)[lower].all()
 
 
 def demand_ends(outline: Outline, allowed: Array) -> None:
