@@ -57,7 +57,7 @@ class TipEnds(Brief):
     full: Mask
 
     def replaced(self, which: Ints, ends: TipEnds) -> TipEnds:
-        """Return the same with other ends of some flanks."""
+        """Return the same with the `ends` of flanks `which` in place of theirs."""
         made = deepcopy(self)
         made.phi[which], made.foot[which] = ends.phi, ends.foot
         made.height[which], made.full[which] = ends.height, ends.full
