@@ -249,8 +249,11 @@ def _find_flanks(
             (sf, sigma),
             reach,
         )
-        if (allowed < reach).any():
-            tips = find_tips(toothing, sf, sigma, np.where(allowed < reach, allowed, limit))
+        lower = np.flatnonzero(allowed < reach)
+        if lower.size:
+            tips = tips.replaced(
+                lower, find_tips(toothing, sf[lower], sigma[lower], allowed[lower])
+            )
     tips = _sharpen(toothing, tips)
     highest = sigma * (sf - toothing.track.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.
