@@ -84,6 +84,9 @@ class DesignKind:
         What returns more of the JSON schema of a table, by its title.
     rules : callable
         ``rules(document, found)`` yields faults between the tables.
+    listed : callable
+        ``listed(document, table)`` returns the keys of a table that people are told of where one is
+        unknown or all are missing.
     later : callable
         ``later(document)`` returns the fault of what is not made, and only that is told, or None.
     formats : tuple of str
@@ -114,6 +117,7 @@ class DesignKind:
     )
     conditions: Mapping[str, Callable[[], dict[str, Any]]] = field(default_factory=dict)
     rules: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
+    listed: Callable[[Mapping[str, Any], Table], Iterable[str]] = lambda _, table: table.entries
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]
     rooms: tuple[str, ...] = ()
