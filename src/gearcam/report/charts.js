@@ -144,12 +144,11 @@ class ChartView {
       },
       axes: [{ ...axis, label: this.chart.x, labelSize: 18, size: 30 }, { ...axis, size: wide }],
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
-      hooks: { draw: [() => this.limits()] },
+      hooks: { draw: [() => this.limits(), () => this.follow()] },
     }, this.data(), this.home);
     this.plot.over.append(this.cursor);
     if (this.chart.moves) this.plot.over.classList.add("moves");
     this.plot.over.addEventListener("click", (event) => this.clicked(event));
-    this.mark(this.page.place);
   }
 
   series(line, k) {
@@ -226,17 +225,21 @@ class ChartView {
     const [low, high] = spanOf(this.chart);
     const inside = this.chart.moves && place >= low && place <= high;
     this.cursor.hidden = !inside;
-    if (inside) this.cursor.style.transform = `translateX(${this.plot.valToPos(place, "x")}px)`;
+    if (inside) this.follow();
     for (const [k, line] of this.chart.lines.entries()) {
       const told = inside ? valuesAt(line, place).slice(0, 3).join(" | ") : "";
       if (this.values[k].textContent !== told) this.values[k].textContent = told;
     }
   }
 
+  // Drawn anew, a chart has another scale.
+  follow() {
+    this.cursor.style.transform = `translateX(${this.plot.valToPos(this.page.place, "x")}px)`;
+  }
+
   resize(size = { width: this.home.clientWidth, height: HEIGHT }) {
     if (!this.plot || !size.width || size.width === this.plot.width) return;
     this.plot.setSize(size);
-    this.mark(this.page.place);
   }
 
   // Colours have changed.
