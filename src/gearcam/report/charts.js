@@ -49,10 +49,13 @@ function add(parent, tag, attributes = {}, text = "") {
   return made;
 }
 
+// Dots are full and hollow in turn.
+const full = (k, dots) => dots && k % 2 === 0;
+
 // A sample of a line, drawn by the style sheet's colours.
 function sampleOf(k, dots) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  made.setAttribute("class", `sample line-${(k % 6) + 1}`);
+  made.setAttribute("class", `sample line-${(k % 6) + 1} ${full(k, dots) ? "full" : ""}`);
   made.setAttribute("viewBox", "0 0 28 8");
   made.setAttribute("aria-hidden", "true");
   const dash = DASHES[k % DASHES.length].join(" ");
@@ -169,7 +172,7 @@ class ChartView {
     pen.clip();
     pen.strokeStyle = pen.fillStyle = this.page.colours[ink];
     pen.lineWidth = 1.6 * ratio;
-    pen.setLineDash(DASHES[k % DASHES.length].map((length) => length * ratio));
+    pen.setLineDash(dots ? [] : DASHES[k % DASHES.length].map((length) => length * ratio));
     pen.beginPath();
     let up = true;
     for (let i = 0; i < xs.length; i++) {
@@ -185,8 +188,8 @@ class ChartView {
       else pen.lineTo(x, y);
       up = false;
     }
-    if (dots) pen.fill();
-    else pen.stroke();
+    if (full(k, dots)) pen.fill();
+    pen.stroke();
     pen.restore();
     return null; // drawn already
   }
