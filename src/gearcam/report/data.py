@@ -42,7 +42,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         bottom, right and top of all places; ``pitch``, flat points, or null; ``contacts`` by name,
         each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or null; ``bodies``, each
         with ``name`` and ``called``, ``metal`` and ``floor`` (closed chains, filled by the even-odd
-        rule; ``plates`` tells which of ``metal`` begin a plate of their own), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y``
+        rule), ``plates`` (the first chain of ``metal`` of each of those that lie one over the
+        other), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y``
         (a number where it never changes), and ``teeth`` (``[first, last]`` vertices of
         ``metal[0]``) or null.
     """

@@ -31,7 +31,15 @@ PAGE: Final = "report.html"
 BLOCKS: Final = ("verdict", "findings", "files", "facts", "accuracy")
 """Places of the page that are written from facts, each a template."""
 
-SCRIPTS: Final = ("uPlot/uPlot.iife.min.js", "scene.js", "parts.js", "saves.js", "charts.js", "page.js")
+SCRIPTS: Final = (
+    "uPlot/uPlot.iife.min.js",
+    "scene.js",
+    "parts.js",
+    "saves.js",
+    "charts.js",
+    "page.js",
+    "solids.js",
+)
 """What is the page's script, each part after those that it needs."""
 
 _HOME: Final = Path(__file__).parent
@@ -44,7 +52,12 @@ _VERDICTS: Final = {
 """What the worst finding means."""
 
 
-def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) -> bytes:
+def page(
+    document: Mapping[str, Any],
+    *,
+    live: Mapping[str, Any] | None = None,
+    solids: Mapping[str, str] | None = None,
+) -> bytes:
     """Return a page.
 
     Parameters
@@ -53,6 +66,8 @@ def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) 
         What it shows (see `document`).
     live : mapping, optional
         What the script needs of a server that gives it others; a page of its own where left out.
+    solids : mapping, optional
+        A view of them (see `gearcam.report.solids`).
 
     Returns
     -------
@@ -66,7 +81,9 @@ def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) 
             document=document,
             data=_embedded(document),
             live=_embedded(live) if live else "",
-            style=_own("uPlot/uPlot.min.css", "page.css"),
+            solids=solids or {},
+            view=_embedded((solids or {}).get("view", "")),
+            style=_own("uPlot/uPlot.min.css", "page.css", "solids.css"),
             script=_own(*SCRIPTS),
             licence=_own("uPlot/LICENSE"),
         )
