@@ -35,7 +35,7 @@ def open_page(
     browser.get_log("browser")
     browser.get_log("performance")
     browser.get(path.as_uri())
-    until(lambda: browser.execute_script("return document.querySelectorAll('.uplot').length > 1"))
+    settle(browser)
     shown = browser.execute_script("return document.getElementById('document').textContent")
     return json.loads(shown)
 

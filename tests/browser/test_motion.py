@@ -1,4 +1,4 @@
-"""The parts in the page stand where the library computes them, and keys, slider and charts agree."""
+"""Parts in a page stand where the library computes them; keys, slider and charts agree."""
 
 from __future__ import annotations
 
@@ -45,7 +45,9 @@ def test_a_page_opens_without_complaint_or_network(
     name: str, browser: Chrome, page_of: Written
 ) -> None:
     open_page(browser, page_of(name))
-    browser.execute_script("document.querySelectorAll('.chart').forEach((e) => e.scrollIntoView())")
+    for figure in browser.find_elements(By.CLASS_NAME, "chart"):
+        browser.execute_script("arguments[0].scrollIntoView()", figure)
+        until(lambda: figure.find_elements(By.CLASS_NAME, "u-over"))  # noqa: B023
     go(browser, 100.0)
     assert complaints(browser) == []
     own = page_of(name).as_uri()
@@ -185,7 +187,8 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
     browser: Chrome, page_of: Written, built: Built
 ) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
-    over = browser.find_element(By.CSS_SELECTOR, ".chart .u-over")
+    until(lambda: browser.find_elements(By.CLASS_NAME, "u-over"))
+    over = browser.find_element(By.CLASS_NAME, "u-over")
     width = over.size["width"]
     right = 40  # of the middle, pixels
     ActionChains(browser).move_to_element_with_offset(over, right, 0).click().perform()
