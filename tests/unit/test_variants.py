@@ -79,6 +79,9 @@ def test_labels_are_whole_keys_where_their_ends_are_alike() -> None:
     settings = {"pair.x": [0], "pair.teeth[0]": [20], "pair.teeth[1]": [20, 21]}
     labels = [one.label for one in variants_of([ELLIPSE], settings)]
     assert labels[0] == "pair.x=0, pair.teeth[0]=20, pair.teeth[1]=20"
+    settings = {"pair.backlash_mm": [0.1], "limits.backlash_mm": [0.01, 0.02]}
+    labels = [one.label for one in variants_of([ELLIPSE], settings)]
+    assert labels[1] == "pair.backlash_mm=0.1, limits.backlash_mm=0.02"
 
 
 def test_files_are_told_apart_by_names_or_else_by_files(tmp_path: Path) -> None:
@@ -263,5 +266,7 @@ def test_compare_does_not_touch_other_files(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     (tmp_path / "mine.txt").write_text("kept")
+    (tmp_path / "summary.json").write_text('{"files": {"mine.txt": "of an earlier build"}}')
     run(capsys, ELLIPSE, "--set", "law.eccentricity=0.1,0.2", "-o", str(tmp_path))
-    assert sorted(one.name for one in tmp_path.iterdir()) == ["compare.html", "mine.txt"]
+    names = sorted(one.name for one in tmp_path.iterdir())
+    assert names == ["compare.html", "mine.txt", "summary.json"]

@@ -115,7 +115,7 @@ def _over(scene: Scene, places: np.ndarray) -> Scene:
     """Return a scene over other places: what repeats goes on, what does not stays at its end."""
     first, last = scene.places[0], scene.places[-1]
     cycles = np.floor((places - first) / (last - first)) if scene.closed else 0.0 * places
-    within = np.clip(places - cycles * (last - first), first, last)
+    within = places - cycles * (last - first)  # interp stays at the end beyond it
 
     def moved(body: MovingBody) -> MovingBody:
         turn = np.interp(within, scene.places, body.turn) + cycles * (body.turn[-1] - body.turn[0])
