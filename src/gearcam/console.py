@@ -142,7 +142,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more" if found.found else "a remedy"
-        yield f"the search for {sought} was given up after {shown(found.seconds)} s"
+        yield f"the search for {sought} was given up after {found.builds} designs"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 

@@ -102,8 +102,9 @@ class Translating(Form):
 
     def parts(self, result: CamResult) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
+        from gearcam.parts.apart import demand_apart
         from gearcam.parts.body import Opening, Part, Recess
-        from gearcam.parts.openings import RIM, Workpiece, demand_apart
+        from gearcam.parts.openings import RIM, Workpiece
 
         design, cam = result.design, _made(result)
         thickness, depth = design.cam.thickness, design.cam.groove_depth
@@ -123,7 +124,10 @@ class Translating(Form):
                 )
                 recesses = [recess]
         work = Workpiece(name=STEM, module=thickness / RIM)
-        demand_apart(taken, design.blank, cam.edge.polygon, work)
+        row = _blank(design)
+        sizes = {"bolt_spacing_mm": row.bolt_spacing, "bolt_height_mm": row.bolt_height}
+        places = {key: size for key, size in sizes.items() if size is not None}
+        demand_apart(taken, row, cam.edge.polygon, work, places)
         return (
             Part(
                 name=STEM,
