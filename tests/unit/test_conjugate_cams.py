@@ -120,7 +120,7 @@ def test_a_pivot_out_of_reach_is_moved(pivot: float, other: float) -> None:
         _ = result.cam
     (_, way) = caught.value.ways
     assert way.near == {"follower.pivot_distance_mm": other}
-    search = Search(result, frozenset(), 60.0)
+    search = Search(result, None, frozenset(), 60.0)
     assert search.along(way)
     assert gearcam.build(search.found[0].design).cam.facts
 

@@ -220,7 +220,7 @@ def test_what_the_plate_has_no_room_for_is_moved(key: str, value: float) -> None
     result = gearcam.build(read(FILE).with_({key: value}))
     with pytest.raises(InfeasibleError) as caught:
         _ = result.parts
-    search = Search(result, frozenset(), 60.0)
+    search = Search(result, None, frozenset(), 60.0)
     assert any(search.along(way) for way in caught.value.ways)
     (remedy,) = search.found
     assert list(remedy.changes) == [key]
