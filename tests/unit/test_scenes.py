@@ -14,7 +14,7 @@ from shapely import LineString, Point, Polygon
 import gearcam
 from arch import rules
 from gearcam.designs.kind import KINDS
-from gearcam.drawings import CENTER, FOLLOWER, OUTER_WALL, Circle, Path, chains
+from gearcam.drawings import CENTER, FOLLOWER, OUTER_WALL, Circle, chains
 from gearcam.numeric.contour import Contour
 from gearcam.scenes import PLACES, MovingBody, Scene, extent
 
