@@ -13,8 +13,9 @@ import pytest
 
 import gearcam
 from arch import rules
-from gearcam.charts import Chart, Limit, Line, with_both_sides
+from gearcam.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.errors import DesignError, MissingExtraError
+from gearcam.numeric.piecewise import with_both_sides
 
 mpl.use("Agg")
 PROFILES = sorted((rules.ROOT / "profiles").glob("*.toml"))

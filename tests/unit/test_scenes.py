@@ -51,10 +51,10 @@ CHORD = 2e-3
 
 
 @cache
-def made(name: str, **cam: object) -> Any:
-    """Return the result of a profile, as it is or with another cam."""
+def made(name: str, key: str = "", value: object = None) -> Any:
+    """Return the result of a profile, as it is or with another value."""
     design = gearcam.load(PROFILES[name])
-    return gearcam.build(design.with_({f"cam.{key}": value for key, value in cam.items()}))
+    return gearcam.build(design.with_({key: value}) if key else design)
 
 
 def sliding(name: str) -> Any:
@@ -240,7 +240,32 @@ def test_followers_touch_cams(name):
 )
 def test_followers_touch_cams_that_turn_the_other_way(name):
     given = DOCUMENTS[name]["cam"].get("rotation", "ccw")
-    demand_touch(made(name, rotation="ccw" if given == "cw" else "cw"))
+    demand_touch(made(name, "cam.rotation", "ccw" if given == "cw" else "cw"))
+
+
+@pytest.mark.parametrize("name", ["plate_cam_offset_roller", "plate_cam_oscillating"])
+def test_a_cam_that_is_drawn_turned_moves_the_same(name):
+    result = made(name, "output.theta_deg", 100.0)
+    demand_touch(result)
+    assert scene(result).start == pytest.approx(100.0)
+    assert scene(made(name, "output.theta_deg", 355.0)).start == pytest.approx(355.0)
+
+
+def test_a_yoke_is_touched_from_above_and_from_below():
+    contacts = scene(made("yoke_cam")).contacts
+    upper, lower = contacts["upper side"], contacts["lower side"]
+    # between parallel faces, pressed apart
+    assert upper.point.imag - lower.point.imag == pytest.approx(np.full(FEW + 1, 100.0))
+    assert upper.force == pytest.approx(np.full(FEW + 1, 1j))
+    assert lower.force == pytest.approx(np.full(FEW + 1, -1j))
+
+
+def test_conjugate_cams_are_two_bodies():
+    result = made("conjugate_cams")
+    for body, part in zip(scene(result).bodies[:2], result.parts, strict=True):
+        (profile,) = (one.shape for one in body.features if one.kind == "PROFILE")
+        assert isinstance(profile, Contour)
+        assert profile.vertices == pytest.approx(part.contour.vertices, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", SLIDING)
