@@ -250,4 +250,4 @@ class PairStages(Result):
         """Knots of the law, rad, as often as they come until both wheels close, or to the end."""
         period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
         lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
-        return np.concatenate([knots + lobe * period for lobe in range(lobes)])
+        return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])
