@@ -167,7 +167,7 @@ class Chart:
 
 
 def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]:
-    """Return the `knots` between two ends of an axis as marked places."""
+    """Return the `knots` of a law, in the unit of an axis, between its ends `low` and `high`."""
     inside = knots[(knots > low) & (knots < high)]
     return tuple(MarkedPlace(label="knots", value=value) for value in inside.tolist())
 

@@ -241,7 +241,9 @@ def test_marked_places_are_drawn_and_told_once():
     line = Line(label="values", x=np.arange(3.0), y=np.array([0.0, 1.0, 2.0]))
     marks = tuple(MarkedPlace(label="knots", value=value) for value in (0.5, 1.5))
     ax = Chart(title="t", x="x", y="y", lines=(line,), marks=marks).draw()
-    drawn = [one.get_xdata()[0] for one in ax.lines if one.get_linestyle() == ":"]
+    drawn = [
+        float(np.asarray(one.get_xdata())[0]) for one in ax.lines if one.get_linestyle() == ":"
+    ]
     assert drawn == [0.5, 1.5]
     legend = ax.get_legend()
     assert legend is not None
