@@ -100,6 +100,17 @@ def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
     assert len(wheel_sheet(bare.part, {}, "t").dimensions) == 4
 
 
+def test_three_points_tell_the_curvature_of_an_open_pitch_curve() -> None:
+    """The error falls: with its sign and all, the exact curvature is that of the points."""
+    rows = built(ONE).files("curvature")["curvature.csv"].decode().splitlines()
+    table = dict(zip(rows[0].split(","), np.loadtxt(rows[1:], delimiter=",").T, strict=True))
+    # second order but at knots, where the slope of the curvature jumps: there the first
+    order = np.polyfit(np.log(table["spacing_mm"]), np.log(table["rms_error_per_mm"]), 1)[0]
+    assert 1.3 < order < 2.1
+    assert table["largest_error_per_mm"][-1] < 2e-5
+    assert np.all(np.diff(table["spacing_mm"]) < 0.0)
+
+
 def test_the_way_of_a_tool() -> None:
     result = built(FILE)
     rows = result.files("tool-path")["tool_path.csv"].decode().splitlines()
