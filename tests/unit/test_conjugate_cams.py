@@ -238,6 +238,16 @@ def test_the_command_follows_either(tmp_path: File, capsys: pytest.CaptureFixtur
     assert main(["follow", str(PATH), profile, "-o", str(tmp_path)]) in (0, 1)
 
 
+def test_the_picture_shows_two_tints_and_both_rollers_on_top() -> None:
+    text = gearcam.build(read()).files("svg")["cams.svg"].decode()
+    fills = [re.search(rf'class="{name}-profile" fill="(#\w+)"', text) for name in ("cam1", "cam2")]
+    first, second = (found and found[1] for found in fills)
+    assert None not in (first, second)
+    assert first != second
+    assert 'fill-opacity="0.6"' in text
+    assert text.rindex('class="cam2-') < text.index('class="follower"')
+
+
 def test_facts() -> None:
     result = gearcam.build(read())
     cam = result.cam

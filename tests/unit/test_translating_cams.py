@@ -35,7 +35,6 @@ from helpers_step_read import read_step
         (FILE, 'walls = "both"\n', "", "cam.groove_depth_mm", "one wall has none"),
         (FILE, "bolt_height_mm = 8\n", "", "blank.bolt_height_mm", "is missing beside bolts"),
         (FILE, "[output]", "[output]\nkerf_mm = 0.2", "output.kerf_mm", "milled"),
-        (FILE, '"stl"', '"curvature"', "output.files", "closed curves"),
         (FILE, "density", "clearance_mm = 0.1\ndensity", "blank.clearance_mm", "roller_clearance"),
         (ONE, "[cam]", "pivot_height_mm = 5\n[cam]", "follower.pivot_height_mm", "no pivot"),
         (ONE, "law = \"3-4-5\"\nlift_mm = 15", "law = \"3-4-5\"", "motion[0].lift_mm", "missing"),

@@ -77,9 +77,6 @@ class Translating(Form):
             rule = 'with motion = "oscillating"'
             yield Fault(("follower", "pivot_height_mm"), message, follower.pivot_height, rule)
         yield from _groove_faults(follower, cam, blank, output)
-        if output is not None and "curvature" in output.files:
-            message = "three-point curvature is studied on closed curves"
-            yield Fault(("output", "files"), message, "curvature", "other files")
 
     def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
         """Return the lift over the way, with its run before and after."""
