@@ -15,8 +15,20 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array, Plane
 
 
-def scene(result: CamResult) -> Scene:
-    """Return cam and follower: the picture of the cam, taken apart into what moves together."""
+def scene(result: CamResult, *, contacts: bool = True) -> Scene:  # noqa: ARG001  (none are told)
+    """Return cam and follower: the picture of the cam, taken apart into what moves together.
+
+    Parameters
+    ----------
+    result : CamResult
+        A built design.
+    contacts : bool
+        Whether points of contact are sought.
+
+    Returns
+    -------
+    Scene
+    """
     output, motion = result.design.output, result.cam.motions[0]
     driver = motion.mechanism.driver
     pose = (output.place or 0.0) / driver.scale if result.form.slides else output.pose

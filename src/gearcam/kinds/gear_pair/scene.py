@@ -17,8 +17,21 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
 
 
-def scene(result: GearPairResult) -> Scene:
-    """Return both wheels with their centrodes, teeth that touch, and the pitch point."""
+def scene(result: GearPairResult, *, contacts: bool = True) -> Scene:
+    """Return both wheels with their centrodes, teeth that touch, and the pitch point.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        A built design.
+    contacts : bool
+        Whether the teeth that touch are sought; without them it is sooner there.
+
+    Returns
+    -------
+    Scene
+    """
+    sides: tuple[Side, ...] = get_args(Side) if contacts else ()
     guide, lobes = result.pair.rolling.guide, result.law.lobes
     end = lobes.n1 * lobes.period if result.pair.toothings[0].closed else result.law.period
     phi1 = np.linspace(0.0, end, PLACES + 1)
@@ -47,7 +60,7 @@ def scene(result: GearPairResult) -> Scene:
         closed=result.pair.closed,
         start=float(np.degrees(result.design.output.pose % (lobes.n1 * lobes.period))),
         bodies=(*(bodies[::-1] if result.pair.internal else bodies), still(crosses, phi1)),
-        contacts={side: _contacts(result, phi1, side) for side in get_args(Side)},
+        contacts={side: _contacts(result, phi1, side) for side in sides},
         pitch=radius * np.exp(-1j * phi1),
     )
 
