@@ -22,7 +22,7 @@ _WIDE: Final = 20.0
 _ROOM: Final[Mapping[str, float]] = {"deg": 10.0, "mm": 1.0}
 """How far a slider goes to both sides of 0, by unit; of what has none half of 1."""
 
-_STEPS: Final = 200.0
+_STEPS: Final = 1000.0
 """Steps of a slider at least, of numbers that are not whole."""
 
 _FEWER: Final = (1.0, 0.5, 0.25, 0.1, 0.03)

@@ -149,7 +149,8 @@ class Handler(BaseHTTPRequestHandler):
         hosts = self.headers.get_all("Host") or []
         own = {f"http://{host}" for host in self.server.hosts}
         before = f"/{self.server.token}/"
-        start, name = self.path[: len(before)], self.path[len(before) :]
+        path = self.requestline.split()[1]  # as it was sent: `path` has slashes taken out
+        start, name = path[: len(before)], path[len(before) :]
         alike = secrets.compare_digest(*(text.encode("utf-8", "replace") for text in (start, before)))
         if len(hosts) != 1 or hosts[0] not in self.server.hosts:
             self._refuse(HTTPStatus.FORBIDDEN, "this host is not served")

@@ -139,7 +139,7 @@ class Session:
                 return
             self._set(error=reply["error"])
         if reply.get("refused") and content is not None:
-            found = self._workers.submit(work.seek, content, self.file)
+            found = self._workers.submit(work.seek, content, self.file, reply["error"])
             found.add_done_callback(partial(self._take_remedies, turn))
 
     def _take_remedies(self, turn: int, done: Future[work.Reply]) -> None:
@@ -185,11 +185,15 @@ class Session:
         """
         state, changes, last = self.state, asked.get("changes"), asked.get("last")
         values = _values(changes, state)
-        if last not in values:
+        if not isinstance(last, str) or last not in values:
             raise RequestError("last: no key of the changes")
         exact = asked.get("exact") is True
-        begin = partial(self._workers.submit, work.follow, state.text, self.file)
-        return self._newest.run(lambda: begin(values, last, exact).result())
+
+        def reply() -> bytes:
+            one = self._workers.submit(work.follow, state.text, self.file, values, last, exact)
+            return one.result()
+
+        return self._newest.run(reply)
 
     def save(self, asked: Mapping[str, Any]) -> None:
         """Write other numbers into the file; its comments and their order stay.

@@ -86,12 +86,29 @@ def show_draft(content: bytes | None, file: str) -> Reply:
     return _told(lambda: {"document": _draft(loads(_text(content, file), file=file))}, file)
 
 
-def seek(content: bytes, file: str) -> Reply:
-    """Return why a design is refused, with the remedies found, as ``error`` (see `show`)."""
-    reply = show_draft(content, file)
-    found = remedies(build(loads(_text(content, file), file=file)))
-    lines = [f"  {line}" for line in remedy_lines(found)]
-    return reply | {"error": "\n".join([reply.get("error", ""), *lines])}
+def seek(content: bytes, file: str, error: str) -> Reply:
+    """Return why a design is refused, with remedies.
+
+    Parameters
+    ----------
+    content : bytes
+        What its file holds.
+    file : str
+        Its name.
+    error : str
+        Why, in words.
+
+    Returns
+    -------
+    dict
+        ``error``: the words, and what was found.
+    """
+
+    def told() -> Reply:
+        found = remedies(build(loads(_text(content, file), file=file)))
+        return {"error": "\n".join([error, *(f"  {line}" for line in remedy_lines(found))])}
+
+    return _told(told, file)
 
 
 def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> bytes:
