@@ -28,8 +28,11 @@ _STEPS: Final = 1000.0
 _FEWER: Final = (1.0, 0.5, 0.25, 0.1, 0.03)
 """Parts of a slider's way that are tried until one reads as a design."""
 
+_GRAIN: Final = 1e-6
+"""Part of a step by which the end of a slider may miss one: rounding errors are far smaller."""
+
 _DIGITS: Final = 10
-"""Digits of a number that is written: more are what arithmetic leaves."""
+"""Digits of a number that is computed for a file: more are what arithmetic leaves."""
 
 
 def numbers(text: str) -> dict[str, float]:
@@ -115,8 +118,9 @@ def span(entry: Key, value: float) -> tuple[float, float, float]:
     step = 1.0 if whole else 10.0 ** math.floor(math.log10((high - low) / _STEPS or 1.0))
     low = low + step if low == made.gt else low
     high = high - step if high == made.lt else high
-    low, high = step * math.ceil(low / step), step * math.floor(high / step)
-    return _tidy(min(low, value)), _tidy(max(high, value)), _tidy(step)
+    low = step * math.ceil(low / step - _GRAIN)
+    high = step * math.floor(high / step + _GRAIN)
+    return min(tidy(low), value), max(tidy(high), value), tidy(step)
 
 
 def equals(found: Values, key: str, value: float) -> dict[str, float]:
@@ -169,9 +173,8 @@ def _place(spans: Spans, path: Path) -> tuple[int, int]:
 
 def _written(value: float, before: str) -> str:
     """Return a number as a file holds it: whole where the one `before` was and this one is."""
-    number = float(f"{value:.{_DIGITS}g}")
     plain = before.lstrip("+-").replace("_", "").isdigit()
-    return str(int(number)) if plain and number.is_integer() else repr(number)
+    return str(int(value)) if plain and float(value).is_integer() else repr(float(value))
 
 
 def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
@@ -196,8 +199,8 @@ def _within(
     for part in _FEWER:
         way = part * (end - value)
         nearer = value + (round(way) if entry.base is int else step * round(way / step))
-        if nearer != value and fits(_tidy(nearer)):
-            return _tidy(nearer)
+        if nearer != value and fits(tidy(nearer)):
+            return tidy(nearer)
     return value
 
 
@@ -209,5 +212,6 @@ def _leaves(part: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
         yield path, part
 
 
-def _tidy(value: float) -> float:
+def tidy(value: float) -> float:
+    """Return a computed value with so few digits as people write."""
     return float(f"{value:.{_DIGITS}g}") + 0.0

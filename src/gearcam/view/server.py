@@ -151,7 +151,7 @@ class Handler(BaseHTTPRequestHandler):
         before = f"/{self.server.token}/"
         path = self.requestline.split()[1]  # as it was sent: `path` has slashes taken out
         start, name = path[: len(before)], path[len(before) :]
-        alike = secrets.compare_digest(*(text.encode("utf-8", "replace") for text in (start, before)))
+        alike = secrets.compare_digest(start.encode("utf-8", "replace"), before.encode())
         if len(hosts) != 1 or hosts[0] not in self.server.hosts:
             self._refuse(HTTPStatus.FORBIDDEN, "this host is not served")
         elif origin is not None and origin not in own:
@@ -238,9 +238,7 @@ class Handler(BaseHTTPRequestHandler):
         self.close_connection = True  # what it still sends is not read
         self._send(_as_json({"error": error}), status=status)
 
-    def _send(
-        self, content: bytes, kind: str = _JSON, status: HTTPStatus = HTTPStatus.OK
-    ) -> None:
+    def _send(self, content: bytes, kind: str = _JSON, status: HTTPStatus = HTTPStatus.OK) -> None:
         self.send_response(status)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(content)))

@@ -268,8 +268,6 @@ def _values(changes: Any, state: State) -> dict[str, float]:
     return dict(changes)
 
 
-
-
 def _hash(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 

@@ -67,8 +67,8 @@ class Watch:
     def _mark(self, name: str) -> _Mark | None:
         """Return time, size and hash of a file; the hash anew only where it may be another."""
         try:
-            found = os.stat(name)
-        except OSError:
+            found = Path(name).stat()
+        except (OSError, ValueError):
             return None
         before = self._marks.get(name)
         same = before is not None and before[:2] == (found.st_mtime_ns, found.st_size)

@@ -21,7 +21,7 @@ from gearcam.designs.reader import content_of, decoded, loads
 from gearcam.errors import DesignError, GearcamError, InfeasibleError
 from gearcam.numeric.memory import keep_freed_memory
 from gearcam.report.page import document, draft
-from gearcam.view.numbers import Values, equals, numbers, replaced, sliders
+from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tidy
 
 Reply = dict[str, Any]
 
@@ -168,12 +168,12 @@ def _first(text: str, changes: Values, last: str, shown: Callable[[Values], Repl
 
 
 def _items(near: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a change with the items of its lists one by one."""
-    made = {}
+    """Return a change with the items of its lists one by one, and no needless digits."""
+    made: dict[str, Any] = {}
     for key, value in near.items():
         items = enumerate(value) if isinstance(value, list | tuple) else ()
         made |= {f"{key}[{k}]": item for k, item in items} or {key: value}
-    return made
+    return {key: tidy(one) if isinstance(one, float) else one for key, one in made.items()}
 
 
 def _draft(design: Design) -> Reply:
