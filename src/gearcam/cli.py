@@ -141,11 +141,9 @@ def _parser(
     if command in (_build, _check):
         _add_common(parser)
     if command is _view:
-        parser.add_argument("file", metavar="FILE", help="design file (TOML)")
-        words = "where to serve the page; a free one where left out"
-        parser.add_argument("--port", type=int, default=0, metavar="N", help=words)
-        words = "show the page's address only"
-        parser.add_argument("--no-browser", action="store_true", help=words)
+        from gearcam.view.command import arguments
+
+        arguments(parser)
     if command is _build:
         words = f"write only these: {','.join(formats)}"
         parser.add_argument("--only", action="append", metavar="KINDS", help=words)

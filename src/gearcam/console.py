@@ -101,7 +101,7 @@ def fault_text(error: Exception, file: str) -> str:
 
 
 def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> str:
-    """Return why nothing was `done` with a `file`: every problem, or what cannot be made."""
+    """Return why nothing was `done` with a `file` in words: the `error`, with every problem."""
     if isinstance(error, InfeasibleError):
         return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
     count = len(error.problems)

@@ -6,6 +6,7 @@ import os
 import threading
 import time
 import webbrowser
+from argparse import ArgumentParser
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from typing import Final
@@ -19,6 +20,15 @@ from gearcam.view.work import begin
 
 _WORKERS: Final = range(2, 5)
 """A draft is built while another, or the whole document, still is; more than four help nobody."""
+
+
+def arguments(parser: ArgumentParser) -> None:
+    """Add the command's file and options to a `parser`."""
+    parser.add_argument("file", metavar="FILE", help="design file (TOML)")
+    words = "port of the page; a free one where left out"
+    parser.add_argument("--port", type=int, default=0, metavar="N", help=words)
+    words = "open no browser: the address is told"
+    parser.add_argument("--no-browser", action="store_true", help=words)
 
 
 def view(file: str, port: int = 0, *, browser: bool = True) -> None:

@@ -124,9 +124,23 @@ def span(entry: Key, value: float) -> tuple[float, float, float]:
 
 
 def equals(found: Values, key: str, value: float) -> dict[str, float]:
-    """Return a `value` for the numbers of a list that are the same as that `key` in those `found`.
+    """Return the same value for what is equal to a number and stands in one list with it.
 
     A list that begins and ends alike, or two equal wheels: one may not change without the others.
+
+    Parameters
+    ----------
+    found : mapping of str to float
+        Numbers of the file.
+    key : str
+        One of them.
+    value : float
+        What it shall be.
+
+    Returns
+    -------
+    dict of str to float
+        Empty where there is none.
     """
     path = path_of(key)
     if not isinstance(path[-1], int):
@@ -181,7 +195,7 @@ def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
     """Return the key of a number; None where its table does not know it."""
     kind, (title, *rest) = KINDS[document["kind"]], path
     if title == kind.main:
-        raw = document[title]
+        raw = document[kind.main]
         if rest and isinstance(rest[0], int):
             raw, rest = raw[rest[0]], rest[1:]
         known = kind.room("describe").known(raw)

@@ -95,8 +95,8 @@ class Server(ThreadingHTTPServer):
         """Address of the page."""
         return f"http://{self.hosts[0]}/{self.token}/"
 
-    def handle_error(self, *_: Any) -> None:
-        """Say nothing of a page that has been closed while it was answered."""
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing of a page that has been closed while it was answered (see `Server`)."""
 
 
 def _taken(port: int, error: OSError) -> Problem:
@@ -120,7 +120,6 @@ class Handler(BaseHTTPRequestHandler):
 
     protocol_version = "HTTP/1.1"
     timeout = _PATIENCE
-    server: Server
 
     def do_GET(self) -> None:
         """Answer a question."""
@@ -140,19 +139,23 @@ class Handler(BaseHTTPRequestHandler):
         """Return the name of the server."""
         return "gearcam"
 
-    def log_message(self, *_: Any) -> None:
+    def log_message(self, *_: Any) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Keep requests to oneself: the address holds the token."""
+
+    @property
+    def _home(self) -> Server:
+        return self.server  # pyright: ignore[reportReturnType]
 
     def _answer(self, routes: dict[str, Callable[[], None]]) -> None:
         """Answer what is asked at a route, if this computer's own page may have asked it."""
         origin = self.headers.get("Origin")
         hosts = self.headers.get_all("Host") or []
-        own = {f"http://{host}" for host in self.server.hosts}
-        before = f"/{self.server.token}/"
+        own = {f"http://{host}" for host in self._home.hosts}
+        before = f"/{self._home.token}/"
         path = self.requestline.split()[1]  # as it was sent: `path` has slashes taken out
         start, name = path[: len(before)], path[len(before) :]
         alike = secrets.compare_digest(start.encode("utf-8", "replace"), before.encode())
-        if len(hosts) != 1 or hosts[0] not in self.server.hosts:
+        if len(hosts) != 1 or hosts[0] not in self._home.hosts:
             self._refuse(HTTPStatus.FORBIDDEN, "this host is not served")
         elif origin is not None and origin not in own:
             self._refuse(HTTPStatus.FORBIDDEN, "this origin is not served")
@@ -162,7 +165,7 @@ class Handler(BaseHTTPRequestHandler):
             routes[name]()
 
     def _page(self) -> None:
-        session, state = self.server.session, self.server.session.state
+        session, state = self._home.session, self._home.session.state
         if state.document is None:
             # text within it is put in by its script
             live = json.dumps({"file": session.file, **state.told}).replace("<", "\\u003c")
@@ -170,12 +173,12 @@ class Handler(BaseHTTPRequestHandler):
         else:
             told = {name: value for name, value in state.told.items() if name != "document"}
             made = page(
-                state.document, live={"token": self.server.token, "file": session.file, **told}
+                state.document, live={"token": self._home.token, "file": session.file, **told}
             )
         self._send(made, _HTML)
 
     def _document(self) -> None:
-        self._send(_as_json(self.server.session.state.told))
+        self._send(_as_json(self._home.session.state.told))
 
     def _events(self) -> None:
         """Tell the number of each new state, until the page has gone."""
@@ -184,7 +187,7 @@ class Handler(BaseHTTPRequestHandler):
         self.send_header("Connection", "close")
         self.end_headers()
         self.close_connection = True
-        session, number = self.server.session, -1
+        session, number = self._home.session, -1
         while not session.ended:
             state = session.wait(number, _PULSE)
             told = f"data: {state.number}\n\n" if state.number != number else ": nothing new\n\n"
@@ -199,7 +202,7 @@ class Handler(BaseHTTPRequestHandler):
         asked = self._asked()
         if asked is not None:
             try:
-                reply = self.server.session.follow(asked)
+                reply = self._home.session.follow(asked)
             except RequestError as error:
                 self._refuse(HTTPStatus.BAD_REQUEST, str(error))
             else:
@@ -209,7 +212,7 @@ class Handler(BaseHTTPRequestHandler):
         asked = self._asked()
         if asked is not None:
             try:
-                self.server.session.save(asked)
+                self._home.session.save(asked)
             except RequestError as error:
                 self._refuse(HTTPStatus.CONFLICT, str(error))
             else:
