@@ -146,7 +146,7 @@ def test_a_slider_is_followed_coarsely_and_then_exactly(page: Chrome, file: Path
     until(lambda: not page.find_element(By.ID, "save").is_enabled())
 
 
-def test_a_field_and_the_keyboard_do_the_same(page: Chrome, file: Path) -> None:
+def test_a_field_and_the_keyboard_do_the_same(page: Chrome) -> None:
     one = field(page, "pair.face_width_mm")
     one.clear()
     one.send_keys("60", Keys.ENTER)
