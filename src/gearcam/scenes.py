@@ -38,7 +38,7 @@ class MovingBody(Brief):
     Parameters
     ----------
     name : str
-        As its part is called; ``follower`` of a follower.
+        As its part is called; ``follower`` of a follower. Bodies of one part move as one.
     called : str
         For people.
     features : tuple of Feature
@@ -48,8 +48,9 @@ class MovingBody(Brief):
     shift : (n,) complex array, mm
         Place of its origin.
     teeth : (k, 2) array of int
-        First and last vertex of each tooth on its outline, tooth 1 first; the last is the smaller
-        where a tooth lies over the outline's start. None where nothing contacts tooth by tooth.
+        First and last vertex of each tooth on the shape of its first feature, in the order of the
+        teeth's numbers; the last is the smaller where a tooth lies over the first vertex. None
+        where nothing contacts tooth by tooth.
     """
 
     name: str
@@ -71,9 +72,11 @@ class ContactPoints(Brief):
     point : (m,) complex array, mm
         Points of contact.
     force : (m,) complex array
-        Unit direction in which the first body presses there: the line of action.
+        Unit direction in which the driver presses there: the line of action.
     teeth : (m, 2) array of int
-        Teeth that touch, of the first and the second body, from 1; none where bodies have none.
+        Teeth that touch, of both bodies with teeth in the order of their names: their places in
+        `MovingBody.teeth`, from 1, which are their numbers but where an open wheel begins with half
+        a tooth. None where bodies have none.
     """
 
     start: Ints

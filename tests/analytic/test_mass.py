@@ -101,7 +101,7 @@ def test_a_keyway_is_off_the_axis(angle: float) -> None:
         bore_diameter=20.0, keyway_width=6.0, keyway_depth=2.8, keyway_angle=angle,
         timing_marks=False,
     )  # fmt: skip
-    place = Workpiece(name="wheel 1", wheel=1, module=2.0)
+    place = Workpiece(name="wheel 1", wheel=1, rim=5.4)
     part = make_part("p", [disc_contour(50.0)], 8.0, blank, place)
     r, h, floor = 10.0, 3.0, 12.8
     # beyond the bore's circle: integral of x over the strip abs(y) < h from the circle to the floor
@@ -188,7 +188,7 @@ def wheel(tolerance: float | None = None) -> Part:
         [made.gear1.profile.contour],
         9.0,
         blank,
-        Workpiece(name="wheel 1", wheel=1, module=2.0),
+        Workpiece(name="wheel 1", wheel=1, rim=5.4),
         lambda: mark,
     )
 

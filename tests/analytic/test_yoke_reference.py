@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.cams.disc import make_cam
 from gearcam.cams.yoke import YokeCam, make_yoke
 from gearcam.laws.half_turns import completed
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase
@@ -33,7 +34,7 @@ def reference(name: str = "cycloidal") -> Program:
 
 def yoke(kind: str, motion: Program | None = None, **sizes: Any) -> YokeCam:
     turns = {"clockwise": sizes.pop("clockwise", False)}
-    return make_yoke(motion or reference(), mechanism(kind, **sizes), **turns)
+    return make_yoke(make_cam(motion or reference(), mechanism(kind, **sizes), **turns))
 
 
 def segmented() -> Program:

@@ -16,6 +16,7 @@ from hypothesis import Phase as Stage
 from hypothesis import strategies as st
 
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
+from gearcam.cams.disc import make_cam
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.yoke import YokeCam, make_yoke
@@ -139,7 +140,7 @@ def yoke(design: Given) -> YokeCam | InfeasibleError:
     try:
         cam = CamSpec(base_radius=size) if spec.flat else CamSpec(prime_radius=size)
         motion = completed(make_program(phases, DEFAULT, half=True))
-        made = make_yoke(motion, make_mechanism(spec, cam), tolerance=CHORD)
+        made = make_yoke(make_cam(motion, make_mechanism(spec, cam), tolerance=CHORD))
         assert made.contour.runs
     except InfeasibleError as error:
         return error

@@ -124,7 +124,7 @@ def marked(contour: Contour, name: str = "gear1", **sizes: Any) -> Part:
         bolt_circle=36.0, bolt_diameter=5.0, bolt_angle=2.0, stop_pin=3.0, **sizes,
     )  # fmt: skip
     mark = Mark(center=np.array([0.0, 16.0]), diameter=1.2, depth=0.5)
-    place = Workpiece(name="wheel 1", wheel=1, module=2.0, travel=0.8)
+    place = Workpiece(name="wheel 1", wheel=1, rim=5.4, travel=0.8)
     return make_part(name, [contour], 5.0, blank, place, lambda: mark)
 
 
@@ -206,7 +206,7 @@ def test_curves_stay_within_the_tolerance(tolerance: float) -> None:
         [contour],
         5.0,
         WheelBlank(timing_marks=False),
-        Workpiece(name="wheel 1", wheel=1, module=4.0),
+        Workpiece(name="wheel 1", wheel=1, rim=10.8),
     )
     sheet = sheet_of(cut_svg([wheel_drawing(plain)], "one"))
     (line,) = sheet.lines
@@ -228,7 +228,7 @@ SHAPES = {
 @pytest.mark.parametrize("name", SHAPES)
 def test_nested_parts_keep_a_gap_and_the_sheet_is_tight(name: str) -> None:
     plain = WheelBlank(timing_marks=False)
-    place = Workpiece(name="wheel 1", wheel=1, module=2.0)
+    place = Workpiece(name="wheel 1", wheel=1, rim=5.4)
     parts = [make_part(f"gear{k}", [one], 5.0, plain, place) for k, one in enumerate(SHAPES[name])]
     sheet = sheet_of(cut_svg(nested([labelled(wheel_drawing(one)) for one in parts]), name))
     outlines = sheet.regions("outline")
@@ -267,7 +267,7 @@ def test_names_without_room_stand_below() -> None:
     thin = make_part(
         "gear2_step1", [disc_contour(4.0)], 5.0,
         WheelBlank(timing_marks=False, bore_diameter=6.0),
-        Workpiece(name="wheel 2", wheel=2, module=1.0),
+        Workpiece(name="wheel 2", wheel=2, rim=2.7),
     )  # fmt: skip
     drawing = labelled(wheel_drawing(thin))
     sheet = sheet_of(cut_svg([drawing], "one"))

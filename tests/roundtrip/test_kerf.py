@@ -222,7 +222,7 @@ def test_a_path_is_no_profile_to_follow() -> None:
 
 
 def part(**sizes: Any) -> Part:
-    place = Workpiece(name="wheel 1", wheel=1, module=2.0, travel=1.5)
+    place = Workpiece(name="wheel 1", wheel=1, rim=5.4, travel=1.5)
     return make_part("g", [disc_contour(50.0)], 5.0, WheelBlank(timing_marks=False, **sizes), place)
 
 
@@ -256,7 +256,7 @@ def test_a_chamber_whose_mouth_the_kerf_closes_is_refused_with_a_kerf_that_does_
     corners = [0, 9.5, 9.5 + 6j, 6 + 6j, 6 + 14j, 14 + 14j, 14 + 6j, 10.5 + 6j, 10.5, 20, 20 + 20j,
                20j]  # fmt: skip
     pieces = [line(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
-    plain, place = WheelBlank(timing_marks=False), Workpiece(name="wheel 1", wheel=1, module=1.0)
+    plain, place = WheelBlank(timing_marks=False), Workpiece(name="wheel 1", wheel=1, rim=2.7)
     made = make_part("g", [contour_of(pieces, 1e-3)], 5.0, plain, place)
     with pytest.raises(InfeasibleError, match="no simple outline is left by this kerf") as caught:
         cut_drawing(wheel_drawing(made), 1.2)

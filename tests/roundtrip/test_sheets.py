@@ -56,7 +56,7 @@ def keyed(bore: float = 40.0) -> Part:
         [gear_contour()],
         50.0,
         blank,
-        Workpiece(name="wheel 1", wheel=1, module=5.0),
+        Workpiece(name="wheel 1", wheel=1, rim=13.5),
         lambda: mark,
     )
     holes = [((10.0, 50.0), 20.0), ((-60.0, 3.0), 9.0)]
@@ -71,15 +71,13 @@ def keyed(bore: float = 40.0) -> Part:
 def plain() -> Part:
     blank = WheelBlank(bore_diameter=20.0, timing_marks=False)
     contour = gear_contour(24, 2.0, squash=(1.0, 1.0))
-    return make_part(
-        "gear2", [contour], 12.0, blank, Workpiece(name="wheel 2", wheel=2, module=2.0)
-    )
+    return make_part("gear2", [contour], 12.0, blank, Workpiece(name="wheel 2", wheel=2, rim=5.4))
 
 
 def d_bore() -> Part:
     blank = WheelBlank(bore_diameter=12.0, bore_flat=10.5, keyway_angle=-2.0)
     return make_part(
-        "gear1", [disc_contour(30.0)], 8.0, blank, Workpiece(name="wheel 1", wheel=1, module=2.0)
+        "gear1", [disc_contour(30.0)], 8.0, blank, Workpiece(name="wheel 1", wheel=1, rim=5.4)
     )
 
 

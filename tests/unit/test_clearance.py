@@ -20,7 +20,7 @@ from gearcam.parts.shapes import Circle
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_pairs import profile
 
-SLOTTED = Workpiece(name="wheel 1", wheel=1, module=2.0, travel=1.5)
+SLOTTED = Workpiece(name="wheel 1", wheel=1, rim=5.4, travel=1.5)
 
 
 def blank(**sizes: Any) -> WheelBlank:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.advice import Search
 from gearcam.cams.conjugate import ConjugateCam
 from gearcam.cams.follow import follow
 from gearcam.cli import main
@@ -109,6 +110,19 @@ def test_a_remedy_is_found_and_works() -> None:
     design, _ = refusal(("= 38 ", "= 14 "))
     found = gearcam.remedies(gearcam.build(design), patience=20.0).found
     assert any("cam.prime_radius2_mm" in one.changes for one in found)
+
+
+@pytest.mark.parametrize(("pivot", "other"), [(30.0, 50.0), (200.0, 130.0)])
+def test_a_pivot_out_of_reach_is_moved(pivot: float, other: float) -> None:
+    """Of a triangle with the arm, 90, and the prime radius, 40; the second arm asks for more."""
+    result = gearcam.build(read().with_({"follower.pivot_distance_mm": pivot}))
+    with pytest.raises(InfeasibleError, match="cannot reach the prime circle") as caught:
+        _ = result.cam
+    (_, way) = caught.value.ways
+    assert way.near == {"follower.pivot_distance_mm": other}
+    search = Search(result, frozenset(), 60.0)
+    assert search.along(way)
+    assert gearcam.build(search.found[0].design).cam.facts
 
 
 def test_an_arm_that_cannot_pass_is_refused() -> None:

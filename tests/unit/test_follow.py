@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -230,6 +231,43 @@ def test_of_both_ends_the_larger_curvature_counts() -> None:
     points = np.concatenate([side, 1j * side, -side, -1j * side]).astype(np.complex128)
     beside = 15.0 * (0.5 * math.pi) / 8.0
     assert profile_points(points).sagitta == pytest.approx(np.tile([beside, 0, 0, beside], 4))
+
+
+def test_a_gap_in_the_points_stands_off_as_its_circle() -> None:
+    """A long chord whose turns are larger than those beside it is bent."""
+    points = profile_points(np.delete(circle(500), np.s_[1:8]))
+    assert points.sagitta.max() == pytest.approx(
+        30.0 * (1.0 - math.cos(math.pi * 8 / 500)), rel=0.1
+    )
+
+
+def test_a_long_chord_between_even_turns_is_straight() -> None:
+    """A stadium: its sides stand off no more than the chords of its ends."""
+    end = 30.0 + 20.0 * np.exp(1j * np.linspace(-0.5 * math.pi, 0.5 * math.pi, 60))
+    sagitta = 20.0 * (1.0 - math.cos(math.pi / 118))
+    points = profile_points(np.concatenate([end, -end]))
+    assert np.abs(points.chords).max() == pytest.approx(60.0)
+    assert points.sagitta.max() == pytest.approx(sagitta, rel=0.01)
+
+
+@pytest.mark.parametrize("mechanism", [ROLLER, SWINGING, replace(ROLLER, offset=-9.0)])
+def test_a_roller_within_a_wall_of_circles(mechanism: Mechanism) -> None:
+    """Its centre stands on a smaller circle, by the law of cosines; the far side does not count."""
+    middle, size = 3.0 - 2.0j, 60.0
+    theta = np.linspace(0.0, 2.0 * math.pi, 60)
+    m = replace(mechanism, radius=-mechanism.radius)
+    seen = follow(circle(20000, size, middle), m, theta)
+    place, reach = middle * np.exp(1j * theta), size - mechanism.radius
+    if m.oscillating:
+        toward = m.pivot - place
+        cosine = (m.arm**2 + np.abs(toward) ** 2 - reach**2) / (2.0 * m.arm * np.abs(toward))
+        expected = np.arccos(cosine) - np.angle(toward)
+    else:
+        expected = place.imag + np.sqrt(reach**2 - (m.offset - place.real) ** 2)
+    np.testing.assert_allclose(seen.lift, expected - m.start, atol=2e-6)
+    assert np.all(np.abs(seen.lift - (expected - m.start)) <= 1.1 * seen.error)
+    np.testing.assert_allclose(np.abs(seen.contact - middle), size, atol=2e-6)
+    np.testing.assert_allclose(seen.theta, theta)
 
 
 def test_every_chord_is_in_a_disc_around_its_block() -> None:

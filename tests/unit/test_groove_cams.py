@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,7 @@ def test_a_groove_has_the_area_of_its_width_along_the_pitch_curve(
 
 @pytest.mark.parametrize("kind", ["roller", "roller, offset", "swinging roller"])
 def test_play_by_dense_points(kind: str) -> None:
-    """The slope too, by differences; a swinging follower's own search knows the inner wall."""
+    """The slope too, by differences; and by a follower on points of each wall."""
     made, theta = groove(kind, clearance=0.3, tolerance=1e-5), angles(90)
     m = made.motion.mechanism
     for wall in made.walls:
@@ -56,9 +57,9 @@ def test_play_by_dense_points(kind: str) -> None:
         np.testing.assert_allclose(
             slope[smooth], ((ahead - behind) / (2.0 * step))[smooth], atol=1e-6
         )
-        if wall.side > 0:
-            np.testing.assert_allclose(follow(wall.outline, m, theta).lift, found, atol=3e-5)
-        elif not m.oscillating:
+        own = replace(m, radius=wall.side * m.radius)
+        np.testing.assert_allclose(follow(wall.outline, own, theta).lift, found, atol=3e-5)
+        if wall.side < 0 and not m.oscillating:
             dense = np.concatenate([run.points for run in wall.contour.runs]) @ [1.0, 1.0j]
             dense = dense[:-1, None] + np.diff(dense)[:, None] * np.linspace(0.0, 1.0, 9)
             places = [

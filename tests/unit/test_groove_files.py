@@ -15,7 +15,6 @@ import shapely
 
 import gearcam
 from gearcam.cams.groove import GrooveCam
-from gearcam.cams.lost_motion import Rest
 from gearcam.designs import loads
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.kinds.cam.design import CamDesign
@@ -94,17 +93,25 @@ def test_step_holds_the_groove(side: str) -> None:
     assert solid.center[2] == pytest.approx(height, abs=1e-5)
 
 
-def test_the_inner_wall_carries_the_follower(tmp_path: Path) -> None:
-    """From points and from the drawing: lower than asked by no more than the half width's rest."""
-    result = gearcam.build(FILE_DESIGN)
-    cam = result.cam
-    assert isinstance(cam, GrooveCam)
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+def test_each_wall_carries_a_roller_as_wide_as_the_groove(rotation: str, tmp_path: Path) -> None:
+    """From points and from the drawing; taken for the other wall it is told."""
+    result = gearcam.build(FILE_DESIGN.with_({"cam.rotation": rotation}))
     file = tmp_path / "cam.dxf"
     file.write_bytes(result.files("dxf")["cam.dxf"])
-    expected = Rest(wall=cam.inner, radius=6.0).lift(result.angles)[0]
-    for profile in (cam.outline, file):
-        found = result.follow(profile).columns["s"]
-        np.testing.assert_allclose(found, expected, atol=3e-3)
+    for wall, other in (("inner", "outer"), ("outer", "inner")):
+        outline = next(one.outline for one in result.cam.walls if one.key == wall)
+        for profile in (outline, file):
+            study = result.follow(profile, wall=wall)
+            np.testing.assert_allclose(study.columns["difference"], 0.0, atol=3e-3)
+            assert "other-profile" not in [one.code for one in study.findings]
+        missed = result.follow(outline, wall=other)
+        (finding,) = [one for one in missed.findings if one.code == "other-profile"]
+        assert finding.where.startswith(f"{other} wall, at ")
+        assert finding.value == pytest.approx(abs(missed.facts["followed.largest_difference"]))
+        assert finding.limit == pytest.approx(1.0)
+        assert finding.value is not None
+        assert finding.value > 12.0
 
 
 def test_files_of_a_groove() -> None:
@@ -119,6 +126,19 @@ def test_files_of_a_groove() -> None:
 
 
 FILE_DESIGN = read()
+
+
+def test_an_unknown_key_is_answered_with_those_of_the_form() -> None:
+    for table, key, known, foreign in (
+        ("cam", "foo", "roller_clearance_mm", "run_in_mm"),
+        ("follower", "foo", "roller2_radius_mm", "pivot_height_mm"),
+        ("output", "foo", "motion_step_deg", "way_step_mm"),
+    ):
+        with pytest.raises(DesignError) as caught:
+            FILE_DESIGN.with_({f"{table}.{key}": 1})
+        (problem,) = caught.value.problems
+        assert known in problem.allowed.split(", ")
+        assert foreign not in problem.allowed.split(", ")
 
 
 def test_contact_of_each_wall() -> None:
@@ -178,7 +198,12 @@ def test_the_paths_of_a_smaller_tool_keep_to_the_walls() -> None:
         ("outer_diameter_mm = 110\n", "", "cam.outer_diameter_mm", "is missing for a groove cam"),
         ("groove_depth_mm = 12\n", "", "cam.groove_depth_mm", "is missing for a groove cam"),
         ("depth_mm = 12", "depth_mm = 20", "cam.groove_depth_mm", "no floor.*thickness of 20 mm"),
-        ("_mm = 6", "_mm = 6\nroller2_radius_mm = 6", "follower.roller2_radius_mm", "another rad"),
+        (
+            "_mm = 6",
+            "_mm = 6\nroller2_radius_mm = 6",
+            "follower.roller2_radius_mm",
+            "6.0: is.*another",
+        ),
         ('"front"', '"left"', "cam.side", '"front" or "back"'),
         ('"roller"\nroller_radius_mm = 6', '"point"', "follower.type", '"roller"'),
         ("bore_dia", "clearance_mm = 0.1\nbore_dia", "blank.clearance_mm", "roller_clearance_mm"),

@@ -26,7 +26,7 @@ from helpers_pairs import profile
 FINE = 1e-6
 """Chords of openings in these tests, mm."""
 
-PLACE = Workpiece(name="wheel 1", wheel=1, module=2.0)
+PLACE = Workpiece(name="wheel 1", wheel=1, rim=5.4)
 
 
 def blank(**sizes: Any) -> WheelBlank:
@@ -203,7 +203,7 @@ def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> Non
     Turned back into the wheel's frame it is at +phi1, or at pi - phi2.
     """
     pin = 5.0
-    place = Workpiece(name=f"wheel {wheel}", wheel=wheel, module=2.0, travel=travel)
+    place = Workpiece(name=f"wheel {wheel}", wheel=wheel, rim=5.4, travel=travel)
     part = made(disc_contour(50.0), blank(bore_diameter=20.0, stop_pin=pin), place)
     slot = next(o for o in part.openings if o.kind == "SLOT")
     assert isinstance(slot.shape, Loop)
@@ -235,7 +235,7 @@ def test_the_slot_of_an_open_pair_takes_its_own_travel(wheel: int) -> None:
     assert not lobes.closed
     travel = lobes.period if wheel == 1 else float(job.law.phi2(lobes.period))
     contour = (job.gear1, job.gear2)[wheel - 1].profile.contour
-    place = Workpiece(name=f"wheel {wheel}", wheel=wheel, module=2.0, travel=travel)
+    place = Workpiece(name=f"wheel {wheel}", wheel=wheel, rim=5.4, travel=travel)
     (slot,) = openings(blank(stop_pin=2.0), [contour], place)
     angles = np.angle(slot.shape.points(1e-4) @ [1, 1j] * (1 if wheel == 1 else -1))
     middle = travel / 2 if wheel == 1 else math.pi - travel / 2
@@ -244,7 +244,7 @@ def test_the_slot_of_an_open_pair_takes_its_own_travel(wheel: int) -> None:
     assert inside.max() > travel / 2
 
 
-SLOTTED = Workpiece(name="wheel 1", wheel=1, module=2.0, travel=1.5)
+SLOTTED = Workpiece(name="wheel 1", wheel=1, rim=5.4, travel=1.5)
 
 REFUSED: list[tuple[str, dict[str, Any], str, float, float, str]] = [
     ("bolt and outline", {"bolts": 3, "bolt_circle": 80.0}, "bolt_diameter", 19.9, 20.1,

@@ -1,74 +1,19 @@
-"""Translating cams: reading, refusals, parts, files, follow, Python."""
+"""Translating cams: reading, refusals, parts, Python."""
 
 from __future__ import annotations
 
 import math
-import xml.etree.ElementTree as ET
-from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import shapely
 
 import gearcam
-from gearcam.cams.sliding import SlidingCam
+from gearcam.advice import Search
 from gearcam.designs import loads
-from gearcam.drawings import cut_drawing, reach
 from gearcam.errors import DesignError, InfeasibleError
-from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.cam.design import CamDesign
-from helpers_pairs import PROFILES
+from helpers_sliding import DEEP, FILE, ONE, built, cam_of, read
 from helpers_step_read import read_step
-
-FILE = (PROFILES / "translating_cam.toml").read_text("utf-8")
-ONE = """
-kind = "cam"
-name = "one"
-[[motion]]
-type = "rise"
-way_mm = 60
-law = "3-4-5"
-lift_mm = 15
-[[motion]]
-type = "dwell"
-way_mm = 30
-[[motion]]
-type = "return"
-way_mm = 40
-law = "cycloidal"
-[follower]
-type = "roller"
-roller_radius_mm = 6
-[cam]
-form = "translating"
-run_in_mm = 20
-run_out_mm = 20
-thickness_mm = 10
-[blank]
-height_mm = 40
-"""
-DEEP = "groove_depth_mm = 8\n"
-
-
-def read(text: str, *changes: tuple[str, str]) -> CamDesign:
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    made = loads(text)
-    assert isinstance(made, CamDesign)
-    return made
-
-
-def built(text: str, *changes: tuple[str, str]) -> CamResult:
-    made = gearcam.build(read(text, *changes))
-    assert isinstance(made, CamResult)
-    return made
-
-
-def cam_of(result: CamResult) -> SlidingCam:
-    assert isinstance(result.cam, SlidingCam)
-    return result.cam
 
 
 @pytest.mark.parametrize(
@@ -167,6 +112,15 @@ def test_the_motion_is_told_along_the_way() -> None:
     assert result.facts["motion.peak_velocity"] == pytest.approx(0.75)
 
 
+@pytest.mark.parametrize("ways", [-1e-3, [0.0, 170.001], math.inf])
+def test_ways_beyond_the_cam_are_refused(ways: float | list[float]) -> None:
+    result = built(ONE)
+    for table in (result.motion, result.contact):
+        with pytest.raises(DesignError, match="mm, from 0 to 170"):
+            table(ways)
+    np.testing.assert_array_equal(result.motion([0.0, 170.0 + 1e-12])["lift_mm"], 0.0)
+
+
 def test_contact_in_both_frames() -> None:
     result = built(FILE)
     for wall, side in (("lower", 1.0), ("upper", -1.0)):
@@ -254,62 +208,23 @@ def test_clearance_is_taken_off_the_wall_alone() -> None:
     assert on.max() < 2e-3
 
 
-def test_files_of_a_groove(tmp_path: Path) -> None:
-    result = built(FILE)
-    assert set(result.files("csv")) == {"profile_lower.csv", "profile_upper.csv", "motion.csv"}
-    assert set(result.files("inspection")) == {"inspection_lower.csv", "inspection_upper.csv"}
-    text = result.files("dxf")["cam.dxf"].decode()
-    layers = {"GROOVE", "PITCH", "BLANK", "HOLE", "CENTER"}
-    assert {name for name in layers if f"\n{name}\n" in text} == layers
-    for name in ("cam.svg", "cam_drawing.svg"):
-        kind = "svg" if name == "cam.svg" else "drawing-svg"
-        ET.fromstring(result.files(kind)[name])
-    file = tmp_path / "lower.csv"
-    file.write_bytes(result.files("csv")["profile_lower.csv"])
-    found = result.follow(file).columns
-    np.testing.assert_allclose(found["s"], found["s_asked"], atol=0.04)
-    drawing = tmp_path / "cam.dxf"
-    drawing.write_bytes(result.files("dxf")["cam.dxf"])
-    with pytest.raises(DesignError, match="one closed outline"):
-        result.follow(drawing)
-
-
-def test_a_profile_is_followed() -> None:
-    result = built(ONE, ("height_mm = 40", "height_mm = 40\n[output]\nchord_tolerance_mm = 1e-4"))
-    study = result.follow(cam_of(result).edge.vertices)
-    difference = study.columns["difference"]
-    assert np.abs(difference).max() < 2e-4
-    assert study.columns["error"].max() < 0.02  # the plate's corners are no curve
-    assert "u_mm" in study.columns
-
-
-def test_the_kerf_of_a_groove_that_goes_through() -> None:
-    result = built(FILE, (DEEP, ""), ("[output]", "[output]\nkerf_mm = 0.4"))
-    (drawing,) = result.form.drawings(result)
-    paths = {one.layer: one.shape for one in cut_drawing(drawing, 0.4).features}
-    cam = cam_of(result)
-    assert cam.groove is not None
-    groove = shapely.Polygon(reach(paths["GROOVE_KERF"]))
-    assert groove.area == pytest.approx(cam.groove.polygon.buffer(-0.2).area, rel=1e-4)
-    blank = shapely.Polygon(reach(paths["BLANK_KERF"]))
-    assert blank.area == pytest.approx(shapely.box(0, 0, 194.1, 60).buffer(0.2).area, rel=1e-4)
-    assert set(result.files("dxf")) == {"cam.dxf"}
-
-
-def test_the_way_of_a_tool() -> None:
-    result = built(FILE)
-    rows = result.files("tool-path")["tool_path.csv"].decode().splitlines()
-    points = np.loadtxt(rows, delimiter=",", skiprows=1)
-    np.testing.assert_allclose(points, cam_of(result).lower.pitch_line, atol=1e-6)
-    design = replace(result.design, output=replace(result.design.output, tool_radius=4.0))
-    rows = gearcam.build(design).files("tool-path")["tool_path.csv"].decode().splitlines()
-    path = shapely.LinearRing(np.loadtxt(rows, delimiter=",", skiprows=1))
-    middle = shapely.LineString(cam_of(result).lower.pitch_line)
-    away = shapely.distance(shapely.points(path.coords), middle)
-    np.testing.assert_allclose(away, 2.025, atol=2e-3)
-    design = replace(result.design, output=replace(result.design.output, tool_radius=6.1))
-    with pytest.raises(InfeasibleError):
-        gearcam.build(design).files("tool-path")
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("blank.height_mm", 20),  # its bolts need room besides
+        ("blank.bolt_height_mm", 20),
+        ("blank.bolt_spacing_mm", 200),
+    ],
+)
+def test_what_the_plate_has_no_room_for_is_moved(key: str, value: float) -> None:
+    result = gearcam.build(read(FILE).with_({key: value}))
+    with pytest.raises(InfeasibleError) as caught:
+        _ = result.parts
+    search = Search(result, frozenset(), 60.0)
+    assert any(search.along(way) for way in caught.value.ways)
+    (remedy,) = search.found
+    assert list(remedy.changes) == [key]
+    assert gearcam.build(remedy.design).parts
 
 
 def test_findings_are_told_along_the_way() -> None:
@@ -341,13 +256,3 @@ def test_a_cam_made_in_python_is_the_one_of_the_file() -> None:
         blank=gearcam.CamBlank(height=40.0),
     )
     assert design == read(ONE)
-
-
-def test_the_picture_stands_where_it_is_asked() -> None:
-    result = built(FILE)
-    with pytest.raises(InfeasibleError, match="slide so far") as caught:
-        built(FILE, ("u_mm = 80", "u_mm = 171")).files("svg")
-    assert caught.value.limit == pytest.approx(170.0)
-    drawing = result.form.picture(result)
-    x = reach(drawing.features[0].shape)[:, 0]
-    assert (x.min(), x.max()) == pytest.approx((80.0 - 182.05, 80.0 + 12.05))

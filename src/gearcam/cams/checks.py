@@ -1,26 +1,35 @@
 """The checks of cams: pressure angles, undercut, shocks, sharp profiles, coarse rows.
 
 Importing this room registers them. A check sees a `Cam`, looks at all its motions or walls, and
-yields findings; where there are several, the place names which.
+yields findings; where there are several, the place names which. That of a followed profile sees the
+wall that it was taken for, and what was found.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from gearcam.cams.cam import Cam
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.spec import KIND
+from gearcam.cams.spec import FOLLOWED, KIND
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.findings import Remark, check
 from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH, Param
 
+if TYPE_CHECKING:
+    from gearcam.cams.follow import Followed
+
 PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
 """Largest pressure angle by custom, rad: of translating followers, whose guides jam, and of
 oscillating ones."""
+
+_MISSED: Final = 0.1
+"""Part of the whole lift by which no wear makes a cam's own profile miss it."""
 
 _TURN: Final = 2.0 * math.pi
 
@@ -128,13 +137,12 @@ def _stretches(pairs: list[tuple[float, float]], told: Callable[[float], str]) -
 def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
     """Yield place, jump and unit of every knot whose derivative of this order jumps."""
     lead = cam.motions[0]
-    swings = lead.mechanism.oscillating
-    driver = lead.mechanism.driver
-    unit = ("deg/" if swings else "mm/") + driver.per + ("2" if order == 2 else "")
+    driver, (scale, unit) = lead.mechanism.driver, lead.mechanism.outward
+    unit = f"{unit}/{driver.per}{order if order > 1 else ''}"
     for jump in lead.program.jumps:
         if jump.order == order:
-            by = (jump.after - jump.before) / driver.rate**order
-            yield f"at {driver.told(jump.theta)}", math.degrees(by) if swings else by, unit
+            by = scale * (jump.after - jump.before) / driver.rate**order
+            yield f"at {driver.told(jump.theta)}", by, unit
 
 
 @check("hard-shock", kind=KIND)
@@ -241,4 +249,27 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
             f"is wider than {shown(cam.face_width, 4)} mm.",
             value=cam.face_width,
             unit="mm",
+        )
+
+
+@check("other-profile", kind=FOLLOWED)
+def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a profile that is not the one of its cam.
+
+    Looks at: how far the lift is from the one asked for, in a study of a followed profile.
+    """
+    wall, seen = found
+    low, high = wall.program.range
+    scale, unit = wall.mechanism.outward
+    off = np.abs(seen.lift - wall.program.derivatives(seen.theta, 0)[0])
+    worst, most = int(off.argmax()), _MISSED * (high - low)
+    if off[worst] > most:
+        yield Remark(
+            f"The follower stands up to {shown(scale * float(off[worst]), 4)} {unit} off the lift "
+            f"of {shown(scale * (high - low))} {unit}: the profile is that of another wall or "
+            "another cam, or lies in another frame.",
+            _at(wall, f"at {wall.mechanism.driver.told(float(seen.theta[worst]))}"),
+            scale * float(off[worst]),
+            unit=unit,
+            limit=scale * most,
         )

@@ -25,12 +25,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.cams.cam import Cam
-from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
+from gearcam.cams.disc import demand_standing
 from gearcam.cams.mechanism import Mechanism, swing
-from gearcam.cams.wall import Wall
+from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Fact, Facts
+from gearcam.facts import Facts
 from gearcam.laws.program import Program
 from gearcam.numerals import shown
 
@@ -106,11 +106,8 @@ class ConjugateCam(Brief, Cam):
     @cached_property
     def facts(self) -> Facts:
         """What the cams know of themselves; the facts of their result tell more."""
-        low, high = self.first.program.range
-        swings = self.first.mechanism.oscillating
-        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
         tree = {
-            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "total_lift": self.first.total_lift,
             "prime_radius_mm": self.first.mechanism.least,
             "prime_radius2_mm": self.prime2,
             **{
@@ -153,7 +150,7 @@ def make_conjugate(
     InfeasibleError
         If it cannot.
     """
-    make_cam(program, mechanism)
+    demand_standing(program, mechanism)
     common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
     lowest, highest = (mechanism.start + lift for lift in program.range)
     place = _swinging if mechanism.oscillating else _sliding

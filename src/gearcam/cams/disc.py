@@ -16,7 +16,7 @@ from gearcam.cams.cam import Cam
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.errors import InfeasibleError
-from gearcam.facts import Fact, Facts
+from gearcam.facts import Facts
 from gearcam.laws.program import Program
 
 _STANDSTILL = 1e-9
@@ -35,12 +35,9 @@ class DiscCam(Wall, Cam):
     @cached_property
     def facts(self) -> Facts:
         """What the cam knows of itself; the facts of its result tell more."""
-        low, high = self.program.range
-        swings = self.mechanism.oscillating
-        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
         convex, concave = self.profile_radius
         tree = {
-            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "total_lift": self.total_lift,
             "prime_radius_mm": self.mechanism.least,
             "base_radius_mm": self.mechanism.least - self.mechanism.radius,
             "perimeter_mm": self.size.perimeter,
@@ -82,25 +79,42 @@ def make_cam(
     InfeasibleError
         If it cannot.
     """
-    made = DiscCam(program=program, mechanism=mechanism, clockwise=clockwise, tolerance=tolerance)
+    demand_standing(program, mechanism)
+    return DiscCam(program=program, mechanism=mechanism, clockwise=clockwise, tolerance=tolerance)
+
+
+def demand_standing(program: Program, mechanism: Mechanism) -> None:
+    """Refuse a follower that cannot stand wherever the lift puts it.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    mechanism : Mechanism
+        The follower.
+
+    Raises
+    ------
+    InfeasibleError
+        If it cannot.
+    """
     low, high = program.range
     if mechanism.oscillating:
-        _demand_swing(made, mechanism.start + low, mechanism.start + high)
+        _demand_swing(program, mechanism, mechanism.start + low, mechanism.start + high)
     least = replace(mechanism, start=mechanism.start + low).least
     if not (least > mechanism.radius and (mechanism.oscillating or mechanism.start + low > 0.0)):
+        scale, unit = mechanism.outward
         raise InfeasibleError(
             "the lowest lift brings the follower onto the cam's axis",
             where="motion",
-            value=low if not mechanism.oscillating else math.degrees(low),
-            unit="deg" if mechanism.oscillating else "mm",
+            value=scale * low,
+            unit=unit,
             nearest="this is the lowest lift",
         )
-    return made
 
 
-def _demand_swing(made: DiscCam, low: float, high: float) -> None:
+def _demand_swing(program: Program, mechanism: Mechanism, low: float, high: float) -> None:
     """Refuse an arm that passes the line of centres, and a face that loses its contact."""
-    mechanism = made.mechanism
     least, most = (-0.5 * math.pi, 0.5 * math.pi) if mechanism.flat else (0.0, math.pi)
     if not (low > least and high < most):
         what = "stands across the line of centres" if mechanism.flat else "passes that line"
@@ -112,7 +126,7 @@ def _demand_swing(made: DiscCam, low: float, high: float) -> None:
             unit="deg",
             nearest="these are lifts",
         )
-    if mechanism.flat and not (slowest := made.program.range_of(1)[0]) > -1.0 + _STANDSTILL:
+    if mechanism.flat and not (slowest := program.range_of(1)[0]) > -1.0 + _STANDSTILL:
         raise InfeasibleError(
             "the face swings down faster than the cam turns: no profile can carry it",
             where="motion",

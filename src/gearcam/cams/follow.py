@@ -13,6 +13,9 @@ oscillating flat     ``Psi = Psi_z + arcsin(f/D)``
 where ``z = d - D*exp(-i*Psi_z)``. A cam that slides is moved along ``+x`` by its way instead, and
 seen along its follower's way or from the height of its pivot.
 
+From within a wall that lies outside the pitch curve, which has a negative radius, and below the
+axis the same is seen in a mirror: what would be lowest is highest there.
+
 The same formulas with r, or the face, *grown* by g give the
 position on a disc of radius g around z, and so a bound for all places within: blocks of points
 that cannot be the highest are left out, and none that can.
@@ -79,7 +82,8 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
         A closed profile in the cam's frame, in order, either way around. For a polyline with
         bulges those of `gearcam.numeric.bulges.flatten_bulges`; all of them lie on its arcs.
     mechanism : Mechanism
-        The follower; the cam turns counter-clockwise by theta, or slides.
+        The follower; the cam turns counter-clockwise by theta, or slides. On a wall outside the
+        pitch curve its radius is negative.
     theta : (m,) array, rad
         Cam angles.
 
@@ -93,12 +97,23 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
         If the points are no closed profile around the axis, or the follower cannot rest on it.
     """
     profile = profile_points(points, around=not mechanism.slide)
-    if mechanism.below:  # seen in a mirror below the axis, where the cam turns the other way
-        above = replace(mechanism, start=-mechanism.start)
-        seen = follow(np.conj(profile.points), above, -np.asarray(theta, dtype=float))
-        return replace(seen, theta=-seen.theta, lift=-seen.lift, contact=np.conj(seen.contact))
-    _demand_clear_pivot(profile, mechanism)
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
+    if mechanism.away > 0:
+        _demand_clear_pivot(profile, mechanism)
+        return _rested(profile, mechanism, angles)
+    # seen in a mirror, where a cam turns the other way
+    m, sense = mechanism, 1.0 if mechanism.slide else -1.0
+    other = replace(m, start=-m.start, radius=abs(m.radius), tilt=-m.tilt, height=-m.height)
+    points = np.conj(profile.points)
+    within = m.radius < 0.0 and not m.slide  # the metal lies to the right of its edge
+    if not within:
+        points = points[::-1].copy()
+    seen = _rested(replace(profile, points=points), other, sense * angles)
+    return replace(seen, theta=angles, lift=-seen.lift, contact=np.conj(seen.contact))
+
+
+def _rested(profile: ProfilePoints, mechanism: Mechanism, angles: Array) -> Followed:
+    """Return how a follower rests on a profile, a round one below the axis within it."""
     noise = _NOISE * (1.0 if mechanism.oscillating else profile.size + mechanism.radius)
     parts = []
     for first in range(0, max(len(angles), 1), _TOGETHER):
@@ -204,7 +219,8 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
             return z.imag + grow, np.ones(z.shape)
         aside, reach = z.real - mechanism.offset, mechanism.radius + grow
         room = (reach - aside) * (reach + aside)
-        return z.imag + np.sqrt(np.maximum(room, 0.0)), room
+        rest = z.imag + np.sqrt(np.maximum(room, 0.0))
+        return rest, _on_own_side(mechanism, z, grow, room)
     toward = mechanism.pivot - z
     own, far = -np.angle(toward), np.abs(toward)
     if mechanism.flat:
@@ -218,7 +234,13 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
     turn = 2.0 * np.arctan2(np.sqrt(np.maximum(room, 0.0)), np.sqrt(rest))
     if mechanism.slide:  # beyond the pivot, where the arm of a disc cam's follower may stand
         room = np.where(toward.real + reach < 0.0, -np.inf, room)
+    room = _on_own_side(mechanism, z, grow, room)
     return np.where(reach > far + arm, np.inf, own + turn), room
+
+
+def _on_own_side(mechanism: Mechanism, z: Plane, grow: Array | float, room: Array) -> Array:
+    """Return the room of discs; one within a profile has none beyond the axis."""
+    return np.where(z.imag - grow > 0.0, -np.inf, room) if mechanism.below else room
 
 
 def _reached(

@@ -19,11 +19,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.cams.cam import Cam
-from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
+from gearcam.cams.disc import demand_standing
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.wall import PitchMotion, Wall
+from gearcam.cams.wall import CHORD_TOLERANCE, PitchMotion, Wall
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Fact, Facts
@@ -85,14 +85,12 @@ class GrooveCam(Brief, Cam):
     @cached_property
     def facts(self) -> Facts:
         """What the cam knows of itself; the facts of its result tell more."""
-        low, high = self.motion.program.range
-        swings = self.motion.mechanism.oscillating
-        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+        lost, (scale, unit) = self.lost_motion, self.motion.mechanism.outward
         tree = {
-            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "total_lift": self.motion.total_lift,
             "prime_radius_mm": self.motion.mechanism.least,
             "width_mm": self.width,
-            "lost_motion": Fact(scale * self.lost_motion.value, "lost motion", unit=unit),
+            "lost_motion": Fact(scale * lost.value, "lost motion", unit=unit),
             **{
                 wall.key: {"perimeter_mm": wall.size.perimeter, "area_mm2": wall.size.area}
                 for wall in self.walls
@@ -158,7 +156,7 @@ def make_groove(
         relief = wall(far, side, "relief")
     inner, outer = wall(radius, 1, "inner"), wall(second, -1, "outer")
     deepest = relief if relief is not None and relief.side > 0 else inner
-    make_cam(program, deepest.mechanism)
+    demand_standing(program, deepest.mechanism)
     made = GrooveCam(
         motion=PitchMotion(mechanism=mechanism, **common),
         inner=inner,

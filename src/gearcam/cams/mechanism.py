@@ -153,6 +153,11 @@ class Mechanism(Brief):
         return (self.arm or self.pivot) if self.oscillating else 1.0
 
     @property
+    def outward(self) -> tuple[float, str]:
+        """What turns a lift, mm or rad, into what people are told, and the unit: mm or deg."""
+        return (math.degrees(1.0), "deg") if self.oscillating else (1.0, "mm")
+
+    @property
     def below(self) -> bool:
         """Whether a round follower stands below the axis, and comes nearer as it rises."""
         return not (self.flat or self.slide) and self.start < 0.0
@@ -229,7 +234,10 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
     low, high = abs(pivot - arm), pivot + arm
     if not low < size < high:
         what, parts = "the arm cannot reach the prime circle", "arm and pivot"
-        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high)
+        key, least = "follower.pivot_distance_mm", abs(arm - size)
+        near = least if pivot <= least else arm + size
+        way = Way(near={key: near}, far={key: max(arm, size)})
+        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, way)
     return Mechanism(start=swing(pivot, arm, size), arm=arm, pivot=pivot, **kind)
 
 

@@ -54,12 +54,12 @@ class ProfilePoints:
 
     @cached_property
     def sagitta(self) -> Array:
-        """Estimated height of the curve over each chord, mm: the larger of its ends' curvatures."""
-        length, before = np.abs(self.chords), np.roll(self.chords, 1)
-        turn = np.abs(np.angle(self.chords * np.conj(before)))
-        turn[turn >= self.corner] = 0.0
-        bend = 2.0 * turn / (length + np.abs(before))
-        return np.maximum(bend, np.roll(bend, -1)) * length**2 / 8.0
+        """Estimated height of the curve over each chord, mm: the larger of those from its ends."""
+        length = np.abs(self.chords)
+        turn = np.angle(self.chords * np.conj(np.roll(self.chords, 1)))
+        turn[np.abs(turn) >= self.corner] = 0.0
+        back = _heights(length[::-1], np.roll(turn[::-1], 1))[::-1]
+        return np.maximum(_heights(length, turn), back)
 
     @cached_property
     def blocks(self) -> tuple[Ints, Plane, Array]:
@@ -81,6 +81,19 @@ class ProfilePoints:
         middle = 0.5 * (reach[:, 0] + reach[:, -1])
         radius = np.abs(reach - middle[:, None]).max(axis=1)
         return index, middle, radius + 2.0 * self.sagitta[index].max(axis=1)
+
+
+def _heights(length: Array, turn: Array) -> Array:
+    """Return heights of a curve over chords, mm, from the turns at their starts, rad.
+
+    Both chords of a turn are taken to stand off the curve alike, as far as the turn before is as
+    large: a long chord between short ones is straight. By what the turn is larger the chord itself
+    is bent, as over a gap in the points, at most as the circle through both chords.
+    """
+    before = np.roll(length, 1)
+    bend = 0.25 * np.abs(turn) * length / (length + before)
+    more = 0.25 * length * (np.abs(turn) - np.sign(turn) * np.roll(turn, 1))
+    return np.minimum(bend * length, bend * before + np.maximum(more, 0.0))
 
 
 def profile_points(points: Plane | Array, around: bool = True) -> ProfilePoints:

@@ -36,6 +36,9 @@ from gearcam.numeric.contour import Contour
 _UPRIGHT = 0.5 * math.pi
 """Angle of an arm over a sliding cam, rad, at which its roller no longer goes along the cam."""
 
+_FAR = 3.0
+"""How large a plate is tried, over the least: bolts stand beside what is cut into it."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SlidingCam(Brief, Cam):
@@ -125,11 +128,8 @@ class SlidingCam(Brief, Cam):
     @cached_property
     def facts(self) -> Facts:
         """What the cam knows of itself; the facts of its result tell more."""
-        low, high = self.motion.program.range
-        swings = self.motion.mechanism.oscillating
-        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
         tree = {
-            "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+            "total_lift": self.motion.total_lift,
             "way_mm": Fact(self.way, "way"),
             "area_mm2": self.edge.moments.area,
         }
@@ -244,5 +244,5 @@ def _too_small(key: str, word: str, value: float, limit: float) -> InfeasibleErr
         limit=limit,
         unit="mm",
         nearest="a plate just above the limit has no metal left there",
-        ways=(Way(near={where: limit}, far={where: 1.5 * limit}),),
+        ways=(Way(near={where: limit}, far={where: _FAR * limit}),),
     )

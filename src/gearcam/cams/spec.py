@@ -23,6 +23,9 @@ from gearcam.quantities import ANGLE, LENGTH, TEXT, param
 KIND: Final = "cams"
 """The checks of cams."""
 
+FOLLOWED: Final = "followed profiles"
+"""The checks of profiles that a follower was put on."""
+
 Problem = tuple[str, int | None, str, str]
 """Field, number of an item, what is wrong, what is allowed."""
 

@@ -27,6 +27,7 @@ from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, star_shaped, trimmed
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
+from gearcam.facts import Fact
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
@@ -75,6 +76,13 @@ class PitchMotion(Brief):
     def curve(self) -> CamCurve:
         """The curves of the cam as it turns counter-clockwise."""
         return CamCurve(program=self.program, mechanism=self.mechanism)
+
+    @property
+    def total_lift(self) -> Fact:
+        """From the lowest to the highest lift, for people."""
+        low, high = self.program.range
+        scale, unit = self.mechanism.outward
+        return Fact(scale * (high - low), "lift", unit=unit)
 
     def pressure(self, kind: str) -> Range | None:
         """Return the signed pressure angles, rad, over all phases of a `kind` (rise, return)."""

@@ -14,9 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
-from gearcam.cams.mechanism import Mechanism
-from gearcam.laws.program import Program
+from gearcam.cams.disc import DiscCam
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,34 +39,22 @@ class YokeCam(DiscCam):
         return None if radius is None else self.mechanism.start - radius.low.value
 
 
-def make_yoke(
-    program: Program,
-    mechanism: Mechanism,
-    *,
-    clockwise: bool = False,
-    tolerance: float = CHORD_TOLERANCE,
-) -> YokeCam:
-    """Return a yoke cam after proving that its follower can stand wherever the lift puts it.
+def make_yoke(cam: DiscCam) -> YokeCam:
+    """Return a disc cam as one that its follower goes around.
 
     Parameters
     ----------
-    program : Program
-        The lift, of two opposite half turns.
-    mechanism : Mechanism
-        The follower that rises with it, translating and without an offset.
-    clockwise : bool
-        Whether the cam turns clockwise.
-    tolerance : float, mm
-        Chord error of its contours.
+    cam : DiscCam
+        Its lift of two opposite half turns, its follower, which rises with it, translating and
+        without an offset.
 
     Returns
     -------
     YokeCam
-
-    Raises
-    ------
-    InfeasibleError
-        If it cannot.
     """
-    make_cam(program, mechanism)
-    return YokeCam(program=program, mechanism=mechanism, clockwise=clockwise, tolerance=tolerance)
+    return YokeCam(
+        program=cam.program,
+        mechanism=cam.mechanism,
+        clockwise=cam.clockwise,
+        tolerance=cam.tolerance,
+    )

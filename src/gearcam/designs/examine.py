@@ -152,10 +152,11 @@ def _examine_table(
 ) -> None:
     known, raw = kind.table(title), document.get(title, {})
     if title not in document and title in kind.required:
-        rule = ", ".join(known.entries)
+        rule = ", ".join(kind.listed(document, known))
         found.faults.append(Fault((title,), f"the table [{title}] is missing", allowed=rule))
         return
-    faults = list(faults_of(known, raw, home=lambda key: home_of(kind, key)))
+    listed = kind.listed(document, known)
+    faults = list(faults_of(known, raw, home=lambda key: home_of(kind, key), listed=listed))
     found.faults += faults
     if not faults and known.owner is not None:
         made = known.owner(**known.inward(raw))

@@ -6,7 +6,8 @@ names it, and only that of a file is loaded. Its modules:
 - `design`: ``KIND``, a `DesignKind`: the tables of a file, their rules, the design they make;
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
 - `facts`: ``facts(result, measured)`` returns what is known of it;
-- `files`: ``FILES``, what makes each kind of file;
+- `files`: ``FILES``, what makes each kind of file; where it has ``report`` among them,
+  ``assembled(result, measured)`` returns its solids where they stand;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
 - `advice`: ``ways(...)`` yields changes that may help where it is refused or has errors;
 - `public`: in its ``__all__`` the classes that people who write Python make designs of (the
@@ -83,6 +84,9 @@ class DesignKind:
         What returns more of the JSON schema of a table, by its title.
     rules : callable
         ``rules(document, found)`` yields faults between the tables.
+    listed : callable
+        ``listed(document, table)`` returns the keys of a table that people are told of where one is
+        unknown or all are missing.
     later : callable
         ``later(document)`` returns the fault of what is not made, and only that is told, or None.
     formats : tuple of str
@@ -113,6 +117,7 @@ class DesignKind:
     )
     conditions: Mapping[str, Callable[[], dict[str, Any]]] = field(default_factory=dict)
     rules: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
+    listed: Callable[[Mapping[str, Any], Table], Iterable[str]] = lambda _, table: table.entries
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]
     rooms: tuple[str, ...] = ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from gearcam.designs.faults import Fault, allowed, is_of, key_hint, show, value_fault
@@ -13,7 +13,12 @@ from gearcam.designs.table import Key, Table
 
 
 def faults_of(
-    table: Table, raw: Any, *, home: Callable[[str], str], at: Path = ()
+    table: Table,
+    raw: Any,
+    *,
+    home: Callable[[str], str],
+    at: Path = (),
+    listed: Iterable[str] | None = None,
 ) -> Iterator[Fault]:
     """Yield everything that is wrong in a table by itself.
 
@@ -27,6 +32,8 @@ def faults_of(
         Gives the words that say where a key of another place belongs.
     at : tuple
         Where the table stands; under its title if left out.
+    listed : iterable of str, optional
+        The keys that people are told of where one is unknown; all if left out.
 
     Yields
     ------
@@ -34,7 +41,7 @@ def faults_of(
         In the order of keys; one for each place.
     """
     at = at or (table.title,)
-    known = ", ".join(table.entries) or "no keys"
+    known = ", ".join(table.entries if listed is None else listed) or "no keys"
     if not isinstance(raw, Mapping):
         yield Fault(at, f"{show(raw)} is not a table", raw, f"a table [{table.title}] with {known}")
         return

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.drawings import CLOSED, INNER, KERF, OUTLINE, PROFILE
+from gearcam.drawings import CLOSED, INNER, KERF, OUTER_WALL, OUTLINE, PROFILE
 from gearcam.errors import GearcamError
 from gearcam.export.dxf import MILLIMETRES
 from gearcam.numeric.arrays import Array
@@ -137,7 +137,7 @@ def _joined(chain: Sequence[tuple[Array, Array]]) -> _Outline:
     return vertices, np.concatenate([bulges for _, bulges in chain]), closed
 
 
-def read_outline(data: bytes) -> tuple[Array, Array]:
+def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
     """Return the one closed outline of a DXF file.
 
     Parameters
@@ -145,6 +145,8 @@ def read_outline(data: bytes) -> tuple[Array, Array]:
     data : bytes
         The file. Where it holds several outlines, that on the layer PROFILE, OUTLINE
         or INNER counts.
+    outer : bool
+        Whether of a groove's walls that on the layer OUTER is meant.
 
     Returns
     -------
@@ -166,7 +168,7 @@ def read_outline(data: bytes) -> tuple[Array, Array]:
             f"the layer {paths[0]} holds the path of a cutter, not an edge: "
             "take a file that was written without a kerf"
         )
-    for wanted in (PROFILE, OUTLINE, INNER, ""):
+    for wanted in (PROFILE, OUTLINE, OUTER_WALL if outer else INNER, ""):
         found = [
             (vertices, bulges)
             for layer in layers

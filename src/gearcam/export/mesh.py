@@ -1,4 +1,4 @@
-"""Mesh files: STL (binary), 3MF and GLB, the latter two written by trimesh.
+"""Mesh files: STL (binary), 3MF and GLB, the latter two written by trimesh; its view of them too.
 
 All three hold millimetres. STL has no unit; 3MF states it; glTF means metres, but every program
 that takes wheels reads the numbers, so the GLB keeps millimetres and says so in its scene's extras
@@ -85,6 +85,16 @@ def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     scene = _scene(bodies)
     scene.metadata |= {"units": "mm", "name": name}
     return bytes(export_glb(scene, include_normals=False))
+
+
+def view_page(bodies: Mapping[str, Mesh]) -> str:
+    """Return a page in which closed bodies are turned and zoomed: trimesh's own (see `stl_bytes`).
+
+    It needs no network, as it holds the bodies and all its scripts, and a browser with WebGL.
+    """
+    from trimesh.viewer.notebook import scene_to_html
+
+    return scene_to_html(_scene(bodies))
 
 
 def trimeshes(bodies: Mapping[str, Mesh]) -> dict[str, Trimesh]:

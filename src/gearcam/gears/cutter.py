@@ -13,9 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.spec import BasicRack
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import largest_fitting
 
 _CONCAVE_MARGIN = 1.15
@@ -102,6 +105,49 @@ class Cutter(Brief):
         angle = math.acos(math.cos(self.alpha) / (1.0 + kc * d))
         rise = (math.tan(angle) - angle) - (math.tan(self.alpha) - self.alpha)
         return edge + rise / kc
+
+    def gap(self, x: Array, depth: Array, middle: Array) -> Array:
+        """Return how far points are from a tooth of the cutter, not positive inside it.
+
+        Parameters
+        ----------
+        x, depth : (n,) arrays, mm
+            Along the common tangent from the pitch point, and below it.
+        middle : (n,) array, mm
+            Arc length from the pitch point to the middle of the tooth.
+
+        Returns
+        -------
+        (n,) array, mm
+            Infinite above the wheel's addendum, and within a pinion's base circle.
+
+        Notes
+        -----
+        Involutes of one base circle are parallels: a point aside of a flank by an arc v of the
+        pitch circle is ``v*cos(alpha)`` away, as with the rack.
+        """
+        kc, slope, tip = self.kc, math.tan(self.alpha), self.offset - self.half_space
+        # across and along: from the centre of the tip's arc
+        if kc * self.half_space < _FLAT:
+            down, aside, lean = depth, np.abs(x - middle), self.alpha
+            narrower = down * slope
+            across, along = aside + tip, down - self.depth
+        else:
+            radius = np.hypot(x, 1.0 / kc + depth)
+            down = radius - 1.0 / kc
+            aside = np.abs(np.arctan2(x, 1.0 / kc + depth) / kc - middle)
+            over = kc * radius / math.cos(self.alpha)
+            roll = np.sqrt(np.maximum(over * over - 1.0, 0.0))
+            rise = roll - np.arctan(roll) - (slope - self.alpha)
+            narrower = np.where(over < 1.0, math.inf, rise / kc)
+            center, turned = 1.0 / kc + self.depth, kc * (aside + tip)
+            across, along = radius * np.sin(turned), radius * np.cos(turned) - center
+            lean = math.acos(math.cos(self.alpha) / (kc * center))
+        flank = (aside - self.half_space + narrower) * math.cos(self.alpha)
+        arc = (across > 0.0) & (along * math.cos(lean) > across * math.sin(lean))
+        round_tip = np.hypot(across, along) - self.tip_radius
+        gap = np.where(arc, round_tip, np.maximum(flank, down - self.dedendum))
+        return np.where(down < -self.addendum, math.inf, gap)
 
     @property
     def fits(self) -> bool:

@@ -121,6 +121,26 @@ class Outline(Brief):
         sparse = [run.points[: -1 : self.oversampling] for run in self.body]
         return np.vstack([self.toothed[:-1], *sparse])
 
+    @cached_property
+    def teeth(self) -> tuple[Ints, Ints]:
+        """Numbers of the teeth on it, (k,), rising, and the vertices of each, (k, 2).
+
+        Each goes from one to the other end of the chords that follow its flanks and tip, without
+        its fillets; the last of its `points` is the smaller number where the tooth lies over the
+        first of all. An open driven wheel has half a tooth at both ends: its first is number 0.
+        """
+        closed, rows = self.toothing.closed, self.rows
+        row = self.sampler.curve_of(self.sampler.chords[0][: -1 if closed else None])
+        row = row[::-1] if self.toothing.track.clockwise else row
+        root, count = self.toothing.numbers[0] - 1, len(row)
+        tooth = np.where(np.isin(rows.kind, (Curve.LAND, Curve.FILLET)), root, rows.tooth)[row]
+        ends = []
+        for way in (1, -1):
+            at = np.flatnonzero((tooth != np.roll(tooth, way)) & (tooth != root))
+            at = at[np.argsort(tooth[at], kind="stable")]
+            ends.append((at - way) % count if closed else np.clip(at - way, 0, count - 1))
+        return np.unique(tooth[tooth != root]), np.column_stack(ends)
+
     @property
     def chord_error(self) -> float:
         """Largest measured distance of the curve from its chords, mm."""
@@ -229,8 +249,11 @@ def _find_flanks(
             (sf, sigma),
             reach,
         )
-        if (allowed < reach).any():
-            tips = find_tips(toothing, sf, sigma, np.where(allowed < reach, allowed, limit))
+        lower = np.flatnonzero(allowed < reach)
+        if lower.size:
+            tips = tips.replaced(
+                lower, find_tips(toothing, sf[lower], sigma[lower], allowed[lower])
+            )
     tips = _sharpen(toothing, tips)
     highest = sigma * (sf - toothing.track.arc_length(tips.phi))
     # A cusp beyond the tip is nobody's concern.

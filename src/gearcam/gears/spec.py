@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from gearcam.display import Brief
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
 
-_RIM = 2.7
-"""Rim outside a ring's roots, in modules, where the design gives none: 1.2 tooth depths."""
+RIM = 2.7
+"""Rim beyond the roots, in modules, where the design gives none: 1.2 tooth depths."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,7 +199,7 @@ class RingSpec:
         """
         if self.outer_diameter is not None:
             return 0.5 * self.outer_diameter - roots
-        return self.rim if self.rim is not None else _RIM * module
+        return self.rim if self.rim is not None else RIM * module
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
 
@@ -24,8 +25,9 @@ fastest, along an ellipse of eccentricity 0.99, so far."""
 ROUGH = 1e3
 """Times that distance within which curves meet that Newton's method has no better place of."""
 
-_STEPS = 25
-"""Steps of Newton's method; four or five serve where curves do cross."""
+_STEPS, _QUICK = 25, 8
+"""Steps of Newton's method, and where there is another way; four or five serve where curves do
+cross."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -53,6 +55,13 @@ class TipEnds(Brief):
     foot: Array
     height: Array
     full: Mask
+
+    def replaced(self, which: Ints, ends: TipEnds) -> TipEnds:
+        """Return the same with the `ends` of flanks `which` in place of theirs."""
+        made = deepcopy(self)
+        made.phi[which], made.foot[which] = ends.phi, ends.foot
+        made.height[which], made.full[which] = ends.height, ends.full
+        return made
 
 
 def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> TipEnds:
@@ -101,7 +110,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess))
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), _QUICK)
     return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
 
 
@@ -122,6 +131,7 @@ def cross(
     one: _Way,
     two: _Way,
     phi: Array,
+    most: int = _STEPS,
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
@@ -133,6 +143,8 @@ def cross(
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
         Driver angles to begin with, on both.
+    most : int
+        Steps at most.
 
     Returns
     -------
@@ -143,7 +155,7 @@ def cross(
     """
     miss = np.full(phi.shape[1:], np.inf, dtype=complex)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        for _ in range(_STEPS):
+        for _ in range(most):
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
             miss = p - q

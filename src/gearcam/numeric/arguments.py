@@ -69,9 +69,14 @@ def instance(name: str, value: object, types: type[T] | tuple[type[T], ...], all
 
 
 def angles(
-    name: str, values: ArrayLike, low: float = -np.inf, high: float = np.inf, slack: float = 0.0
+    name: str,
+    values: ArrayLike,
+    low: float = -np.inf,
+    high: float = np.inf,
+    slack: float = 0.0,
+    unit: str = "rad",
 ) -> Array:
-    """Return angles that a caller gives.
+    """Return angles, or ways, that a caller gives.
 
     Parameters
     ----------
@@ -83,6 +88,8 @@ def angles(
         Between which they may lie.
     slack : float, rad
         By which they may lie beyond: rounding. They are moved back then.
+    unit : str
+        Of all these, if it is another.
 
     Returns
     -------
@@ -94,7 +101,7 @@ def angles(
     DesignError
         If they are no finite numbers in one row, or lie beyond.
     """
-    rule = "a number or a row of numbers, rad"
+    rule = f"a number or a row of numbers, {unit}"
     if np.isfinite(high - low):
         rule += f", from {shown(low)} to {shown(high)}"
     try:

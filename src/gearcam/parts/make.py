@@ -122,11 +122,11 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
     room = 2.0 * solid_of(contours, (), work).boundary.distance(Point(0.0, 0.0))
     if hub.diameter >= room:
         raise work.refusal(
-            "the hub reaches the roots of the teeth",
+            f"the hub reaches {work.within if work.wheel is None else 'the roots of the teeth'}",
             "blank.hub_diameter_mm",
             value=hub.diameter,
             limit=room,
-            nearest="the limit is where it would reach them",
+            nearest="the limit is where it would touch",
             ways=(
                 Way(
                     near={work.key("hub_diameter_mm"): room},

@@ -30,15 +30,11 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 
-RIM: Final = 2.7
-"""Rim below the roots, in modules, where the design gives none: 1.2 tooth depths."""
-
 _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
 
-
-_FINE: Final = 1e-4
-"""Sagitta of chords that stand for openings when it is asked what they meet, modules."""
+_FINE: Final = 4e-5
+"""Sagitta of chords that stand for openings when it is asked what they meet, in rims."""
 
 _RIMS: Final = 32
 """Chords of a quarter of a circle around the outline's corners."""
@@ -59,18 +55,21 @@ class Workpiece:
     ----------
     name : str
         What a person calls it.
-    module : float, mm
-        Sizes that the design leaves open follow it.
+    rim : float, mm
+        What lightening holes leave below the edge where the design gives none.
     travel : float or None, rad
         How far an open wheel turns; None for a closed one.
     wheel : int or None
         1 or 2; None of what stands alone.
+    within : str
+        What its openings keep within, in words.
     """
 
     name: str
-    module: float
+    rim: float
     travel: float | None = None
     wheel: int | None = None
+    within: str = "the outline"
 
     def key(self, name: str) -> str:
         """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""
@@ -146,7 +145,7 @@ def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> P
     from shapely import Polygon, intersection_all
 
     regions = [
-        Polygon(edge.points(_FINE * work.module), [hole.points(_FINE * work.module) for hole in at])
+        Polygon(edge.points(_FINE * work.rim), [hole.points(_FINE * work.rim) for hole in at])
         for edge, at in zip(edges, [[hole] for hole in inner] or [[]] * len(edges), strict=True)
     ]
     made: Any = intersection_all(regions)
@@ -215,11 +214,11 @@ def demand_apart(
     """
     from shapely import Polygon
 
-    edges = [opening.shape.points(_FINE * work.module) for opening in found]
+    edges = [opening.shape.points(_FINE * work.rim) for opening in found]
     regions = [Polygon(edge) for edge in edges]
     for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
         if not solid.contains(region):
-            raise _no_room(opening, solid, "the outline", work, blank.widening)
+            raise _no_room(opening, solid, work.within, work, blank.widening)
         away = np.hypot(*edge.T)
         if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
             raise _no_room(opening, solid, "the edge of the hub", work, blank.widening)
@@ -231,6 +230,8 @@ def demand_apart(
 _SMALLER: Final = (
     ("bolt", "bolt_diameter_mm", 0.1),
     ("bolt", "bolt_circle_mm", 0.1),
+    ("bolt", "bolt_height_mm", 0.1),
+    ("bolt", "bolt_spacing_mm", 0.1),
     ("hub", "hub_diameter_mm", 0.1),
     ("bore", "bore_diameter_mm", 0.1),
 )
@@ -243,16 +244,14 @@ def _no_room(
     """Return the refusal of what meets something; diameters as the design gives them."""
     from shapely import Point
 
-    shape, value, limit = opening.shape, None, None
-    nearest = "each needs a place of its own"
-    if isinstance(shape, Circle) and what == "the outline":
+    shape, value, limit, nearest = opening.shape, None, None, "each needs a place of its own"
+    if isinstance(shape, Circle) and what == work.within:
         center = Point(*shape.center)
         inside = solid.contains(center)
         value = shape.diameter - widening
         limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
-        nearest = "its middle lies outside the roots"
-        if limit:
-            nearest = "the limit is the room around its middle"
+        outside = f"its middle does not lie within {what}"
+        nearest = "the limit is the room around its middle" if limit else outside
     return work.refusal(
         f"the {opening.name} meets {what}",
         value=value,
@@ -340,7 +339,7 @@ def _lightening(
     """Yield the largest circle in each sector that keeps rim and web."""
     from shapely import Point, Polygon, maximum_inscribed_circle, union_all
 
-    rim = blank.rim if blank.rim is not None else RIM * work.module
+    rim = blank.rim if blank.rim is not None else work.rim
     web = blank.web if blank.web is not None else rim
     count = blank.lightening_holes
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)

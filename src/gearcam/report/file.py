@@ -13,5 +13,6 @@ if TYPE_CHECKING:
 def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
     """Return the page of a `result`, with what was `measured` on the files before it."""
     from gearcam.report.page import PAGE, document, page
+    from gearcam.report.solids import solids_shown
 
-    return {PAGE: page(document(result, measured))}
+    return {PAGE: page(document(result, measured), solids=solids_shown(result))}

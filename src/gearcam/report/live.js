@@ -153,7 +153,7 @@
     const saved = element("span", { id: "saved", role: "status" });
     save.addEventListener("click", store);
     undo.addEventListener("click", back);
-    const heading = element("h2", { textContent: "Numbers" });
+    const heading = element("h2", { id: "numbered", textContent: "Numbers of the file" });
     const buttons = element("p", {}, save, " ", undo, " ", saved);
     document.getElementById("numbers").replaceChildren(heading, ...groups.values(), buttons);
   }

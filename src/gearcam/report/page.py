@@ -34,6 +34,20 @@ BLOCKS: Final = ("verdict", "findings", "files", "facts", "accuracy")
 DRAFTED: Final = ("verdict", "findings", "facts")
 """Those that follow a slider while it is dragged."""
 
+DRAFT_PLACES: Final = 120
+"""Steps of the driver in a draft's scene: 3 degrees of a turn, between which lines are straight."""
+
+SCRIPTS: Final = (
+    "uPlot/uPlot.iife.min.js",
+    "scene.js",
+    "parts.js",
+    "saves.js",
+    "charts.js",
+    "page.js",
+    "solids.js",
+)
+"""What is the page's script, each part after those that it needs."""
+
 _HOME: Final = Path(__file__).parent
 
 _VERDICTS: Final = {
@@ -44,7 +58,12 @@ _VERDICTS: Final = {
 """What the worst finding means."""
 
 
-def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) -> bytes:
+def page(
+    document: Mapping[str, Any],
+    *,
+    live: Mapping[str, Any] | None = None,
+    solids: Mapping[str, str] | None = None,
+) -> bytes:
     """Return a page.
 
     Parameters
@@ -53,6 +72,8 @@ def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) 
         What it shows (see `document`).
     live : mapping, optional
         What the script needs of a server that gives it others; a page of its own where left out.
+    solids : mapping, optional
+        A view of them (see `gearcam.report.solids`).
 
     Returns
     -------
@@ -66,10 +87,13 @@ def page(document: Mapping[str, Any], *, live: Mapping[str, Any] | None = None) 
             document=document,
             data=_embedded(document),
             live=_embedded(live) if live else "",
-            style=_own("uPlot/uPlot.min.css", "page.css"),
-            script=_own("uPlot/uPlot.iife.min.js", "page.js"),
+            solids=solids or {},
+            view=_embedded((solids or {}).get("view", "")),
+            style=_own("uPlot/uPlot.min.css", "page.css", "solids.css"),
+            script=_own(*SCRIPTS),
             live_style=_own("live.css") if live else "",
             live_script=_own("live.js") if live else "",
+            licence=_own("uPlot/LICENSE"),
         )
         .encode()
     )
@@ -106,8 +130,8 @@ def document(result: Result, measured: Mapping[str, Any] = MappingProxyType({}))
 
 
 def draft(result: Result) -> dict[str, Any]:
-    """Return what of a document can follow a slider: no charts, contacts, remedies, accuracy."""
-    made = KINDS[result.design.kind].room("scene").scene(result, contacts=False)
+    """Return what of a document can follow a slider: no charts, remedies and files."""
+    made = KINDS[result.design.kind].room("scene").scene(result, DRAFT_PLACES)
     return {
         "title": result.design.name,
         "kind": result.design.kind,
@@ -148,7 +172,7 @@ def blocks(
         "verdict": _verdict(result.findings),
         "remedies": remedies(result) if seek else Remedies(),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
-        "accuracy": facts.document.get("accuracy", {}),
+        "errors": _errors(facts.document.get("accuracy", {})),
         "timings": result.timings,
     }
     return {name: _templates().get_template(f"{name}.html").render(told) for name in names}
@@ -159,6 +183,12 @@ def _verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
     found = {one.severity for one in findings}
     worst = next((one for one in _VERDICTS if one in found), "note")
     return worst, _VERDICTS[worst]
+
+
+def _errors(accuracy: Mapping[str, Any]) -> dict[str, str]:
+    """Return how each error is known, by the name of its fact."""
+    how = accuracy.get("how", {})
+    return {f"accuracy.{name}": how.get(name, "") for name in accuracy if name != "how"}
 
 
 @cache

@@ -28,7 +28,7 @@ from gearcam.tolerances import DEFAULT, Tolerances
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.cams.mechanism import Mechanism
-    from gearcam.cams.wall import PitchMotion
+    from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.study import Study
@@ -40,7 +40,8 @@ WAY_STEP: Final = 1.0
 """Step of a translating cam's way where the design gives none, mm."""
 
 _WHOLE: Final = 1e-9
-"""Part of a step by which a turn may fall short of a whole number of them: rounding."""
+"""Part of a step by which a turn may fall short of a whole number of them, and of a way by which
+one may lie beyond it: rounding."""
 
 
 class CamResult(Result):
@@ -122,7 +123,7 @@ class CamResult(Result):
         theta : float or (n,) array, rad, optional
             Cam angles, any number of turns; a turn in steps of the design's
             ``output.motion_step_deg``, both ends, where left out: the table of ``motion.csv``. Of a
-            translating cam ways, mm, and steps of ``output.way_step_mm``.
+            translating cam ways, mm, from 0 to the whole one, and steps of ``output.way_step_mm``.
 
         Returns
         -------
@@ -140,7 +141,7 @@ class CamResult(Result):
         Raises
         ------
         DesignError
-            If `theta` is no row of finite numbers.
+            If `theta` is no row of finite numbers, or leaves the way of a translating cam.
         InfeasibleError
             If the cam cannot be made.
         """
@@ -148,16 +149,21 @@ class CamResult(Result):
 
     def _asked(self, theta: ArrayLike | None) -> Array:
         """Return cam angles, rad, of what people give: angles, rad, or ways, mm."""
-        rate = self.mechanism.driver.rate
-        return self.angles if theta is None else angles("theta", theta) / rate
+        if theta is None:
+            return self.angles
+        driver = self.mechanism.driver
+        if not self.form.slides:
+            return angles("theta", theta)
+        slack = _WHOLE * driver.turn
+        ways = angles("theta", theta, 0.0, driver.turn, slack, driver.unit)
+        return np.minimum(ways / driver.scale, 2.0 * math.pi)
 
     def motion_at(self, theta: Array) -> Columns:
         """Return the table of `motion` at cam angles `theta`, rad, of a way 2*pi at its end."""
         driver = self.mechanism.driver
         motions, walls = self.cam.motions, self.cam.walls
         found = motions[0].motion(theta)
-        oscillating = self.design.follower.oscillating
-        unit, scale = ("deg", math.degrees(1.0)) if oscillating else ("mm", 1.0)
+        scale, unit = self.mechanism.outward
         names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
         columns = {
             driver.column: driver.scale * theta,
@@ -196,13 +202,18 @@ class CamResult(Result):
         """The cam as a part, of several parts the first: bore, hub, holes, moved edges."""
         return self.parts[0]
 
+    def _wall(self, key: str | None) -> Wall:
+        """Return the wall with a key, the first where left out."""
+        walls = {one.key: one for one in self.cam.walls}
+        return walls[next(iter(walls)) if key is None else one_of("wall", key, tuple(walls))]
+
     def contact(self, theta: ArrayLike | None = None, wall: str | None = None) -> Columns:
         """Return where the follower touches the profile, or a wall (before clearance).
 
         Parameters
         ----------
         theta : float or (n,) array, rad, optional
-            Cam angles, any number of turns, or ways, mm; those of `motion` where left out.
+            Cam angles, or ways, mm, as of `motion`; those of its table where left out.
         wall : str, optional
             The key of a wall; the first where left out.
 
@@ -218,13 +229,12 @@ class CamResult(Result):
         Raises
         ------
         DesignError
-            If `theta` is no row of finite numbers, or there is no such wall.
+            If `theta` is no row of finite numbers, leaves the way of a translating cam, or there is
+            no such wall.
         InfeasibleError
             If the cam cannot be made.
         """
-        walls = {one.key: one for one in self.cam.walls}
-        key = next(iter(walls)) if wall is None else one_of("wall", wall, tuple(walls))
-        left, points, normals = walls[key].places_at(self._asked(theta))
+        left, points, normals = self._wall(wall).places_at(self._asked(theta))
         driver = self.mechanism.driver
         if self.form.slides:
             fixed = points + driver.scale * left
@@ -292,7 +302,8 @@ class CamResult(Result):
             A DXF file with one closed outline, a CSV file with the columns x_mm and y_mm, or such
             points: a closed outline in the cam's frame.
         wall : str, optional
-            Which of conjugate cams it is, by the key of its wall; the first where left out.
+            Which of conjugate cams, or of a groove's walls, it is, by its key; the first where left
+            out. Walls of a groove are followed by a roller as wide as it is.
         progress : callable, optional
             Called with a stage's name, the stages done and their number.
 
@@ -311,21 +322,21 @@ class CamResult(Result):
         from gearcam.kinds.cam.follow import followed, read_profile
         from gearcam.study import Study
 
-        motions = {one.key: one for one in self.cam.motions}
-        key = next(iter(motions)) if wall is None else one_of("wall", wall, tuple(motions))
+        chosen = self._wall(wall)
         if progress is not None:
             progress("profile", 0, 2)
-        vertices, bulges = read_profile(profile)
+        vertices, bulges = read_profile(profile, chosen)
         if progress is not None:
             progress("follow", 1, 2)
         with self.stage("follow"):
-            columns, facts = followed(motions[key], vertices, bulges, self.angles)
+            limits = self.design.limits
+            columns, facts, own = followed(chosen, vertices, bulges, self.angles, limits)
         return Study(
             result=self,
             file=FOLLOWED,
             table=columns,
             measured={"followed": facts},
-            findings=self.findings,
+            findings=in_order((*self.findings, *own)),
         )
 
 

@@ -16,7 +16,7 @@ from gearcam.written import Written
 def _arguments(parser: argparse.ArgumentParser) -> None:
     words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
     parser.add_argument("profile", metavar="PROFILE", help=words)
-    words = "which of conjugate cams it is, 1 or 2; the first if left out"
+    words = "which wall it is: 1 or 2 of conjugate cams, inner, outer, lower or upper of a groove"
     parser.add_argument("--wall", metavar="KEY", help=words)
 
 

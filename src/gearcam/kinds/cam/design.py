@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.cams.spec import FOLLOWED, POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.cams.spec import KIND as CAM_KIND
-from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import home_of
 from gearcam.designs.faults import Fault, show
@@ -19,7 +19,7 @@ from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_fau
 from gearcam.designs.table import Table, table_of
 from gearcam.errors import DesignError, Problem
 from gearcam.kinds.cam.blank import CamBlank
-from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_schema
+from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_keys, form_schema
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
@@ -248,10 +248,11 @@ KIND: Final = DesignKind(
     one_of={"cam": ("prime_radius_mm", "base_radius_mm", {"form": SLIDING})},
     conditions={"cam": partial(form_schema, "cam", CamSpec)},
     rules=_rules,
+    listed=form_keys,
     later=_later,
     formats=CAM_FORMATS,
     rooms=("gearcam.cams.checks", "gearcam.parts.checks"),
-    checks=(CAM_KIND, PARTS_KIND),
+    checks=(CAM_KIND, PARTS_KIND, FOLLOWED),
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},

@@ -5,12 +5,49 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
+from gearcam.errors import InfeasibleError
+from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Part
+from gearcam.parts.parallel import moved, sized
+
+TOOL_RADIUS: Final = "output.tool_radius_mm"
+"""The key of a cutter's radius."""
+
+
+def cutter_way(edge: Contour, radius: float, *, side: int = 1) -> Contour:
+    """Return the way of a cutter's middle along an edge.
+
+    Parameters
+    ----------
+    edge : Contour
+        What it cuts.
+    radius : float, mm
+        Of the cutter; 0 where none is given.
+    side : {1, -1}
+        Whether it goes around the edge, or within.
+
+    Returns
+    -------
+    Contour
+
+    Raises
+    ------
+    InfeasibleError
+        If there is no radius, or it leaves no simple way.
+    """
+    if not radius:
+        raise InfeasibleError(
+            "the way of a cutter needs its radius",
+            where=TOOL_RADIUS,
+            nearest="a round follower's own radius counts where none is given; this one has none",
+        )
+    return sized(lambda by: moved(edge, side * by), radius, TOOL_RADIUS, "radius of the cutter")
 
 
 def plate(

@@ -61,13 +61,12 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
 def _motion(result: CamResult) -> Tree:
     """Lift in mm or deg; what jumps has a peak, what is infinite has none."""
     program, driver = result.program, result.mechanism.driver
-    swings = result.design.follower.oscillating
-    scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+    scale, unit = result.mechanism.outward
     low, high = program.range
     return {
         "unit": unit,
         "lift": Fact(extent(low, high, scale), "lift", unit=unit, shown=True),
-        "total_lift": Fact(scale * (high - low), "lift", unit=unit),
+        "total_lift": result.cam.motions[0].total_lift,
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
         "deviation": _deviation(program, scale, unit),
         **{
@@ -96,6 +95,7 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
 def _cam(result: CamResult) -> Tree:
     design, mechanism = result.design, result.mechanism
     given, swings = design.follower, mechanism.oscillating
+    takes = result.form.takes["follower"]
     return {
         "form": design.cam.form,
         "follower": f"{given.motion} {given.type}",
@@ -104,10 +104,11 @@ def _cam(result: CamResult) -> Tree:
         "pivot_distance_mm": given.pivot_distance,
         "arm_mm": given.arm,
         "face_offset_mm": given.face_offset or None,
-        "offset_mm": None if swings or mechanism.slide else given.offset,
+        "offset_mm": None if swings or "offset" not in takes else given.offset,
         **result.form.sizes(result),
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": pressure(result, result.cam.motions[0]),
+        "lost_motion": _lost_motion(result),
         **result.form.facts(result),
     }
 
@@ -145,6 +146,16 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
             )
             made[kind] = Fact(ends_of(found, math.degrees(1.0)), unit="deg")
     return made
+
+
+def _lost_motion(result: CamResult) -> Fact | None:
+    """Return what the follower moves while the cam stands still, if two walls hold it."""
+    lost, mechanism = result.cam.lost_motion, result.mechanism
+    if lost is None:
+        return None
+    scale, unit = mechanism.outward
+    place = mechanism.driver.seen(lost.theta)
+    return Fact(scale * lost.value, "lost motion", place=place, unit=unit, shown=True)
 
 
 def _part(result: CamResult) -> Tree | list[Tree]:

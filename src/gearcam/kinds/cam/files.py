@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
+    from gearcam.solids import Mesh
 
 Measured = dict[str, Any]
 
@@ -54,18 +55,25 @@ def _cut_svg(result: CamResult, _: Measured) -> Files:
 
 
 def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
-    from gearcam.drawings import UNMOVED
-
     solids = meshes(result.parts, measured)
     files = {
         f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
     }
     whole = result.form.assembly
     if whole:
-        heights = dict(zip(solids, result.form.heights(result), strict=True))
-        placed = {name: mesh.placed(*UNMOVED, heights[name]) for name, mesh in solids.items()}
-        files[f"{whole}.{kind}"] = mesh_bytes(placed, kind, whole)
+        files[f"{whole}.{kind}"] = mesh_bytes(assembled(result, measured), kind, whole)
     return files
+
+
+def assembled(result: CamResult, measured: Measured) -> dict[str, Mesh]:
+    """Return the solids where they stand on the shaft (see `gearcam.export.shared.meshes`)."""
+    from gearcam.drawings import UNMOVED
+
+    solids = meshes(result.parts, measured)
+    if not result.form.assembly:
+        return solids
+    heights = zip(solids.items(), result.form.heights(result), strict=True)
+    return {name: mesh.placed(*UNMOVED, height) for (name, mesh), height in heights}
 
 
 def _tables(result: CamResult, _: Measured) -> Files:

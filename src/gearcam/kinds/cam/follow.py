@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.cams.follow import follow
-from gearcam.cams.wall import PitchMotion
+from gearcam.cams.spec import FOLLOWED
+from gearcam.cams.wall import Wall
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Fact
+from gearcam.findings import Finding, run_checks
 from gearcam.numeric.arguments import points
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import flatten_bulges
@@ -24,7 +26,7 @@ _SAGITTA = 0.01
 _COLUMNS = ("x_mm", "y_mm")
 
 
-def read_profile(file: str | Path | ArrayLike) -> tuple[Array, Array]:
+def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array]:
     """Read a closed profile.
 
     Parameters
@@ -32,6 +34,8 @@ def read_profile(file: str | Path | ArrayLike) -> tuple[Array, Array]:
     file : path or (n, 2) array, mm
         A DXF file with one closed outline (or one on the layer PROFILE, OUTLINE or INNER), or a CSV
         file with the columns x_mm and y_mm; or the points themselves.
+    wall : Wall
+        Which it is: one outside a pitch curve is on the layer OUTER.
 
     Returns
     -------
@@ -53,7 +57,7 @@ def read_profile(file: str | Path | ArrayLike) -> tuple[Array, Array]:
         if name.lower().endswith(".dxf"):
             from gearcam.export.dxf_read import read_outline
 
-            return read_outline(Path(name).read_bytes())
+            return read_outline(Path(name).read_bytes(), outer=wall.side < 0)
         from gearcam.laws.columns import read_rows
 
         vertices, _ = read_rows(name).columns(_COLUMNS)
@@ -71,20 +75,22 @@ def _open(vertices: Array) -> Array:
 
 
 def followed(
-    motion: PitchMotion, vertices: Array, bulges: Array, theta: Array
-) -> tuple[dict[str, Array], dict[str, Any]]:
+    wall: Wall, vertices: Array, bulges: Array, theta: Array, limits: Mapping[str, float]
+) -> tuple[dict[str, Array], dict[str, Any], tuple[Finding, ...]]:
     """Run a cam's follower on a profile.
 
     Parameters
     ----------
-    motion : PitchMotion
-        Follower, size of the cam, and the program to compare with.
+    wall : Wall
+        Its follower, as wide as a groove, the size of the cam, and the program to compare with.
     vertices : (n, 2) array, mm
         The profile in the cam's frame, as the design would draw it.
     bulges : (n,) array
         Of its pieces.
     theta : (m,) array, rad
         Cam angles.
+    limits : mapping of str to float
+        Of the design.
 
     Returns
     -------
@@ -92,19 +98,22 @@ def followed(
         For ``followed.csv``: the lift found, the lift asked for, their difference.
     facts : dict
         What was found.
+    findings : tuple of Finding
+        Of the checks.
 
     Raises
     ------
     InfeasibleError
         If the follower cannot rest on the profile.
     """
-    outline = flatten_bulges(vertices, bulges, _SAGITTA * motion.tolerance)
-    driver = motion.mechanism.driver
-    mirrored = motion.clockwise and not motion.mechanism.slide
+    outline = flatten_bulges(vertices, bulges, _SAGITTA * wall.tolerance)
+    mechanism = wall.curve.mechanism
+    driver = mechanism.driver
+    mirrored = wall.clockwise and not mechanism.slide
     side = np.array([-1.0 if mirrored else 1.0, 1.0])
-    found = follow(outline * side, motion.mechanism, theta)
-    scale, unit = (math.degrees(1.0), "deg") if motion.mechanism.oscillating else (1.0, "mm")
-    asked = motion.program.derivatives(theta, 0)[0]
+    found = follow(outline * side, mechanism, theta)
+    scale, unit = mechanism.outward
+    asked = wall.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
     columns = {
         driver.column: driver.scale * theta,
@@ -132,4 +141,4 @@ def followed(
             float(scale * found.error.max()), "error of the profile's chords", unit=unit, shown=True
         ),
     }
-    return columns, facts
+    return columns, facts, run_checks(FOLLOWED, (wall, found), limits)

@@ -2,74 +2,112 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gearcam.drawings import CENTER, FOLLOWER, Feature, place
-from gearcam.scenes import PLACES, MovingBody, Scene, still
+from gearcam.scenes import PLACES, ContactPoints, MovingBody, Scene, still
 
 if TYPE_CHECKING:
-    from gearcam.cams.wall import PitchMotion
+    from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.kinds.cam.build import CamResult
     from gearcam.numeric.arrays import Array, Plane
 
 
-def scene(result: CamResult, *, contacts: bool = True) -> Scene:  # noqa: ARG001  (none are told)
+def scene(result: CamResult, places: int = PLACES) -> Scene:
     """Return cam and follower: the picture of the cam, taken apart into what moves together.
 
     Parameters
     ----------
     result : CamResult
-        A built design.
-    contacts : bool
-        Whether points of contact are sought.
+        The cam.
+    places : int
+        Steps of the driver.
 
     Returns
     -------
     Scene
+        As designed, before clearance; where the follower rests on a corner no contact is told.
     """
-    output, motion = result.design.output, result.cam.motions[0]
-    driver = motion.mechanism.driver
-    pose = (output.place or 0.0) / driver.scale if result.form.slides else output.pose
-    theta = np.linspace(0.0, 2.0 * np.pi, PLACES + 1)
+    motion = result.cam.motions[0]
+    driver, slide = motion.mechanism.driver, motion.mechanism.slide
+    output = result.design.output
+    pose = (output.place or 0.0) / driver.scale if slide else output.pose
+    theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
     side = -1.0 if motion.clockwise else 1.0
-    plates: list[Feature] = []
-    carried: list[Feature] = []
-    fixed: list[Feature] = []
-    for one in result.form.picture(result).features:
-        {CENTER: fixed, FOLLOWER: carried}.get(one.kind, plates).append(one)
-    if motion.mechanism.slide:
-        turn, shift = 0.0 * theta, np.asarray(-motion.mechanism.slide * theta, dtype=np.complex128)
-        own = place(plates, 0.0, (motion.mechanism.slide * pose, 0.0))
-    else:
-        turn, shift = side * theta, np.zeros(len(theta), dtype=np.complex128)
-        own = place(plates, -side * pose, (0.0, 0.0))
+    # a cam that slides is seen as the mirror image of what is computed
+    turn = np.zeros_like(theta) if slide else side * theta
+    shift = np.asarray(slide * theta, dtype=np.complex128)
+    back = (0.0, (-slide * pose, 0.0)) if slide else (-side * pose, (0.0, 0.0))
+    shown = result.form.picture(result).features
+    plates = [one for one in shown if one.kind not in (CENTER, FOLLOWER)]
     angle, way = _carried(motion, theta, pose)
+    follower = MovingBody(
+        name="follower",
+        called="follower",
+        features=tuple(one for one in shown if one.kind == FOLLOWER),
+        turn=angle,
+        shift=way,
+    )
+    several = len(result.parts) > 1
+    cams = [
+        MovingBody(
+            name=part.name,
+            called=f"cam {number}" if several else "cam",
+            features=place(_of_part(plates, part.name if several else ""), *back),
+            turn=turn,
+            shift=shift,
+        )
+        for number, part in enumerate(result.parts, start=1)
+    ]
+    fixed = still(tuple(one for one in shown if one.kind == CENTER), theta)
     return Scene(
         title=result.design.name,
         driver=f"{driver.called} {driver.symbol}, {driver.unit}",
         places=driver.scale * theta,
         closed=not result.program.open,
-        start=driver.scale * (pose % (2.0 * np.pi)),
-        bodies=(
-            MovingBody(name="cam", called="cam", features=own, turn=turn, shift=shift),
-            MovingBody(
-                name="follower", called="follower", features=tuple(carried), turn=angle, shift=way
-            ),
-            still(tuple(fixed), theta),
-        ),
+        start=driver.scale * (pose if slide else pose % (2.0 * math.pi)),
+        bodies=(*cams, follower, fixed),
+        contacts=_contacts(result, theta, turn, shift),
     )
+
+
+def _of_part(features: list[Feature], name: str) -> list[Feature]:
+    """Return the features on layers that begin with the name of a part."""
+    return [one for one in features if one.layer.startswith(name.upper())]
 
 
 def _carried(motion: PitchMotion, theta: Array, pose: float) -> tuple[Array, Plane]:
     """Return how a follower, drawn where it stands at a cam angle `pose`, moves as a rigid body."""
-    m, side = motion.mechanism, -1.0 if motion.clockwise else 1.0
+    m = motion.mechanism
     lift = motion.program.derivatives(theta, 0)[0] - float(motion.program.derivatives(pose, 0)[0])
-    if not m.oscillating:
-        return 0.0 * theta, np.asarray(1j * np.exp(1j * m.tilt) * lift, dtype=np.complex128)
-    if m.slide:
-        turn, pivot = lift, complex(-m.pivot, m.height)
+    if m.oscillating:
+        turn, pivot = (lift, complex(-m.pivot, m.height)) if m.slide else (-lift, complex(m.pivot))
+        way = pivot * (1.0 - np.exp(1j * turn))
     else:
-        turn, pivot = -side * lift, complex(side * m.pivot, 0.0)
-    return turn, np.asarray(pivot * (1.0 - np.exp(1j * turn)), dtype=np.complex128)
+        turn, way = np.zeros_like(theta), 1j * np.exp(1j * m.tilt) * lift
+    return (-turn, -np.conj(way)) if motion.clockwise else (turn, way)
+
+
+def _contacts(
+    result: CamResult, theta: Array, turn: Array, shift: Plane
+) -> dict[str, ContactPoints]:
+    """Return where the follower touches each wall, or both sides of a cam that it goes around."""
+
+    def found(wall: Wall, ahead: float = 0.0) -> ContactPoints:
+        asked = theta + ahead
+        left, points, normals = wall.places_at(asked)
+        at = np.searchsorted(asked, left)
+        stand = np.exp(1j * turn[at])
+        return ContactPoints(
+            start=np.searchsorted(left, np.append(asked, np.inf)),
+            point=points * stand + shift[at],
+            force=normals * stand,
+        )
+
+    walls = result.cam.walls
+    if result.form.half_turns:  # touched from below half a turn before it is from above
+        return {"upper side": found(*walls), "lower side": found(*walls, math.pi)}
+    return {wall.called: found(wall) for wall in walls}

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from gearcam.export.dxf import DxfStyle
     from gearcam.kinds.gear_pair.build import GearPairResult
     from gearcam.parts.body import Part
+    from gearcam.solids import Mesh
 
 Measured = dict[str, Any]
 
@@ -133,11 +134,14 @@ def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
     files = {
         f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
     }
-    placed = {
-        name: mesh.placed(*pose)
-        for (name, mesh), pose in zip(solids.items(), placements(result), strict=True)
-    }
-    return files | {f"{PAIR}.{kind}": mesh_bytes(placed, kind, PAIR)}
+    return files | {f"{PAIR}.{kind}": mesh_bytes(assembled(result, measured), kind, PAIR)}
+
+
+def assembled(result: GearPairResult, measured: Measured) -> dict[str, Mesh]:
+    """Return the solids of both wheels where they stand (see `gearcam.export.shared.meshes`)."""
+    solids = meshes(result.parts, measured).items()
+    places = placements(result)
+    return {name: mesh.placed(*pose) for (name, mesh), pose in zip(solids, places, strict=True)}
 
 
 def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:

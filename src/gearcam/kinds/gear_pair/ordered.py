@@ -10,6 +10,7 @@ import numpy as np
 from gearcam.findings import limit_of
 from gearcam.gears.outside import outside
 from gearcam.gears.pair import Gear
+from gearcam.gears.spec import RIM
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.columns import Columns
@@ -67,7 +68,7 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
             blank, bore_diameter=0.0, bolts=0, hub_diameter=0.0, lightening_holes=0, stop_pin=0.0
         )
     wheel = gear.wheel
-    work = Workpiece(name=f"wheel {wheel}", module=gear.pair.module, travel=travel, wheel=wheel)
+    work = Workpiece(name=f"wheel {wheel}", rim=RIM * gear.pair.module, travel=travel, wheel=wheel)
     contours = [one.profile.contour for one in gears]
     marker = None if rack else lambda: _mark(gear, design)
     return make_part(gear.name, contours, design.pair.face_width, blank, work, marker)
@@ -85,7 +86,7 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
         edge = Circle(center=np.zeros(2), diameter=2.0 * around) if around else outside(gear, rim)
         contours = [edge] * len(gears)
     inner = toothed if gear.hollow else []
-    work = Workpiece(name="wheel 2", module=gear.pair.module, wheel=2)
+    work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2)
     wall = limit_of(PARTS_KIND, "thin-wall", design.limits)
     demand_bolts(blank, solid_of(contours, inner, work), work, wall)
     return make_part(

@@ -13,64 +13,100 @@ from gearcam.kinds.gear_pair.files import centrode_paths
 from gearcam.scenes import PLACES, ContactPoints, MovingBody, Scene, still
 
 if TYPE_CHECKING:
+    from gearcam.drawings import Path
+    from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.build import GearPairResult
-    from gearcam.numeric.arrays import Array
+    from gearcam.numeric.arrays import Array, Plane
+    from gearcam.parts.body import Part
 
 
-def scene(result: GearPairResult, *, contacts: bool = True) -> Scene:
+def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     """Return both wheels with their centrodes, teeth that touch, and the pitch point.
 
     Parameters
     ----------
     result : GearPairResult
-        A built design.
-    contacts : bool
-        Whether the teeth that touch are sought; without them it is sooner there.
+        The pair; of stepped wheels the lowest step lies on top, and its teeth touch.
+    places : int
+        Steps of the driver.
 
     Returns
     -------
     Scene
+        As designed: teeth touch as made, where the driven element lags by what `contact` tells.
     """
-    sides: tuple[Side, ...] = get_args(Side) if contacts else ()
     guide, lobes = result.pair.rolling.guide, result.law.lobes
-    end = lobes.n1 * lobes.period if result.pair.toothings[0].closed else result.law.period
-    phi1 = np.linspace(0.0, end, PLACES + 1)
+    phi1 = np.linspace(0.0, _end(result), places + 1)
     moved = guide.nominal(phi1)
     way = np.zeros_like(moved) if guide.turns else moved
     shift = np.asarray(guide.place - 1j * way, dtype=np.complex128)
-    placements = ((-phi1, np.zeros_like(shift)), (guide.turns * moved, shift))
-    bodies = []
-    rows = zip(result.gears, result.parts, centrode_paths(result), placements, strict=True)
-    for gear, part, path, (turn, place) in rows:
-        features = (*part_features(part), Feature(layer=CENTRODE, shape=path))
-        name = "driver" if gear.wheel == 1 else "rack" if result.pair.on_rack else "driven"
-        bodies.append(
-            MovingBody(name=part.name, called=name, features=features, turn=turn, shift=place)
-        )
+    stands = ((-phi1, np.zeros_like(shift)), (guide.turns * moved, shift))
+    names = ("driver", "rack" if result.pair.on_rack else "driven wheel")
+    wheels = zip(result.gears, result.parts, names, centrode_paths(result), stands, strict=True)
+    bodies = [_stepped(*wheel) for wheel in wheels]
     size = CROSS_SIZE * (abs(result.pair.shift) or float(np.ptp(result.gear1.outline)))
     shafts = (0.0, result.pair.shift) if guide.turns else (0.0,)
     crosses = tuple(
         Feature(layer=CENTER, shape=Cross(center=np.array([x, 0.0]), size=size)) for x in shafts
     )
+    lowest = [steps[0] for steps in bodies]
+    behind = [step for steps in bodies for step in steps[:0:-1]]
     radius = result.pair.rolling.tracks[0].frames(phi1).p
+    turn = lobes.n1 * lobes.period if result.pair.closed else np.inf
     return Scene(
         title=result.design.name,
         driver=DRIVER,
         places=np.degrees(phi1),
         closed=result.pair.closed,
-        start=float(np.degrees(result.design.output.pose % (lobes.n1 * lobes.period))),
-        bodies=(*(bodies[::-1] if result.pair.internal else bodies), still(crosses, phi1)),
-        contacts={side: _contacts(result, phi1, side) for side in sides},
+        start=float(np.degrees(result.design.output.pose % turn)),
+        bodies=(*behind, *(lowest[::-1] if result.pair.internal else lowest), still(crosses, phi1)),
+        contacts={side: _contacts(result, phi1, side) for side in get_args(Side)},
         pitch=radius * np.exp(-1j * phi1),
     )
 
 
+def _end(result: GearPairResult) -> float:
+    """Return where the driver's cycle ends, rad: after a turn, or all its travel."""
+    if result.pair.closed:
+        return result.law.lobes.n1 * result.law.period
+    return float(result.centrode_angles(2)[-1])
+
+
+def _stepped(
+    gear: Gear, part: Part, called: str, path: Path, stand: tuple[Array, Plane]
+) -> list[MovingBody]:
+    """Return the steps of a wheel as bodies that move together, the lowest with its teeth."""
+    # the toothed edge first: of a ring the inner one
+    lowest = sorted(part_features(part), key=lambda one: one.shape is not part.contour)
+    turn, shift = stand
+    first = MovingBody(
+        name=part.name,
+        called=called,
+        features=(*lowest, Feature(layer=CENTRODE, shape=path)),
+        turn=turn,
+        shift=shift,
+        teeth=gear.profile.teeth[1],
+    )
+    others = [
+        MovingBody(
+            name=part.name,
+            called=f"{called}, step {step + 1}",
+            features=part_features(part, step),
+            turn=turn,
+            shift=shift,
+        )
+        for step in range(1, len(part.contours))
+    ]
+    return [first, *others]
+
+
 def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
-    """Return where teeth touch on one side of the driver's, as designed."""
+    """Return where teeth touch on one side of the driver's."""
     table = result.contact(phi1, side)
+    first = [gear.profile.teeth[0][0] for gear in result.gears]
     return ContactPoints(
         start=np.searchsorted(table["phi1_deg"], np.append(np.degrees(phi1), np.inf)),
         point=table["x_mm"] + 1j * table["y_mm"],
         force=table["force_x"] + 1j * table["force_y"],
-        teeth=np.column_stack([table["tooth1"], table["tooth2"]]),
+        teeth=np.column_stack([table["tooth1"], table["tooth2"]]) - first + 1,
     )

@@ -172,6 +172,17 @@ def form_of(document: Mapping[str, Any]) -> Form:
     return FORMS[name if isinstance(name, str) and name in FORMS else "disc"]
 
 
+def form_keys(document: Mapping[str, Any], table: Table) -> list[str]:
+    """Return the keys of a `table` that the form of a `document` may be given."""
+    form = form_of(document)
+    return [key for key, entry in table.entries.items() if _takes(form, table.title, entry.name)]
+
+
+def _takes(form: Form, title: str, name: str) -> bool:
+    """Whether a form may be given a field of a table."""
+    return name in form.takes[title] or (title == "output" and name not in OWN_OUTPUT)
+
+
 def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type]) -> Iterator[Fault]:
     """Yield what is wrong with the keys of a form, or else what the form itself finds.
 
@@ -201,16 +212,14 @@ def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type])
 
 
 def _key_faults(form: Form, title: str, known: Table, made: Any) -> Iterator[Fault]:
-    takes, needs = form.takes[title], form.needs.get(title, ())
+    needs = form.needs.get(title, ())
     for key, entry in known.entries.items():
-        if title == "output" and entry.name not in OWN_OUTPUT:
-            continue
         value = getattr(made, entry.name)
         if value is None and entry.name in needs:
             yield Fault((title, key), f"is missing for a {form.name} cam", allowed=entry.param.doc)
-        elif value not in (None, entry.default) and entry.name not in takes:
+        elif value not in (None, entry.default) and not _takes(form, title, entry.name):
             value = entry.outward(value)
-            owners = [one for one in FORMS if entry.name in FORMS[one].takes[title]]
+            owners = [one for one in FORMS if _takes(FORMS[one], title, entry.name)]
             rule = f"with cam.form = {quoted(owners)}"
             yield Fault((title, key), f"{show(value)}: a {form.name} cam has none", value, rule)
 

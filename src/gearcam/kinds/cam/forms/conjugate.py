@@ -124,16 +124,10 @@ class Conjugate(Disc):
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return the way around each plate; a cutter is as large as its roller if none is given."""
-        from gearcam.parts.parallel import moved, sized
+        from gearcam.kinds.cam.drawn import cutter_way
 
-        where = "output.tool_radius_mm"
         return {
-            f"{TOOL_PATH}_{wall.key}": sized(
-                lambda by, part=part: moved(part.contour, by),
-                radius or wall.mechanism.radius,
-                where,
-                "radius of the cutter",
-            )
+            f"{TOOL_PATH}_{wall.key}": cutter_way(part.contour, radius or wall.mechanism.radius)
             for wall, part in zip(result.cam.walls, result.parts, strict=True)
         }
 

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.cams.disc import CHORD_TOLERANCE, make_cam
+from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.mechanism import make_mechanism
-from gearcam.errors import InfeasibleError
 from gearcam.facts import Fact
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, trimming
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.contour import Contour
     from gearcam.parts.blank import WheelBlank
     from gearcam.parts.body import Part
+    from gearcam.parts.openings import Workpiece
 
 STEM: Final = "cam"
 """Stem of its files."""
@@ -30,8 +30,25 @@ STEM: Final = "cam"
 TOOL_PATH: Final = "tool_path"
 """Stem of the files of a cutter's way."""
 
-RIM_PART = 2.0 / 3.0
+_RIM_PART: Final = 2.0 / 3.0
 """Rim that lightening holes keep where the design gives none, in thicknesses."""
+
+
+def disc_cam(design: CamDesign, program: Program) -> DiscCam:
+    """Return the disc cam that a `design` asks for, its lift a `program`."""
+    return make_cam(
+        program,
+        make_mechanism(design.follower, design.cam),
+        clockwise=design.cam.clockwise,
+        tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
+    )
+
+
+def workpiece(name: str, thickness: float, within: str = "the outline") -> Workpiece:
+    """Return what a blank becomes: its `name`, `thickness`, mm, what openings keep `within`."""
+    from gearcam.parts.openings import Workpiece
+
+    return Workpiece(name=name, rim=_RIM_PART * thickness, within=within)
 
 
 def plate_part(
@@ -61,9 +78,8 @@ def plate_part(
     Part
     """
     from gearcam.parts.make import finished, make_part
-    from gearcam.parts.openings import RIM, Workpiece
 
-    place = Workpiece(name=name, module=RIM_PART * thickness / RIM)
+    place = workpiece(name, thickness)
     blank = blank or result.design.blank
     return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
 
@@ -76,12 +92,7 @@ class Disc(Form):
 
     def make(self, design: CamDesign, program: Program) -> Cam:
         """Return the cam."""
-        return make_cam(
-            program,
-            make_mechanism(design.follower, design.cam),
-            clockwise=design.cam.clockwise,
-            tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
-        )
+        return disc_cam(design, program)
 
     def parts(self, result: CamResult) -> tuple[Part, ...]:
         """Return the cam as its only part."""
@@ -109,20 +120,9 @@ class Disc(Form):
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return the way around the plate."""
-        from gearcam.parts.parallel import moved, sized
+        from gearcam.kinds.cam.drawn import cutter_way
 
-        radius = radius or result.mechanism.radius
-        if not radius:
-            raise InfeasibleError(
-                "the way of a cutter needs its radius",
-                where="output.tool_radius_mm",
-                nearest="a round follower's own radius counts where none is given; this one has "
-                "none",
-            )
-
-        (part,), where = result.parts, "output.tool_radius_mm"
-        path = sized(lambda size: moved(part.contour, size), radius, where, "radius of the cutter")
-        return {TOOL_PATH: path}
+        return {TOOL_PATH: cutter_way(result.part.contour, radius or result.mechanism.radius)}
 
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return curvature, undercut and size of the profile."""

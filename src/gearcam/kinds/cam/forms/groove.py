@@ -15,7 +15,7 @@ from gearcam.designs.faults import Fault, show
 from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Fact
 from gearcam.kinds.cam.forms.base import FORMS, Form, Keys, plate_keys
-from gearcam.kinds.cam.forms.disc import RIM_PART, STEM, TOOL_PATH
+from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.wall_facts import curvature, size, trimming
 from gearcam.numerals import shown
 
@@ -49,7 +49,8 @@ class Groove(Form):
             message = f"{show(follower.type)}: a groove holds a roller"
             yield Fault(("follower", "type"), message, follower.type, '"roller"')
         if follower.roller2_radius == follower.roller_radius:
-            message = "is that of the first roller: each of two needs its own room in the groove"
+            message = f"{show(follower.roller2_radius)}: is that of the first roller: each of two "
+            message += "needs its own room in the groove"
             rule = "another radius, or one roller"
             yield Fault(("follower", "roller2_radius_mm"), message, follower.roller_radius, rule)
         if cam.groove_depth >= cam.thickness:
@@ -85,11 +86,9 @@ class Groove(Form):
     def parts(self, result: CamResult) -> tuple[Part, ...]:
         """Return the disc with its groove; openings and hub keep within the inner wall."""
         from gearcam.parts.make import make_part
-        from gearcam.parts.openings import RIM, Workpiece
         from gearcam.parts.shapes import Circle
 
         cam, thickness = result.design.cam, result.design.cam.thickness
-        place = Workpiece(name=STEM, module=RIM_PART * thickness / RIM)
         disc = Circle(center=np.zeros(2), diameter=cam.outer_diameter or 0.0)
         recesses = _recesses(result)
         relief = _cam(result).relief
@@ -101,7 +100,7 @@ class Groove(Form):
                 [contour],
                 thickness,
                 result.design.blank,
-                place,
+                workpiece(STEM, thickness, within="the groove's inner wall"),
                 recesses=recesses,
                 room=[*within, result.profiles[0]],
             ),
@@ -128,52 +127,39 @@ class Groove(Form):
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
         """Return the pitch curve for a tool as wide as the groove, else a way along each wall."""
-        from gearcam.parts.parallel import moved, sized
+        from gearcam.kinds.cam.drawn import TOOL_RADIUS, cutter_way
 
-        cam, where = _cam(result), "output.tool_radius_mm"
+        cam = _cam(result)
         widest = 0.5 * cam.width
         if radius is not None and radius > widest:
             raise InfeasibleError(
                 "the cutter is wider than the groove",
-                where=where,
+                where=TOOL_RADIUS,
                 value=radius,
                 limit=widest,
                 unit="mm",
                 nearest="the limit is half the groove's width, included",
-                ways=(Way(near={where: widest}),),
+                ways=(Way(near={TOOL_RADIUS: widest}),),
             )
         if cam.relief is None and radius in (None, widest):
             return {TOOL_PATH: cam.inner.pitch_contour}
         tool = widest if radius is None else radius
         walls = [*cam.walls, *([cam.relief] if cam.relief else [])]
         return {
-            f"{TOOL_PATH}_{wall.key}": sized(
-                lambda by, wall=wall: moved(wall.contour, wall.side * by),
-                tool,
-                where,
-                "radius of the cutter",
-            )
+            f"{TOOL_PATH}_{wall.key}": cutter_way(wall.contour, tool, side=wall.side)
             for wall in walls
         }
 
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return sizes of the groove, its lost motion, and both walls."""
         cam, given = _cam(result), result.design.cam
-        swings, lost = cam.motion.mechanism.oscillating, cam.lost_motion
-        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+        mechanism = cam.motion.mechanism
         return {
             "outer_diameter_mm": Fact(given.outer_diameter, "diameter of the blank"),
             "side": given.side or "front",
             "roller2_radius_mm": result.design.follower.roller2_radius,
             "roller_clearance_mm": given.roller_clearance or 0.0,
-            "start_angle_deg": math.degrees(cam.motion.mechanism.start) if swings else None,
-            "lost_motion": Fact(
-                scale * lost.value,
-                "lost motion",
-                place=f"at {shown(math.degrees(lost.theta), scale=360.0)} deg",
-                unit=unit,
-                shown=True,
-            ),
+            "start_angle_deg": math.degrees(mechanism.start) if mechanism.oscillating else None,
             "groove": {
                 "width_mm": Fact(cam.width, "width of the groove"),
                 "depth_mm": Fact(given.groove_depth, "depth of the groove"),

@@ -17,7 +17,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Fact
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import FORMS, Form, Keys
-from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH
+from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.wall_facts import curvature, trimming
 from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
@@ -103,7 +103,7 @@ class Translating(Form):
     def parts(self, result: CamResult) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
         from gearcam.parts.body import Opening, Part, Recess
-        from gearcam.parts.openings import RIM, Workpiece, demand_apart
+        from gearcam.parts.openings import demand_apart
 
         design, cam = result.design, _made(result)
         thickness, depth = design.cam.thickness, design.cam.groove_depth
@@ -122,8 +122,7 @@ class Translating(Form):
                     edge=cam.groove, low=low, high=high, front=front, width=cam.width, place=(x, y)
                 )
                 recesses = [recess]
-        work = Workpiece(name=STEM, module=thickness / RIM)
-        demand_apart(taken, design.blank, cam.edge.polygon, work)
+        demand_apart(taken, design.blank, cam.edge.polygon, workpiece(STEM, thickness))
         return (
             Part(
                 name=STEM,
@@ -165,25 +164,15 @@ class Translating(Form):
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
         """Return the way around the plate, or through the groove."""
         from gearcam.drawings import Path
-        from gearcam.parts.parallel import moved, sized
+        from gearcam.kinds.cam.drawn import cutter_way
 
-        cam, where = _made(result), "output.tool_radius_mm"
-        radius = radius or (cam.width / 2.0 if cam.groove else result.mechanism.radius)
-        if not radius:
-            raise InfeasibleError(
-                "the way of a cutter needs its radius",
-                where=where,
-                nearest="a round follower's own radius counts where none is given; this one has "
-                "none",
-            )
+        cam = _made(result)
         if cam.groove is None:
-            edge, side = cam.edge, 1.0
-        elif abs(2.0 * radius - cam.width) <= _ROUNDING * cam.width:
+            return {TOOL_PATH: cutter_way(cam.edge, radius or result.mechanism.radius)}
+        radius = radius or 0.5 * cam.width
+        if abs(2.0 * radius - cam.width) <= _ROUNDING * cam.width:
             return {TOOL_PATH: Path(points=cam.lower.pitch_line, closed=False)}
-        else:
-            edge, side = cam.groove, -1.0
-        path = sized(lambda size: moved(edge, side * size), radius, where, "radius of the cutter")
-        return {TOOL_PATH: path}
+        return {TOOL_PATH: cutter_way(cam.groove, radius, side=-1)}
 
     def leading(self, result: CamResult) -> str:  # noqa: ARG002
         """Return which of its sizes stands in the headline."""
@@ -218,26 +207,17 @@ class Translating(Form):
             }
             for wall, made in rows
         }
-        swings = mechanism.oscillating
-        start = {"start_angle_deg": math.degrees(mechanism.start) if swings else None}
+        start = math.degrees(mechanism.start) if mechanism.oscillating else None
         clearance = result.design.blank.clearance
-        if cam.lost_motion is None:
-            return {**start, "clearance_mm": clearance or None, **told}
-        scale, unit = (math.degrees(1.0), "deg") if swings else (1.0, "mm")
+        if cam.groove is None:
+            return {"start_angle_deg": start, "clearance_mm": clearance or None, **told}
         return {
-            **start,
+            "start_angle_deg": start,
             "roller_clearance_mm": given.roller_clearance or 0.0,
-            "lost_motion": Fact(
-                scale * cam.lost_motion.value,
-                "lost motion",
-                place=mechanism.driver.seen(cam.lost_motion.theta),
-                unit=unit,
-                shown=True,
-            ),
             "groove": {
                 "width_mm": Fact(cam.width, "width of the groove"),
                 "depth_mm": Fact(given.groove_depth or given.thickness, "depth of the groove"),
-                "area_mm2": None if cam.groove is None else cam.groove.moments.area,
+                "area_mm2": cam.groove.moments.area,
                 **told,
             },
         }

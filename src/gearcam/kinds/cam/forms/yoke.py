@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.cams.disc import CHORD_TOLERANCE
-from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.yoke import YokeCam, make_yoke
 from gearcam.designs.faults import Fault, show
 from gearcam.drawings import FOLLOWER, Feature, placed
 from gearcam.errors import InfeasibleError, Way
 from gearcam.facts import Fact
-from gearcam.kinds.cam.forms.base import FORMS
-from gearcam.kinds.cam.forms.disc import Disc
+from gearcam.kinds.cam.forms.base import FORMS, PLATE, Keys
+from gearcam.kinds.cam.forms.disc import Disc, disc_cam
 from gearcam.laws.half_turns import agreeing, completed, miss
 from gearcam.laws.phases_of_lift import fill_half
 from gearcam.laws.program import Program, make_program
@@ -39,6 +37,10 @@ class Yoke(Disc):
 
     name = "yoke"
     doc = "a plate between two faces or rollers, of constant breadth or diameter"
+    # aside of its axis one cam cannot carry two rollers, and of faces an offset moves nothing
+    takes: ClassVar[Keys] = {
+        **PLATE, "follower": tuple(name for name in PLATE["follower"] if name != "offset")
+    }  # fmt: skip
     half_turns = True
     rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
 
@@ -49,10 +51,6 @@ class Yoke(Disc):
             message = f"{show(follower.motion)}: a yoke slides"
             rule = '"translating"'
             yield Fault(("follower", "motion"), message, follower.motion, rule)
-        if follower.offset and not follower.flat:
-            message = f"{show(follower.offset)}: one cam cannot carry two rollers aside of its axis"
-            rule = "0"
-            yield Fault(("follower", "offset_mm"), message, follower.offset, rule)
 
     def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
         """Return the lift over a turn: half of it and its opposite, or two opposite half turns."""
@@ -65,12 +63,7 @@ class Yoke(Disc):
 
     def make(self, design: CamDesign, program: Program) -> YokeCam:
         """Return the cam."""
-        return make_yoke(
-            program,
-            make_mechanism(design.follower, design.cam),
-            clockwise=design.cam.clockwise,
-            tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
-        )
+        return make_yoke(disc_cam(design, program))
 
     def picture(self, result: CamResult) -> Drawing:
         """Return the plate, turned, between both sides of its follower."""

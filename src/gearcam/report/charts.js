@@ -1,0 +1,312 @@
+// The charts: uPlot draws axes and lines; limits, values and the cursor of the parts are added.
+
+const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]]; // beside colours, for who sees none
+const HEIGHT = 230; // of a chart, pixels
+const PRINTED = { width: 330, height: 200 };
+const FREE = 0.06; // of a range, left free above and below, and beside dots
+const AT_ONCE = 3; // charts drawn in a frame: the parts keep moving meanwhile
+
+const brief = (value) => String(Number(value.toPrecision(5)));
+
+// All values of a line at a place: two where it jumps, more where its pieces lie over each other.
+function valuesAt(line, place) {
+  const found = new Set();
+  for (let k = 1; k < line.x.length; k++) {
+    const [from, to] = [line.x[k - 1], line.x[k]];
+    if (from === null || to === null || place < from || place > to) continue;
+    const [low, high] = [line.y[k - 1], line.y[k]];
+    if (low === null || high === null) continue;
+    if (from === to) found.add(brief(low)).add(brief(high));
+    else found.add(brief(low + ((place - from) / (to - from)) * (high - low)));
+  }
+  return [...found];
+}
+
+function spanOf(chart) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const line of chart.lines) {
+    for (const x of line.x) {
+      if (x === null) continue;
+      low = Math.min(low, x);
+      high = Math.max(high, x);
+    }
+  }
+  if (low > high) return [0, 1];
+  const free = chart.lines.some((line) => line.dots) || low === high ? FREE * (high - low) || 1 : 0;
+  return [low - free, high + free];
+}
+
+function heightOf({ range: [low, high] }) {
+  const free = FREE * (high - low);
+  return [low - free, high + free];
+}
+
+function add(parent, tag, attributes = {}, text = "") {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.textContent = text;
+  parent.append(made);
+  return made;
+}
+
+// A sample of a line, drawn by the style sheet's colours.
+function sampleOf(k, dots) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  made.setAttribute("class", `sample line-${(k % 6) + 1}`);
+  made.setAttribute("viewBox", "0 0 28 8");
+  made.setAttribute("aria-hidden", "true");
+  const dash = DASHES[k % DASHES.length].join(" ");
+  made.innerHTML = dots
+    ? `<circle cx="14" cy="4" r="3"/>`
+    : `<path d="M0 4H28" stroke-dasharray="${dash}"/>`;
+  return made;
+}
+
+class ChartView {
+  constructor(chart, home, page) {
+    this.page = page; // gives `colours` and takes `go(place)`
+    this.figure = add(home, "figure", { class: "chart" });
+    const caption = add(this.figure, "figcaption");
+    this.title = add(caption, "h3");
+    this.unit = add(caption, "p", { class: "unit" });
+    this.home = add(this.figure, "div", { class: "plot", role: "img" });
+    this.legend = add(this.figure, "ul", { class: "legend" });
+    this.button = add(this.figure, "button", { type: "button", class: "save" }, "Save CSV");
+    this.button.addEventListener("click", () => {
+      save(`${page.title}_${this.chart.name}.csv`, csvOf(this.chart), "text/csv");
+    });
+    this.cursor = document.createElement("div");
+    this.cursor.className = "cursor";
+    this.near = false;
+    this.chart = chart;
+    this.describe();
+    new ResizeObserver(() => this.resize()).observe(this.home);
+  }
+
+  describe() {
+    const { title, x, y, lines, limits, range } = this.chart;
+    this.title.textContent = title;
+    this.unit.textContent = y;
+    const names = lines.map((line) => line.label).join(", ");
+    const levels = limits.map((limit) => `; ${limit.label} ${brief(limit.value)}`).join("");
+    const ends = range.map(brief).join(" to ");
+    this.home.setAttribute("aria-label", `${title}. ${y} over ${x}: ${names}, ${ends}${levels}`);
+    this.button.setAttribute("aria-label", `Save CSV: ${title}`);
+    this.legend.replaceChildren();
+    this.values = lines.map((line, k) => {
+      const row = add(this.legend, "li");
+      row.append(sampleOf(k, line.dots), ` ${line.label} `);
+      return add(row, "output", { "aria-live": "off" });
+    });
+    for (const limit of limits) {
+      const beyond = limit.seen ? "" : ", beyond this chart";
+      const row = add(this.legend, "li", { class: "limit" });
+      row.textContent = `${limit.label}: ${brief(limit.value)}${beyond}`;
+    }
+  }
+
+  // Another chart in the place of this one.
+  show(chart) {
+    const shape = (one) => one.lines.map((line) => line.dots).join();
+    const same = shape(chart) === shape(this.chart) && chart.x === this.chart.x;
+    this.chart = chart;
+    this.describe();
+    if (!this.plot) return;
+    if (same) this.plot.setData(this.data());
+    else {
+      this.plot.destroy();
+      this.plot = null;
+      this.draw();
+    }
+  }
+
+  data() {
+    return [null, ...this.chart.lines.map((line) => [line.x, line.y])];
+  }
+
+  draw() {
+    if (this.plot) return;
+    const ink = (name) => () => this.page.colours[name];
+    const axis = {
+      stroke: ink("muted"), font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif",
+      grid: { stroke: ink("rule"), width: 1 }, ticks: { stroke: ink("rule"), width: 1, size: 4 },
+    };
+    const wide = (_, texts) => 14 + 7 * Math.max(3, ...(texts ?? []).map((text) => text.length));
+    this.plot = new uPlot({
+      mode: 2, // lines with places of their own, which need not rise
+      width: this.home.clientWidth || PRINTED.width,
+      height: HEIGHT,
+      legend: { show: false },
+      cursor: { x: false, y: false, drag: { x: false, y: false }, points: { show: false } },
+      scales: {
+        x: { time: false, range: () => spanOf(this.chart) },
+        y: { range: () => heightOf(this.chart) },
+      },
+      axes: [{ ...axis, label: this.chart.x, labelSize: 18, size: 30 }, { ...axis, size: wide }],
+      series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
+      hooks: { draw: [() => this.limits()] },
+    }, this.data(), this.home);
+    this.plot.over.append(this.cursor);
+    if (this.chart.moves) this.plot.over.classList.add("moves");
+    this.plot.over.addEventListener("click", (event) => this.clicked(event));
+    this.mark(this.page.place);
+  }
+
+  series(line, k) {
+    const facets = [{ scale: "x", auto: true }, { scale: "y", auto: true }];
+    const ink = `line-${(k % 6) + 1}`;
+    return { label: line.label, stroke: "none", facets, paths: (plot, row) => this.line(plot, row, line.dots, ink, k) };
+  }
+
+  // Straight from point to point; what is null breaks a line.
+  line(plot, row, dots, ink, k) {
+    const [xs, ys] = plot.data[row];
+    const { left, top, width, height } = plot.bbox;
+    const pen = plot.ctx;
+    const ratio = uPlot.pxRatio;
+    pen.save();
+    pen.beginPath();
+    pen.rect(left, top - ratio, width, height + 2 * ratio);
+    pen.clip();
+    pen.strokeStyle = pen.fillStyle = this.page.colours[ink];
+    pen.lineWidth = 1.6 * ratio;
+    pen.setLineDash(DASHES[k % DASHES.length].map((length) => length * ratio));
+    pen.beginPath();
+    let up = true;
+    for (let i = 0; i < xs.length; i++) {
+      if (xs[i] === null || ys[i] === null) {
+        up = true;
+        continue;
+      }
+      const [x, y] = [plot.valToPos(xs[i], "x", true), plot.valToPos(ys[i], "y", true)];
+      if (dots) {
+        pen.moveTo(x + 2.5 * ratio, y);
+        pen.arc(x, y, 2.5 * ratio, 0, 7);
+      } else if (up) pen.moveTo(x, y);
+      else pen.lineTo(x, y);
+      up = false;
+    }
+    if (dots) pen.fill();
+    else pen.stroke();
+    pen.restore();
+    return null; // drawn already
+  }
+
+  limits() {
+    const { ctx: pen, bbox } = this.plot;
+    const ratio = uPlot.pxRatio;
+    pen.save();
+    pen.strokeStyle = pen.fillStyle = this.page.colours.limit;
+    pen.lineWidth = ratio;
+    pen.setLineDash([6 * ratio, 4 * ratio]);
+    pen.font = `${11 * ratio}px system-ui, sans-serif`;
+    pen.textAlign = "right";
+    const [low, high] = heightOf(this.chart);
+    for (const limit of this.chart.limits.filter((one) => one.seen)) {
+      const y = this.plot.valToPos(limit.value, "y", true);
+      pen.beginPath();
+      pen.moveTo(bbox.left, y);
+      pen.lineTo(bbox.left + bbox.width, y);
+      pen.stroke();
+      const above = limit.value < 0.5 * (low + high); // inside the range, where there is room
+      pen.fillText(limit.label, bbox.left + bbox.width - 4 * ratio, y + (above ? -4 : 12) * ratio);
+    }
+    pen.restore();
+  }
+
+  clicked(event) {
+    if (!this.chart.moves) return;
+    const left = event.clientX - this.plot.over.getBoundingClientRect().left;
+    this.page.go(this.plot.posToVal(left, "x"));
+  }
+
+  // Show where the parts are.
+  mark(place) {
+    if (!this.plot) return;
+    const [low, high] = spanOf(this.chart);
+    const inside = this.chart.moves && place >= low && place <= high;
+    this.cursor.hidden = !inside;
+    if (inside) this.cursor.style.transform = `translateX(${this.plot.valToPos(place, "x")}px)`;
+    for (const [k, line] of this.chart.lines.entries()) {
+      const told = inside ? valuesAt(line, place).slice(0, 3).join(" | ") : "";
+      if (this.values[k].textContent !== told) this.values[k].textContent = told;
+    }
+  }
+
+  resize(size = { width: this.home.clientWidth, height: HEIGHT }) {
+    if (!this.plot || !size.width || size.width === this.plot.width) return;
+    this.plot.setSize(size);
+    this.mark(this.page.place);
+  }
+
+  // Colours have changed.
+  repaint() {
+    this.plot?.redraw(false, true);
+  }
+}
+
+// All charts of a document. Those out of sight wait, and few are drawn in one frame.
+class Charts {
+  constructor(home, page) {
+    this.home = home;
+    this.page = page;
+    this.views = [];
+    this.next = null;
+    this.sight = new IntersectionObserver((entries) => this.seen(entries), { rootMargin: "200px" });
+  }
+
+  show(charts) {
+    const names = (list) => list.map((one) => one.name).join();
+    if (names(charts) !== names(this.views.map((view) => view.chart))) this.rebuild(charts);
+    else this.views.forEach((view, k) => (view.waiting = charts[k]));
+    this.wake();
+  }
+
+  rebuild(charts) {
+    this.sight.disconnect();
+    this.home.querySelectorAll("figure").forEach((figure) => figure.remove());
+    this.views = charts.map((chart) => new ChartView(chart, this.home, this.page));
+    for (const view of this.views) this.sight.observe(view.figure);
+  }
+
+  seen(entries) {
+    for (const { target, isIntersecting } of entries) {
+      const view = this.views.find((one) => one.figure === target);
+      view.near = isIntersecting;
+      if (isIntersecting) view.mark(this.page.place);
+    }
+    this.wake();
+  }
+
+  wake() {
+    this.next ??= requestAnimationFrame(() => {
+      this.next = null;
+      const due = this.views.filter((view) => view.near && (view.waiting || !view.plot));
+      due.slice(0, AT_ONCE).forEach((view) => this.update(view));
+      if (due.length > AT_ONCE) this.wake();
+    });
+  }
+
+  update(view) {
+    if (view.waiting) view.show(view.waiting);
+    view.waiting = null;
+    view.draw();
+    view.mark(this.page.place);
+  }
+
+  mark(place) {
+    for (const view of this.views) if (view.near) view.mark(place);
+  }
+
+  print(on) {
+    for (const view of this.views) {
+      if (on) this.update(view);
+      view.resize(on ? PRINTED : undefined);
+      view.repaint();
+    }
+  }
+
+  repaint() {
+    for (const view of this.views) view.repaint();
+  }
+}

@@ -1,0 +1,163 @@
+// The parts in motion, on a canvas: what is seen of a scene, and from where.
+
+// Colours by name, as the style sheet has them now; on paper always the light ones.
+function palette(paper = false) {
+  const root = document.documentElement;
+  const before = root.classList.contains("paper");
+  root.classList.toggle("paper", paper || before);
+  const style = getComputedStyle(root);
+  const names = ["ground", "text", "muted", "rule", "contact", "pitch", "centrode", "limit"];
+  for (const k of [1, 2]) names.push(`fill-${k}`, `ink-${k}`, `floor-${k}`, `carry-${k}`);
+  for (const k of [1, 2, 3, 4, 5, 6]) names.push(`line-${k}`);
+  const colours = Object.fromEntries(
+    names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
+  );
+  root.classList.toggle("paper", before);
+  return colours;
+}
+
+const traced = new WeakMap(); // paths of chains: outlines are long and never change
+
+function pathOf({ chains, closed }) {
+  if (traced.has(chains)) return traced.get(chains);
+  const path = new Path2D();
+  for (const points of chains) {
+    path.moveTo(points[0], points[1]);
+    for (let k = 2; k < points.length; k += 2) path.lineTo(points[k], points[k + 1]);
+    if (closed) path.closePath();
+  }
+  traced.set(chains, path);
+  return path;
+}
+
+class Parts {
+  constructor(canvas, moved) {
+    this.canvas = canvas;
+    this.moved = moved; // called when the view is moved by hand
+    this.fitted = true;
+    this.following = false;
+    this.touches = new Map();
+    this.view = { x: 0, y: 0, scale: 1 }; // middle, mm, and pixels for a millimetre
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    canvas.addEventListener("pointerdown", (event) => this.down(event));
+    canvas.addEventListener("pointermove", (event) => this.drag(event));
+    for (const name of ["pointerup", "pointercancel"]) {
+      canvas.addEventListener(name, (event) => this.touches.delete(event.pointerId));
+    }
+  }
+
+  set scene(scene) {
+    this.own = scene;
+    const [left, bottom, right, top] = scene.box;
+    this.canvas.style.setProperty("--shape", Math.min(1.35, Math.max(0.8, (right - left) / (top - bottom))));
+    if (this.fitted) this.fit();
+  }
+
+  get size() {
+    return { width: this.canvas.clientWidth || 1, height: this.canvas.clientHeight || 1 };
+  }
+
+  resize() {
+    if (this.own && this.fitted) this.fit();
+    this.moved();
+  }
+
+  // The whole of all places.
+  fit() {
+    const [left, bottom, right, top] = this.own.box;
+    const { width, height } = this.size;
+    const scale = 0.95 * Math.min(width / (right - left), height / (top - bottom));
+    this.view = { x: 0.5 * (left + right), y: 0.5 * (bottom + top), scale };
+    this.fitted = true;
+    this.following = false;
+  }
+
+  // The mesh, wherever it goes.
+  follow() {
+    this.fit();
+    this.view.scale *= closer(this.own);
+    this.fitted = false;
+    this.following = true;
+  }
+
+  // A zoom keeps the point that is pointed at in its place.
+  zoom(factor, x = 0.5 * this.size.width, y = 0.5 * this.size.height) {
+    const { width, height } = this.size;
+    const before = this.view.scale;
+    const after = Math.min(1e5, Math.max(1e-3, before * factor));
+    this.view.scale = after;
+    this.fitted = false;
+    if (!this.following) this.pan((x - 0.5 * width) * (1 - after / before), (y - 0.5 * height) * (1 - after / before));
+    this.moved();
+  }
+
+  pan(right, down) {
+    this.view.x -= right / this.view.scale;
+    this.view.y += down / this.view.scale;
+    this.fitted = this.following = false;
+    this.moved();
+  }
+
+  wheel(event) {
+    event.preventDefault();
+    const lines = event.deltaMode === 1 ? 30 : 1;
+    this.zoom(Math.exp(-0.002 * lines * event.deltaY), event.offsetX, event.offsetY);
+  }
+
+  down(event) {
+    this.touches.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
+    this.canvas.setPointerCapture(event.pointerId);
+  }
+
+  drag(event) {
+    const before = this.touches.get(event.pointerId);
+    if (!before) return;
+    const now = { x: event.offsetX, y: event.offsetY };
+    const other = [...this.touches].find(([id]) => id !== event.pointerId)?.[1];
+    this.touches.set(event.pointerId, now);
+    const share = other ? 0.5 : 1; // two fingers move what is between them
+    this.pan(share * (now.x - before.x), share * (now.y - before.y));
+    if (!other) return;
+    const apart = (one) => Math.hypot(one.x - other.x, one.y - other.y) || 1;
+    this.zoom(apart(now) / apart(before), 0.5 * (now.x + other.x), 0.5 * (now.y + other.y));
+  }
+
+  draw(place, cycles, seen, colours) {
+    const ratio = Math.max(window.devicePixelRatio, colours.print ? 3 : 1);
+    const { width, height } = this.size;
+    const [wide, tall] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (this.canvas.width !== wide || this.canvas.height !== tall) {
+      Object.assign(this.canvas, { width: wide, height: tall });
+    }
+    if (this.following) Object.assign(this.view, meshAt(this.own, place) ?? {});
+    const pen = this.canvas.getContext("2d", { alpha: false });
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.fillStyle = colours.ground;
+    pen.fillRect(0, 0, wide, tall);
+    pen.lineJoin = "round";
+    const { x, y, scale } = this.view;
+    const size = scale * ratio;
+    const base = [size, 0, 0, -size, 0.5 * wide - size * x, 0.5 * tall + size * y];
+    for (const mark of marksOf(this.own, place, cycles, seen, 1 / scale)) {
+      pen.setTransform(...base);
+      this.mark(pen, mark, 1 / scale, colours);
+    }
+  }
+
+  mark(pen, mark, pixel, colours) {
+    if (mark.pose) {
+      pen.translate(mark.pose.x, mark.pose.y);
+      pen.rotate(mark.pose.turn);
+    }
+    const path = pathOf(mark);
+    if (mark.fill) {
+      pen.fillStyle = colours[mark.fill];
+      pen.fill(path, "evenodd");
+    }
+    pen.strokeStyle = colours[mark.ink];
+    pen.lineWidth = (mark.width ?? 1.2) * pixel;
+    pen.setLineDash((mark.dash ?? []).map((length) => length * pixel));
+    pen.stroke(path);
+  }
+}

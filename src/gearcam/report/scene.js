@@ -1,0 +1,173 @@
+// A scene at a place of its driver: where bodies are, what touches, and what is to be drawn.
+
+// The places around a place, and its part of the way from one to the other.
+function spotOf(places, place) {
+  let low = 0;
+  let high = places.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (places[middle] <= place) low = middle;
+    else high = middle;
+  }
+  const part = (place - places[low]) / (places[high] - places[low]);
+  return { index: low, part: Math.min(1, Math.max(0, part)) };
+}
+
+const steady = (values) => typeof values === "number";
+
+function between(values, { index, part }) {
+  if (steady(values)) return values;
+  return values[index] + part * (values[index + 1] - values[index]);
+}
+
+// What a cycle adds: a driven wheel need not have come round when the driver has.
+const gain = (values) => (steady(values) ? 0 : values.at(-1) - values[0]);
+
+// Turn, rad, and origin, mm, of every body.
+function posesOf(scene, place, cycles = 0) {
+  const spot = spotOf(scene.places, place);
+  return scene.bodies.map((body) => ({
+    name: body.name,
+    turn: between(body.turn, spot) + cycles * gain(body.turn),
+    x: between(body.x, spot),
+    y: between(body.y, spot),
+  }));
+}
+
+// The rows of contacts at one of the places, by the teeth that touch or else by their order.
+function rowsAt(contacts, index) {
+  const rows = new Map();
+  for (let row = contacts.start[index]; row < contacts.start[index + 1]; row++) {
+    let key = contacts.teeth ? contacts.teeth[row].join(":") : "";
+    while (rows.has(key)) key += "+";
+    rows.set(key, row);
+  }
+  return rows;
+}
+
+// Points of contact: what touches at both places around moves evenly between them.
+function touching(contacts, spot) {
+  const here = rowsAt(contacts, spot.index);
+  const next = rowsAt(contacts, spot.index + 1);
+  return [...(spot.part < 0.5 ? here : next)].map(([key, row]) => {
+    const first = here.get(key) ?? row;
+    const last = next.get(key) ?? row;
+    const at = (values) => values[first] + spot.part * (values[last] - values[first]);
+    return {
+      x: at(contacts.x), y: at(contacts.y), fx: at(contacts.fx), fy: at(contacts.fy),
+      teeth: contacts.teeth?.[row],
+    };
+  });
+}
+
+// All that touches, of the sets of contacts that are asked for.
+function touchingIn(scene, names, place) {
+  const spot = spotOf(scene.places, place);
+  return names.flatMap((name) => touching(scene.contacts[name], spot));
+}
+
+function pitchAt(scene, place) {
+  if (!scene.pitch) return null;
+  const { index, part } = spotOf(scene.places, place);
+  const at = (k) => scene.pitch[k] + part * (scene.pitch[k + 2] - scene.pitch[k]);
+  return { x: at(2 * index), y: at(2 * index + 1) };
+}
+
+// What a view follows: the pitch point, or the middle of what touches.
+function meshAt(scene, place) {
+  const pitch = pitchAt(scene, place);
+  if (pitch) return pitch;
+  const found = touchingIn(scene, Object.keys(scene.contacts), place);
+  if (!found.length) return null;
+  const mean = (key) => found.reduce((sum, one) => sum + one[key], 0) / found.length;
+  return { x: mean("x"), y: mean("y") };
+}
+
+// How much larger the mesh is seen than the whole: about five teeth, or a quarter of the parts.
+function closer(scene) {
+  const teeth = Object.values(scene.contacts).flatMap((one) => one.teeth ?? []);
+  const most = teeth.reduce((count, pair) => Math.max(count, pair[0]), 0);
+  return Math.max(4, most / 6);
+}
+
+// Colours go by name, so that wheel 1 has its own wherever it lies in the picture.
+function tones(scene) {
+  const names = scene.bodies.map((body) => body.name).filter((name) => name !== "frame").sort();
+  return scene.bodies.map((body) => (names.indexOf(body.name) % 2) + 1);
+}
+
+// A tooth of an outline, closed by its chord.
+function toothOf(outline, [first, last]) {
+  const tooth = outline.slice(2 * first, first <= last ? 2 * last + 2 : undefined);
+  return first <= last ? tooth : tooth.concat(outline.slice(0, 2 * last + 2));
+}
+
+/* What is drawn, as marks; what comes later lies on top. A mark has `chains` of points (flat, mm),
+   `closed` or not, names of the colours that `fill` it and `ink` its edges, a `pose` or none, and
+   its `width` and `dash` in units of `pixel`, mm. `seen` tells what is asked for. */
+function* marksOf(scene, place, cycles, seen, pixel) {
+  const found = touchingIn(scene, seen.contacts, place);
+  const poses = posesOf(scene, place, cycles);
+  const tone = tones(scene);
+  // The outline repeats: the teeth that touch are those of the first cycle, where they were then.
+  const first = cycles ? posesOf(scene, place) : poses;
+  const toothed = scene.bodies.filter((body) => body.teeth);
+  for (const [k, body] of scene.bodies.entries()) {
+    yield* bodyMarks(body, poses[k], tone[k]);
+    const column = body.teeth && seen.carry ? columnOf(toothed, body) : -1;
+    if (column < 0) continue;
+    const chains = found
+      .filter((one) => one.teeth && body.teeth[one.teeth[column] - 1])
+      .map((one) => toothOf(body.metal[0], body.teeth[one.teeth[column] - 1]));
+    yield { chains, closed: true, fill: `carry-${tone[k]}`, ink: `ink-${tone[k]}`, pose: first[k] };
+  }
+  // What only guides the eye lies on every body.
+  for (const [k, body] of scene.bodies.entries()) yield* dashedMarks(body, poses[k], seen);
+  if (seen.action) yield* actionMarks(found, pixel);
+  if (seen.points) yield* found.map((one) => dot(one, 4 * pixel, "contact"));
+  const pitch = seen.pitch && pitchAt(scene, place);
+  if (pitch) yield dot(pitch, 4 * pixel, "pitch");
+}
+
+// Contacts tell the tooth of the first body, then of the second: by their names, as colours go.
+function columnOf(toothed, body) {
+  return toothed.map((one) => one.name).sort().indexOf(body.name);
+}
+
+function* bodyMarks(body, pose, tone) {
+  const ink = body.name === "frame" ? "text" : `ink-${tone}`;
+  yield { chains: body.metal, closed: true, fill: `fill-${tone}`, ink, pose };
+  yield { chains: body.floor, closed: true, fill: `floor-${tone}`, ink, pose };
+  for (const line of body.lines.filter((one) => !one.dashed)) {
+    const fill = line.layer === "MARK" && line.closed ? ink : null;
+    yield { chains: (line.chains ??= [line.points]), closed: line.closed, fill, ink, pose };
+  }
+}
+
+function* dashedMarks(body, pose, seen) {
+  for (const line of body.lines.filter((one) => one.dashed && seen.lines[one.layer])) {
+    const chains = (line.chains ??= [line.points]);
+    yield { chains, closed: line.closed, ink: "centrode", dash: [7, 4], pose };
+  }
+}
+
+// Through each contact along the force, with a head where it presses.
+function* actionMarks(found, pixel) {
+  const reach = 70 * pixel;
+  const head = 8 * pixel;
+  for (const { x, y, fx, fy } of found) {
+    const [ex, ey] = [x + reach * fx, y + reach * fy];
+    const line = [x - reach * fx, y - reach * fy, ex, ey];
+    const wing = (side) => [ex - head * (fx - side * 0.4 * fy), ey - head * (fy + side * 0.4 * fx)];
+    yield { chains: [line], closed: false, ink: "contact", width: 1.5 };
+    yield { chains: [[ex, ey, ...wing(1), ...wing(-1)]], closed: true, fill: "contact", ink: "contact" };
+  }
+}
+
+function dot({ x, y }, radius, ink) {
+  const points = [];
+  for (let k = 0; k < 24; k++) {
+    points.push(x + radius * Math.cos((k * Math.PI) / 12), y + radius * Math.sin((k * Math.PI) / 12));
+  }
+  return { chains: [points], closed: true, fill: ink, ink: "ground" };
+}

@@ -1,0 +1,121 @@
+// The view of the solids: a page of its own in a frame, made when it is first opened. Its globals
+// (scene, camera, controls, render, THREE) are used to fit it, to colour it and to print it.
+"use strict";
+
+(() => {
+  const home = document.querySelector("#solids details");
+  if (!home) return;
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const METAL = [0x4d7fb8, 0xb8803f, 0x5c8f5c]; // bodies in their order
+  const TURN = Math.PI / 18; // of an arrow key
+  const ZOOM = 1.15; // of + and -
+  let frame = null;
+
+  // The view's own globals; null until it is drawn.
+  const view = () => {
+    const inside = frame && frame.contentWindow;
+    return inside && inside.controls ? inside : null;
+  };
+
+  const drawn = () => {
+    const canvas = document.createElement("canvas");
+    return canvas.getContext("webgl2") || canvas.getContext("webgl");
+  };
+
+  function open() {
+    if (!home.open || frame) return;
+    if (!drawn()) {
+      home.querySelector(".hint").textContent =
+        "This browser does not draw in three dimensions (it has no WebGL).";
+      return;
+    }
+    frame = document.createElement("iframe");
+    frame.title = "The solids, to be turned and zoomed";
+    frame.srcdoc = JSON.parse(document.getElementById("solids-view").textContent);
+    home.querySelector(".view").append(frame);
+    ready();
+  }
+
+  // The view reads its data by itself and does not tell when that is done.
+  function ready() {
+    const inside = view();
+    if (!inside) {
+      requestAnimationFrame(ready);
+      return;
+    }
+    paint(inside);
+    inside.camera.position.copy(inside.controls.target).add(new inside.THREE.Vector3(0.3, -0.7, 1));
+    fit(inside);
+    inside.addEventListener("resize", () => fit(inside));
+    inside.addEventListener("keydown", key);
+    home.dataset.drawn = "true";
+  }
+
+  function paint(inside) {
+    let count = 0;
+    inside.scene.background.set(dark.matches ? 0x1a2027 : 0xffffff);
+    inside.tracklight.intensity = 1.1;
+    inside.scene.traverse((one) => {
+      if (!one.isMesh) return;
+      one.material = one.material.clone(); // they share one
+      one.material.color.set(METAL[count++ % METAL.length]);
+      one.material.metalness = 0;
+      one.material.roughness = 0.7;
+    });
+    inside.render();
+  }
+
+  // Set the camera as far off as the bodies need in the narrower direction.
+  function fit(inside) {
+    const { camera, controls, THREE } = inside;
+    const bodies = new THREE.Box3().setFromObject(inside.scene);
+    const radius = bodies.getBoundingSphere(new THREE.Sphere()).radius;
+    const tall = Math.tan((camera.fov * Math.PI) / 360);
+    const far = radius / Math.sin(Math.atan(tall * Math.min(1, camera.aspect)));
+    const way = camera.position.clone().sub(controls.target).setLength(far);
+    camera.position.copy(controls.target).add(way);
+    camera.near = far / 1000;
+    camera.far = 10 * far;
+    camera.updateProjectionMatrix();
+    controls.update();
+    inside.render();
+  }
+
+  function key(event) {
+    const { camera, controls, THREE } = view();
+    const way = camera.position.clone().sub(controls.target);
+    const across = camera.up.clone().cross(way).normalize();
+    const moves = {
+      ArrowLeft: () => way.applyAxisAngle(camera.up, TURN),
+      ArrowRight: () => way.applyAxisAngle(camera.up, -TURN),
+      ArrowUp: () => way.applyAxisAngle(across, TURN) && camera.up.applyAxisAngle(across, TURN),
+      ArrowDown: () => way.applyAxisAngle(across, -TURN) && camera.up.applyAxisAngle(across, -TURN),
+      "+": () => way.divideScalar(ZOOM),
+      "-": () => way.multiplyScalar(ZOOM),
+    };
+    if (!moves[event.key]) return;
+    event.preventDefault();
+    moves[event.key]();
+    camera.position.copy(controls.target).add(way);
+    controls.update();
+    view().render();
+  }
+
+  // A frame is cut at the width of the paper and its canvas is empty there: a picture is printed.
+  function picture() {
+    const inside = view();
+    if (!inside) return;
+    inside.scene.background.set(0xffffff);
+    inside.render();
+    const shown = document.createElement("img");
+    shown.alt = "The solids";
+    shown.src = inside.renderer.domElement.toDataURL();
+    home.querySelectorAll("img").forEach((one) => one.remove());
+    home.append(shown);
+    paint(inside);
+  }
+
+  home.addEventListener("toggle", open);
+  dark.addEventListener("change", () => view() && paint(view()));
+  addEventListener("beforeprint", picture);
+})();

@@ -1,0 +1,49 @@
+"""The solids of a page: a view of them where they stand, which opens when it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+from gearcam.designs.kind import KINDS
+from gearcam.errors import GearcamError
+
+if TYPE_CHECKING:
+    from gearcam.result import Result
+    from gearcam.solids import Mesh
+
+CHORDS: Final = 0.02
+"""Chord error of the solids shown, mm: finer ones look the same and make the page heavier."""
+
+
+def solids_shown(result: Result) -> dict[str, str]:
+    """Return a view of the solids of a result, assembled.
+
+    Parameters
+    ----------
+    result : Result
+        Of any kind with reports.
+
+    Returns
+    -------
+    dict
+        ``view``, a page of its own; or ``refusal``, why there is none.
+    """
+    from gearcam.export.mesh import view_page
+
+    refusal = ""
+    # small teeth refuse the chords of the view: then those of the design are shown
+    for chords in (CHORDS, 0.0):
+        try:
+            return {"view": view_page(_assembled(result, chords))}
+        except GearcamError as error:
+            refusal = str(error)
+    return {"refusal": refusal}
+
+
+def _assembled(result: Result, chords: float) -> Mapping[str, Mesh]:
+    """Return the solids of a result, where its own are finer than `chords` with those."""
+    if (result.design.output.chord_tolerance or 0.0) < chords:
+        coarse = result.design.with_({"output.chord_tolerance_mm": chords})
+        result = type(result)(coarse, result.tolerances)
+    return KINDS[result.design.kind].room("files").assembled(result, {})

@@ -1,0 +1,110 @@
+"""Files of translating cams, and profiles that are followed."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+
+import gearcam
+from gearcam.drawings import cut_drawing, reach
+from gearcam.errors import DesignError, InfeasibleError
+from helpers_sliding import DEEP, FILE, ONE, built, cam_of
+
+
+def test_files_of_a_groove(tmp_path: Path) -> None:
+    result = built(FILE)
+    assert set(result.files("csv")) == {"profile_lower.csv", "profile_upper.csv", "motion.csv"}
+    assert set(result.files("inspection")) == {"inspection_lower.csv", "inspection_upper.csv"}
+    text = result.files("dxf")["cam.dxf"].decode()
+    layers = {"GROOVE", "PITCH", "BLANK", "HOLE", "CENTER"}
+    assert {name for name in layers if f"\n{name}\n" in text} == layers
+    for name in ("cam.svg", "cam_drawing.svg"):
+        kind = "svg" if name == "cam.svg" else "drawing-svg"
+        ET.fromstring(result.files(kind)[name])
+    file = tmp_path / "lower.csv"
+    file.write_bytes(result.files("csv")["profile_lower.csv"])
+    for profile, wall in ((file, None), (result.cam.walls[1].outline, "upper")):
+        study = result.follow(profile, wall=wall)
+        np.testing.assert_allclose(study.columns["difference"], 0.0, atol=1.2e-3)
+        assert study.columns["error"].max() < 2e-3  # a dwell's long chord is straight
+    codes = [one.code for one in result.follow(result.cam.walls[1].outline).findings]
+    assert "other-profile" in codes
+    drawing = tmp_path / "cam.dxf"
+    drawing.write_bytes(result.files("dxf")["cam.dxf"])
+    with pytest.raises(DesignError, match="one closed outline"):
+        result.follow(drawing)
+
+
+SWUNG = (
+    ('motion = "translating"', 'motion = "oscillating"\narm_mm = 60\npivot_distance_mm = 50'),
+    ("radius_mm = 6", "radius_mm = 6\npivot_height_mm = 3"),
+    ("lift_mm = 15", "lift_deg = 15"),
+)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [(("radius_mm = 6", "radius_mm = 6\naxis_deg = 12"),), SWUNG],
+    ids=["leans", "swings"],
+)
+def test_both_walls_are_followed(changes: tuple[tuple[str, str], ...]) -> None:
+    result = built(FILE, *changes)
+    assert len(result.cam.walls) == 2
+    for wall in result.cam.walls:
+        study = result.follow(wall.outline, wall=wall.key)
+        lever = math.radians(60.0) if changes is SWUNG else 1.0
+        assert np.abs(study.columns["difference"]).max() * lever < 1.5e-3
+
+
+def test_a_profile_is_followed() -> None:
+    result = built(ONE, ("height_mm = 40", "height_mm = 40\n[output]\nchord_tolerance_mm = 1e-4"))
+    study = result.follow(cam_of(result).edge.vertices)
+    difference = study.columns["difference"]
+    assert np.abs(difference).max() < 2e-4
+    assert study.columns["error"].max() < 0.02  # the plate's corners are no curve
+    assert "u_mm" in study.columns
+
+
+def test_the_kerf_of_a_groove_that_goes_through() -> None:
+    result = built(FILE, (DEEP, ""), ("[output]", "[output]\nkerf_mm = 0.4"))
+    (drawing,) = result.form.drawings(result)
+    paths = {one.layer: one.shape for one in cut_drawing(drawing, 0.4).features}
+    cam = cam_of(result)
+    assert cam.groove is not None
+    groove = shapely.Polygon(reach(paths["GROOVE_KERF"]))
+    assert groove.area == pytest.approx(cam.groove.polygon.buffer(-0.2).area, rel=1e-4)
+    blank = shapely.Polygon(reach(paths["BLANK_KERF"]))
+    assert blank.area == pytest.approx(shapely.box(0, 0, 194.1, 60).buffer(0.2).area, rel=1e-4)
+    assert set(result.files("dxf")) == {"cam.dxf"}
+
+
+def test_the_way_of_a_tool() -> None:
+    result = built(FILE)
+    rows = result.files("tool-path")["tool_path.csv"].decode().splitlines()
+    points = np.loadtxt(rows, delimiter=",", skiprows=1)
+    np.testing.assert_allclose(points, cam_of(result).lower.pitch_line, atol=1e-6)
+    design = replace(result.design, output=replace(result.design.output, tool_radius=4.0))
+    rows = gearcam.build(design).files("tool-path")["tool_path.csv"].decode().splitlines()
+    path = shapely.LinearRing(np.loadtxt(rows, delimiter=",", skiprows=1))
+    middle = shapely.LineString(cam_of(result).lower.pitch_line)
+    away = shapely.distance(shapely.points(path.coords), middle)
+    np.testing.assert_allclose(away, 2.025, atol=2e-3)
+    design = replace(result.design, output=replace(result.design.output, tool_radius=6.1))
+    with pytest.raises(InfeasibleError):
+        gearcam.build(design).files("tool-path")
+
+
+def test_the_picture_stands_where_it_is_asked() -> None:
+    result = built(FILE)
+    with pytest.raises(InfeasibleError, match="slide so far") as caught:
+        built(FILE, ("u_mm = 80", "u_mm = 171")).files("svg")
+    assert caught.value.limit == pytest.approx(170.0)
+    drawing = result.form.picture(result)
+    x = reach(drawing.features[0].shape)[:, 0]
+    assert (x.min(), x.max()) == pytest.approx((80.0 - 182.05, 80.0 + 12.05))
