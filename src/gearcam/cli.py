@@ -26,10 +26,10 @@ from gearcam.console import (
     all_lines,
     complain,
     fault_text,
-    infeasible_text,
     law_lines,
     progress_bar,
     quieten,
+    refusal_text,
     remedy_lines,
     say,
 )
@@ -90,7 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    functions = (_build, _check, _laws, _new, _migrate, _schema)
+    functions = (_build, _check, _view, _laws, _new, _migrate, _schema)
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
     if word in own:
@@ -140,6 +140,10 @@ def _parser(
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
     if command in (_build, _check):
         _add_common(parser)
+    if command is _view:
+        from gearcam.view.command import arguments
+
+        arguments(parser)
     if command is _build:
         words = f"write only these: {','.join(formats)}"
         parser.add_argument("--only", action="append", metavar="KINDS", help=words)
@@ -184,6 +188,13 @@ def _check(files: list[str], output: str, debug: bool) -> None:
         return result.check(output)
 
     _each_result(files, "checked", action, debug=debug)
+
+
+def _view(file: str, port: int, no_browser: bool) -> None:
+    """Show a design's page in the browser, and follow the file as it is saved."""
+    from gearcam.view.command import view
+
+    _each([file], "shown", lambda one: view(one, port, browser=not no_browser) or GOOD)
 
 
 def _of_kind(command: Command, words: list[str]) -> None:
@@ -322,9 +333,7 @@ def _each(
         except KeyboardInterrupt:
             raise SystemExit(_interrupted()) from None
         except DesignError as error:
-            count = len(error.problems)
-            complain(f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}")
-            complain(textwrap.indent(str(error), "  "))
+            complain(refusal_text(error, file, done))
             codes.append(WRONG)
         except (WriteError, MissingExtraError) as error:
             complain(f"{file}: {error}")
@@ -350,7 +359,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         with progress_bar(file) as progress:
             written = action(result, progress)
     except InfeasibleError as error:
-        complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
+        complain(refusal_text(error, file, done))
         for line in remedy_lines(remedies(result, error)):
             complain(f"  {line}")
         return IMPOSSIBLE

@@ -15,13 +15,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
+from gearcam.errors import DesignError, InfeasibleError
 from gearcam.facts import lined_up
 from gearcam.numerals import size_of, with_unit
 
 if TYPE_CHECKING:
     from gearcam.advice import Remedies
     from gearcam.designs.listing import Listed
-    from gearcam.errors import InfeasibleError
     from gearcam.findings import Finding
     from gearcam.written import Written
 
@@ -98,6 +98,15 @@ def fault_text(error: Exception, file: str) -> str:
         f"{place}this is a fault of gearcam, not of your design: {type(error).__name__}: {error}\n"
         f"  please report it with the design file; {DEBUG}=1 or --debug shows where it happened"
     )
+
+
+def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> str:
+    """Return why nothing was `done` with a `file` in words: the `error`, with every problem."""
+    if isinstance(error, InfeasibleError):
+        return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
+    count = len(error.problems)
+    told = textwrap.indent(str(error), "  ")
+    return f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}\n{told}"
 
 
 def infeasible_text(error: InfeasibleError) -> str:
