@@ -17,6 +17,7 @@ import textwrap
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -27,10 +28,10 @@ from gearcam.console import (
     all_lines,
     complain,
     fault_text,
-    infeasible_text,
     law_lines,
     progress_bar,
     quieten,
+    refusal_text,
     remedy_lines,
     say,
 )
@@ -93,7 +94,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    functions = (_build, _check, _compare, _laws, _new, _migrate, _schema)
+    functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema)
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
     if word in own:
@@ -141,12 +142,10 @@ def _parser(
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
     if command in (_build, _check, _migrate):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
-    if command is _compare:
-        from gearcam.compare.command import add_arguments
-
-        add_arguments(parser)
     if command in (_build, _check, _compare):
         _add_common(parser)
+    if command in (_compare, _view):
+        import_module(f"gearcam.{name}.command").arguments(parser)
     if command is _build:
         words = f"write only these: {','.join(formats)}"
         parser.add_argument("--only", action="append", metavar="KINDS", help=words)
@@ -188,17 +187,21 @@ def _check(files: list[str], output: str, debug: bool) -> None:
     _each_result(files, "checked", action, debug=debug)
 
 
+def _view(file: str, port: int, no_browser: bool) -> None:
+    """Show a design's page in the browser, and follow the file as it is saved."""
+    from gearcam.view.command import view
+
+    _each([file], "shown", lambda one: view(one, port, browser=not no_browser) or GOOD)
+
+
 def _compare(files: list[str], debug: bool, **options: Any) -> None:
     """Lay designs, or variants of one, side by side: facts, and a page DIR/compare.html."""
     from gearcam.compare.command import compare
 
-    codes = {"refused": IMPOSSIBLE, "error": FINDINGS}
-    _each(
-        [" ".join(files)],
-        "compared",
-        lambda _: codes.get(compare(files, **options), GOOD),
-        debug=debug,
-    )
+    def work(_: str) -> int:
+        return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(compare(files, **options), GOOD)
+
+    _each([" ".join(files)], "compared", work, debug=debug)
 
 
 def _of_kind(command: Command, words: list[str]) -> None:
@@ -332,9 +335,7 @@ def _each(
         except KeyboardInterrupt:
             raise SystemExit(_interrupted()) from None
         except DesignError as error:
-            count = len(error.problems)
-            complain(f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}")
-            complain(textwrap.indent(str(error), "  "))
+            complain(refusal_text(error, file, done))
             codes.append(WRONG)
         except (WriteError, MissingExtraError) as error:
             complain(f"{file}: {error}")
@@ -360,7 +361,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         with progress_bar(file) as progress:
             written = action(result, progress)
     except InfeasibleError as error:
-        complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
+        complain(refusal_text(error, file, done))
         for line in remedy_lines(remedies(result, error)):
             complain(f"  {line}")
         return IMPOSSIBLE

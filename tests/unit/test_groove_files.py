@@ -141,6 +141,12 @@ def test_an_unknown_key_is_answered_with_those_of_the_form() -> None:
         assert foreign not in problem.allowed.split(", ")
 
 
+def test_the_sheet_of_a_groove_tells_its_diameter() -> None:
+    data = gearcam.build(FILE_DESIGN).files("drawing-svg")["cam_drawing.svg"].decode()
+    assert "Ø110" in data
+    assert "R55" not in data
+
+
 def test_contact_of_each_wall() -> None:
     result = gearcam.build(FILE_DESIGN)
     inner, outer = result.contact(), result.contact(wall="outer")

@@ -15,7 +15,7 @@ from gearcam.export.write import write_all
 from gearcam.report.page import page
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes to a `parser`."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML) of one kind")
     words = "make each file with each of these values; several times, with each combination"

@@ -13,7 +13,8 @@ names it, and only that of a file is loaded. Its modules:
 - `advice`: ``ways(...)`` yields changes that may help where it is refused or has errors;
 - `public`: in its ``__all__`` the classes that people who write Python make designs of (the
   package `gearcam.kinds` tells type checkers of them);
-- `describe`: what schema, template and list of laws say of its main part;
+- `describe`: what schema, template and list of laws say of its main part, and the table of each
+  of its items;
 - `commands`, where it has any: ``COMMANDS`` of the command line.
 """
 
