@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, given, settings
-from hypothesis import Phase as Stage
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
@@ -25,6 +24,7 @@ from gearcam.laws.phases_of_lift import levels
 from gearcam.laws.program import Program, make_program
 from gearcam.tolerances import DEFAULT
 from helpers_cams import TURN, program, rise
+from helpers_random import QUICK
 from property.test_cams import LAWS, dwell, programs, rounded, segment
 from witness.cam_sweep import Follower, swept
 from witness.roller_bands import band, island
@@ -171,14 +171,7 @@ def demand_yoke(design: Given) -> bool:
     return True
 
 
-quick = settings(
-    derandomize=True,
-    database=None,
-    deadline=None,
-    max_examples=20,
-    phases=[Stage.generate, Stage.shrink],
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+quick = settings(QUICK, max_examples=15)
 
 
 @quick
