@@ -1,7 +1,10 @@
-"""How designs at random are drawn: the same ones in every run."""
+"""How designs at random are drawn, the same ones in every run, and what cams are measured by."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import shapely
 from hypothesis import HealthCheck, Phase, settings
 
 QUICK = settings(
@@ -16,3 +19,9 @@ QUICK = settings(
         HealthCheck.filter_too_much,
     ],
 )
+
+
+def close(contour: Any, region: Any, chord: float) -> None:
+    """Demand that a contour encloses a region within its chords, whose tolerance is in mm."""
+    off = shapely.symmetric_difference(contour.polygon, region).area
+    assert off < 3.0 * chord * region.length + 1e-9

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -24,7 +23,7 @@ from gearcam.laws.phases_of_lift import levels
 from gearcam.laws.program import Program, make_program
 from gearcam.tolerances import DEFAULT
 from helpers_cams import TURN, program, rise
-from helpers_random import QUICK
+from helpers_random import QUICK, close
 from property.test_cams import LAWS, dwell, programs, rounded, segment
 from witness.cam_sweep import Follower, swept
 from witness.roller_bands import band, island
@@ -32,11 +31,6 @@ from witness.roller_bands import band, island
 CHORD = 2e-3
 
 Given = tuple[dict[str, Any], float, Any]
-
-
-def close(contour: Any, region: Any) -> None:
-    off = shapely.symmetric_difference(contour.polygon, region).area
-    assert off < 3.0 * CHORD * region.length + 1e-9
 
 
 def turns(motion: Program, count: int) -> Any:
@@ -99,7 +93,7 @@ def demand_conjugate(design: Any) -> bool:
         assert made.nearest or made.limit is not None
         return False
     for wall, centers in zip(made.walls, centers_of(made), strict=True):
-        close(wall.contour, island(band(centers, wall.mechanism.radius)))
+        close(wall.contour, island(band(centers, wall.mechanism.radius)), CHORD)
         assert np.isfinite(wall.shortfall)
         assert wall.contour.moments.area == pytest.approx(wall.size.area, rel=1e-6)
     assert made.prime2 == pytest.approx(design[2].prime, rel=1e-9)
@@ -162,7 +156,7 @@ def demand_yoke(design: Given) -> bool:
         region = swept(own, theta, lift, 3.0 * scale, 0)
     else:
         region = island(band(1j * (m.start + lift) * np.exp(-1j * theta), m.radius))
-    close(made.contour, region)
+    close(made.contour, region, CHORD)
     if m.flat and not made.corners and not made.undercut:
         assert made.size.perimeter == pytest.approx(math.pi * scale, rel=1e-9)
         vertices = made.contour.vertices @ [1.0, 1j]

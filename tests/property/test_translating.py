@@ -18,7 +18,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
 from gearcam.laws.program import make_program
 from gearcam.tolerances import DEFAULT
-from helpers_random import QUICK
+from helpers_random import QUICK, close
 from property.test_cams import programs, rounded
 
 CHORD = 2e-3
@@ -94,9 +94,7 @@ def demand_plate(design: Given) -> None:
     line = np.column_stack([points.real, points.imag])
     region = shapely.LineString(line).buffer(0.5 * made.width, quad_segs=128)
     assert made.groove is not None
-    groove = made.groove.polygon
-    off = shapely.symmetric_difference(groove, shapely.Polygon(region.exterior)).area
-    assert off < 3.0 * CHORD * region.length + 1e-9
+    close(made.groove, shapely.Polygon(region.exterior), CHORD)
     for wall in made.walls:
         metal = wall.contour.polygon
         assert metal.is_valid
