@@ -14,7 +14,6 @@ from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
 from shapely import affinity
 
-from gearcam.result import Result
 from helpers_browser import complaints, go, open_page, requests, settle, until
 
 NAIL = "nail_machine_two_phase"
@@ -25,7 +24,7 @@ BENT = 0.5e-5
 below 0.5 for these, times the square of the step."""
 
 Written = Callable[[str], Path]
-Built = Callable[[str], Result]
+Built = Callable[[str], Any]
 
 
 def poses(browser: Chrome) -> dict[str, Any]:

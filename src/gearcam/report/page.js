@@ -173,7 +173,7 @@ function offer() {
   const sets = Object.keys(scene.contacts);
   const dashed = new Set(scene.bodies.flatMap((body) => body.lines.filter((line) => line.dashed).map((line) => line.layer)));
   const teeth = scene.bodies.some((body) => body.teeth);
-  const wanted = JSON.stringify([sets, [...dashed], teeth, Boolean(scene.pitch)]);
+  const wanted = JSON.stringify([sets.toSorted(), [...dashed].sort(), teeth, Boolean(scene.pitch)]);
   if (wanted === offered) return;
   offered = wanted;
   const home = element("seen");
