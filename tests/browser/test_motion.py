@@ -15,6 +15,8 @@ from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.by import By
 from shapely import affinity
 
+from gearcam.report.file import report_files
+from gearcam.report.page import PAGE
 from helpers_browser import complaints, go, open_page, requests, settle, until
 
 NAIL = "nail_machine_two_phase"
@@ -54,9 +56,13 @@ def test_a_page_opens_without_complaint_or_network(
     assert [url for url in requests(browser) if url != own and not url.startswith("data:")] == []
 
 
-def test_a_page_is_small_and_quickly_there(browser: Chrome, page_of: Written) -> None:
-    assert page_of(NAIL).stat().st_size <= 4_000_000
-    open_page(browser, page_of(NAIL))
+def test_a_written_page_is_small_and_quickly_there(
+    browser: Chrome, built: Built, tmp_path: Path
+) -> None:
+    path = tmp_path / PAGE
+    path.write_bytes(report_files(built(NAIL), {})[PAGE])
+    assert path.stat().st_size <= 4_000_000
+    open_page(browser, path)
     mark = "return performance.getEntriesByName('first-picture')[0].startTime"
     assert browser.execute_script(mark) < 3 * 1000.0  # a second, on a busy machine
 
@@ -241,7 +247,7 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
     assert place == pytest.approx(180.0 + 360.0 * right / width, abs=360.0 / width)
     ratio = built(NAIL).motion(np.radians([place]))["ratio"][0]
     told = browser.find_element(By.CSS_SELECTOR, ".chart .legend output").text
-    assert float(told) == pytest.approx(ratio, abs=2e-5)
+    assert float(told) == pytest.approx(ratio, abs=1e-4)  # five digits
     assert poses(browser)["gear1"]["turn"] == pytest.approx(-math.radians(place), abs=ROUNDED)
     for chart, figure in zip(charts, browser.find_elements(By.CLASS_NAME, "chart"), strict=True):
         browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", figure)
