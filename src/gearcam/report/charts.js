@@ -137,7 +137,8 @@ class ChartView {
       labelFont: "12px system-ui, sans-serif",
       grid: { stroke: ink("rule"), width: 1 }, ticks: { stroke: ink("rule"), width: 1, size: 4 },
     };
-    const wide = (_, texts) => 14 + 7 * Math.max(3, ...(texts ?? []).map((text) => text.length));
+    // wide enough for most, so that charts below each other line up
+    const wide = (_, texts) => 14 + 7 * Math.max(6, ...(texts ?? []).map((text) => text.length));
     this.plot = new uPlot({
       mode: 2, // lines with places of their own, which need not rise
       width: this.home.clientWidth || PRINTED.width,
