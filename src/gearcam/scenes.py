@@ -148,9 +148,9 @@ def extent(scene: Scene) -> tuple[float, float, float, float]:
     low, high = [], []
     for body in scene.bodies:
         points = np.vstack([p for f in body.features for p, _ in chains(f.shape, SAGITTA)])
-        places = _outmost(as_complex(points))
+        places = as_complex(points)
         if np.ptp(body.turn) < 2.0 * np.pi:
-            moved = places * np.exp(1j * body.turn[:, None]) + body.shift[:, None]
+            moved = _outmost(places) * np.exp(1j * body.turn[:, None]) + body.shift[:, None]
         else:
             moved = np.abs(places).max() * np.array([1 + 1j, -1 - 1j]) + body.shift[:, None]
         low.append((moved.real.min(), moved.imag.min()))
