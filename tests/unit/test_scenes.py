@@ -14,7 +14,7 @@ from shapely import LineString, Point, Polygon
 import gearcam
 from arch import rules
 from gearcam.designs.kind import KINDS
-from gearcam.drawings import CENTER, FOLLOWER, OUTER_WALL, Circle, chains
+from gearcam.drawings import Circle, chains
 from gearcam.numeric.contour import Contour
 from gearcam.scenes import PLACES, MovingBody, Scene, extent
 
@@ -393,9 +393,3 @@ def test_nothing_leaves_the_box_and_little_is_left_empty(name):
     assert every.imag.max() <= top + room
     assert np.ptp(every.real) > 0.9 * (right - left)
     assert np.ptp(every.imag) > 0.9 * (top - bottom)
-
-
-def test_a_floor_is_told_from_metal():
-    kinds = {one.kind for one in scene(made("groove_cam"), 1).bodies[0].features}
-    assert OUTER_WALL in kinds
-    assert not kinds & {CENTER, FOLLOWER}
