@@ -1,5 +1,6 @@
 # make demo    build the nail machine's gears into output/ (installs into .venv first)
-# make test    every test that is not slow (installs both extras, STEP files and charts, 440 MB, too)
+# make test    every test that is not slow (installs both extras, STEP files and charts, 440 MB, and
+#              on Debian, as root, the browser chromium)
 # make lint    style, types, import contracts
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
 # make peers   compare flanks with those of another package
@@ -32,7 +33,8 @@ demo: $(VENV)/.run
 	$(BIN)/gearcam build $(DEMO) -o output
 
 test: $(VENV)/.test
-	$(BIN)/python -m pytest -n 2 -m "not slow"
+	tools/browser
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
 
 lint: $(VENV)/.lint
 	$(BIN)/ruff check .

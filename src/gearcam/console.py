@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final, TextIO
 
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.facts import lined_up
-from gearcam.numerals import shown, size_of, with_unit
+from gearcam.numerals import size_of, with_unit
 
 if TYPE_CHECKING:
     from gearcam.advice import Remedies
@@ -131,7 +131,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more" if found.found else "a remedy"
-        yield f"the search for {sought} was given up after {shown(found.seconds)} s"
+        yield f"the search for {sought} was given up after {found.builds} designs"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 

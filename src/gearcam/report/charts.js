@@ -49,10 +49,13 @@ function add(parent, tag, attributes = {}, text = "") {
   return made;
 }
 
+// Dots are full and hollow in turn.
+const full = (k, dots) => dots && k % 2 === 0;
+
 // A sample of a line, drawn by the style sheet's colours.
 function sampleOf(k, dots) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  made.setAttribute("class", `sample line-${(k % 6) + 1}`);
+  made.setAttribute("class", `sample line-${(k % 6) + 1} ${full(k, dots) ? "full" : ""}`);
   made.setAttribute("viewBox", "0 0 28 8");
   made.setAttribute("aria-hidden", "true");
   const dash = DASHES[k % DASHES.length].join(" ");
@@ -144,12 +147,11 @@ class ChartView {
       },
       axes: [{ ...axis, label: this.chart.x, labelSize: 18, size: 30 }, { ...axis, size: wide }],
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
-      hooks: { draw: [() => this.limits()] },
+      hooks: { draw: [() => this.limits(), () => this.follow()] },
     }, this.data(), this.home);
     this.plot.over.append(this.cursor);
     if (this.chart.moves) this.plot.over.classList.add("moves");
     this.plot.over.addEventListener("click", (event) => this.clicked(event));
-    this.mark(this.page.place);
   }
 
   series(line, k) {
@@ -170,7 +172,7 @@ class ChartView {
     pen.clip();
     pen.strokeStyle = pen.fillStyle = this.page.colours[ink];
     pen.lineWidth = 1.6 * ratio;
-    pen.setLineDash(DASHES[k % DASHES.length].map((length) => length * ratio));
+    pen.setLineDash(dots ? [] : DASHES[k % DASHES.length].map((length) => length * ratio));
     pen.beginPath();
     let up = true;
     for (let i = 0; i < xs.length; i++) {
@@ -186,8 +188,8 @@ class ChartView {
       else pen.lineTo(x, y);
       up = false;
     }
-    if (dots) pen.fill();
-    else pen.stroke();
+    if (full(k, dots)) pen.fill();
+    pen.stroke();
     pen.restore();
     return null; // drawn already
   }
@@ -226,17 +228,21 @@ class ChartView {
     const [low, high] = spanOf(this.chart);
     const inside = this.chart.moves && place >= low && place <= high;
     this.cursor.hidden = !inside;
-    if (inside) this.cursor.style.transform = `translateX(${this.plot.valToPos(place, "x")}px)`;
+    if (inside) this.follow();
     for (const [k, line] of this.chart.lines.entries()) {
       const told = inside ? valuesAt(line, place).slice(0, 3).join(" | ") : "";
       if (this.values[k].textContent !== told) this.values[k].textContent = told;
     }
   }
 
+  // Drawn anew, a chart has another scale.
+  follow() {
+    this.cursor.style.transform = `translateX(${this.plot.valToPos(this.page.place, "x")}px)`;
+  }
+
   resize(size = { width: this.home.clientWidth, height: HEIGHT }) {
     if (!this.plot || !size.width || size.width === this.plot.width) return;
     this.plot.setSize(size);
-    this.mark(this.page.place);
   }
 
   // Colours have changed.

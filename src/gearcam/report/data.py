@@ -42,7 +42,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         bottom, right and top of all places; ``pitch``, flat points, or null; ``contacts`` by name,
         each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or null; ``bodies``, each
         with ``name`` and ``called``, ``metal`` and ``floor`` (closed chains, filled by the even-odd
-        rule), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y``
+        rule), ``plates`` (the first chain of ``metal`` of each of those that lie one over the
+        other), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y``
         (a number where it never changes), and ``teeth`` (``[first, last]`` vertices of
         ``metal[0]``) or null.
     """
@@ -61,6 +62,7 @@ def scene_data(scene: Scene) -> dict[str, Any]:
 
 def _body(body: MovingBody) -> dict[str, Any]:
     metal, floor, lines = [], [], []
+    edges = []
     for feature in body.features:
         kind = feature.kind
         for points, closed in drawings.chains(feature.shape, SAGITTA):
@@ -69,6 +71,8 @@ def _body(body: MovingBody) -> dict[str, Any]:
             if kind == drawings.OUTER_WALL or feature.metal:
                 floor.append(flat)
             elif solid and closed:
+                if kind in (*drawings.OUTER, drawings.FOLLOWER):
+                    edges.append(len(metal))
                 metal.append(flat)
             else:
                 dashed = kind in drawings.DASHED
@@ -77,6 +81,7 @@ def _body(body: MovingBody) -> dict[str, Any]:
         "name": body.name,
         "called": body.called,
         "metal": metal,
+        "plates": [0, *edges[1:]],  # openings may be drawn before the first edge
         "floor": floor,
         "lines": lines,
         "turn": _steady(body.turn, _RAD),
@@ -113,8 +118,9 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
     -------
     dict
         ``name``, ``title``, ``x``, ``y`` (labels), ``moves``, ``range`` (of the vertical axis, with
-        the limits that are near), ``lines`` (``label``, ``x``, ``y``, ``dots``) and ``limits``
-        (``label``, ``value``, ``seen``).
+        the limits that are near), ``lines`` (``label``, ``x``, ``y``, ``dots``), ``limits``
+        (``label``, ``value``, ``seen``) and ``marks``, places on the horizontal axis (``label``,
+        ``value``).
     """
     low, high = chart.range
     return {
@@ -132,6 +138,7 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
             {"label": one.label, "value": one.value, "seen": low <= one.value <= high}
             for one in chart.limits
         ],
+        "marks": [{"label": one.label, "value": one.value} for one in chart.marks],
     }
 
 

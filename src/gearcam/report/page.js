@@ -268,24 +268,26 @@ function block(name, html) {
   home.querySelectorAll("details").forEach((one, k) => (one.open = open[k] ?? false));
 }
 
-// Show another document; place, view and choices stay.
+// Show another document, or a draft of one without charts, contacts or some of its blocks: what it
+// does not tell stays as it was, as do place, view and choices.
 function show(next) {
-  for (const [name, html] of Object.entries(next.blocks)) {
+  const blocks = { ...page.shown.blocks, ...next.blocks };
+  for (const [name, html] of Object.entries(blocks)) {
     if (html !== page.shown.blocks[name]) block(name, html);
   }
-  page.shown = next;
-  present();
+  page.shown = { ...page.shown, ...next, blocks };
+  present(Boolean(next.charts));
 }
 
-function present() {
+function present(whole) {
   const { scene } = page;
   document.title = page.title;
   parts.scene = scene;
-  offer();
+  if (whole) offer();
   element("place").max = scene.places.length - 1;
   page.place = Math.min(scene.places.at(-1), Math.max(scene.places[0], page.place));
   draw();
-  charts.show(page.shown.charts);
+  if (whole) charts.show(page.shown.charts);
 }
 
 window.gearcam = {
@@ -299,5 +301,5 @@ window.gearcam = {
 page.place = page.scene.start;
 listen();
 name();
-present();
+present(true);
 performance.mark("first-picture");

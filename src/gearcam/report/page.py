@@ -169,16 +169,21 @@ def blocks(
         "title": result.design.name,
         "facts": facts,
         "findings": result.findings,
-        "verdict": _verdict(result.findings),
+        "verdict": verdict(result.findings),
         "remedies": remedies(result) if seek else Remedies(),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
         "errors": _errors(facts.document.get("accuracy", {})),
         "timings": result.timings,
     }
-    return {name: _templates().get_template(f"{name}.html").render(told) for name in names}
+    return {name: rendered(f"{name}.html", told) for name in names}
 
 
-def _verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
+def rendered(name: str, told: Mapping[str, Any]) -> str:
+    """Return the HTML of a template of this folder, by `name`, with what is `told`."""
+    return _templates().get_template(name).render(told)
+
+
+def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
     """Return the worst severity there is, a note where there is none, and what it means."""
     found = {one.severity for one in findings}
     worst = next((one for one in _VERDICTS if one in found), "note")

@@ -16,18 +16,32 @@ function palette(paper = false) {
   return colours;
 }
 
-const traced = new WeakMap(); // paths of chains: outlines are long and never change
+const traced = new WeakMap(); // paths of chains, by the step that they were traced with
+const STEP = 0.35; // of a dot of the screen: what is nearer than that is one point
 
-function pathOf({ chains, closed }) {
-  if (traced.has(chains)) return traced.get(chains);
+// Outlines are long and never change; seen as a whole they need few of their points.
+function pathOf({ chains, closed }, dot) {
+  const step = 2 ** Math.floor(Math.log2(STEP * dot)); // so that it seldom changes with the zoom
+  const known = traced.get(chains);
+  if (known?.step === step) return known.path;
   const path = new Path2D();
   for (const points of chains) {
-    path.moveTo(points[0], points[1]);
-    for (let k = 2; k < points.length; k += 2) path.lineTo(points[k], points[k + 1]);
+    trace(path, points, step);
     if (closed) path.closePath();
   }
-  traced.set(chains, path);
+  traced.set(chains, { path, step });
   return path;
+}
+
+function trace(path, points, step) {
+  let [x, y] = points;
+  path.moveTo(x, y);
+  for (let k = 2; k < points.length; k += 2) {
+    const near = Math.abs(points[k] - x) < step && Math.abs(points[k + 1] - y) < step;
+    if (near && k < points.length - 2) continue;
+    [x, y] = [points[k], points[k + 1]];
+    path.lineTo(x, y);
+  }
 }
 
 class Parts {
@@ -141,16 +155,16 @@ class Parts {
     const base = [size, 0, 0, -size, 0.5 * wide - size * x, 0.5 * tall + size * y];
     for (const mark of marksOf(this.own, place, cycles, seen, 1 / scale)) {
       pen.setTransform(...base);
-      this.mark(pen, mark, 1 / scale, colours);
+      this.mark(pen, mark, 1 / scale, 1 / size, colours);
     }
   }
 
-  mark(pen, mark, pixel, colours) {
+  mark(pen, mark, pixel, dot, colours) {
     if (mark.pose) {
       pen.translate(mark.pose.x, mark.pose.y);
       pen.rotate(mark.pose.turn);
     }
-    const path = pathOf(mark);
+    const path = pathOf(mark, dot);
     if (mark.fill) {
       pen.fillStyle = colours[mark.fill];
       pen.fill(path, "evenodd");

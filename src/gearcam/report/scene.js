@@ -63,7 +63,8 @@ function touching(contacts, spot) {
 // All that touches, of the sets of contacts that are asked for.
 function touchingIn(scene, names, place) {
   const spot = spotOf(scene.places, place);
-  return names.flatMap((name) => touching(scene.contacts[name], spot));
+  const known = names.filter((name) => name in scene.contacts); // a draft has none
+  return known.flatMap((name) => touching(scene.contacts[name], spot));
 }
 
 function pitchAt(scene, place) {
@@ -92,8 +93,9 @@ function closer(scene) {
 
 // Colours go by name, so that wheel 1 has its own wherever it lies in the picture.
 function tones(scene) {
-  const names = scene.bodies.map((body) => body.name).filter((name) => name !== "frame").sort();
-  return scene.bodies.map((body) => (names.indexOf(body.name) % 2) + 1);
+  const own = scene.bodies.map((body) => body.name.split("_")[0]); // steps of a wheel are one
+  const names = [...new Set(own)].filter((name) => name !== "frame").sort();
+  return own.map((name) => (names.indexOf(name) % 2) + 1);
 }
 
 // A tooth of an outline, closed by its chord.
@@ -129,14 +131,19 @@ function* marksOf(scene, place, cycles, seen, pixel) {
   if (pitch) yield dot(pitch, 4 * pixel, "pitch");
 }
 
+// Plates that lie one over the other, each with its openings.
+function platesOf(body) {
+  return (body.split ??= body.plates.map((from, k) => body.metal.slice(from, body.plates[k + 1])));
+}
+
 // Contacts tell the tooth of the first body, then of the second: by their names, as colours go.
 function columnOf(toothed, body) {
   return toothed.map((one) => one.name).sort().indexOf(body.name);
 }
 
 function* bodyMarks(body, pose, tone) {
-  const ink = body.name === "frame" ? "text" : `ink-${tone}`;
-  yield { chains: body.metal, closed: true, fill: `fill-${tone}`, ink, pose };
+  const ink = body.ink ?? (body.name === "frame" ? "text" : `ink-${tone}`);
+  for (const chains of platesOf(body)) yield { chains, closed: true, fill: `fill-${tone}`, ink, pose };
   yield { chains: body.floor, closed: true, fill: `floor-${tone}`, ink, pose };
   for (const line of body.lines.filter((one) => !one.dashed)) {
     const fill = line.layer === "MARK" && line.closed ? ink : null;
@@ -153,7 +160,7 @@ function* dashedMarks(body, pose, seen) {
 
 // Through each contact along the force, with a head where it presses.
 function* actionMarks(found, pixel) {
-  const reach = 70 * pixel;
+  const reach = 60 * pixel;
   const head = 8 * pixel;
   for (const { x, y, fx, fy } of found) {
     const [ex, ey] = [x + reach * fx, y + reach * fy];

@@ -98,7 +98,7 @@ class Server(ThreadingHTTPServer):
         return f"http://{self.hosts[0]}/{self.token}/"
 
     def handle_error(self, request: Any, client_address: Any) -> None:  # noqa: ARG002
-        """Say what went wrong, but for a page that has gone while it was answered (see `Server`)."""
+        """Say what went wrong, but for a page that has gone meanwhile (see `Server`)."""
         error = sys.exception()
         if isinstance(error, Exception) and not isinstance(error, ConnectionError | TimeoutError):
             complain(fault_text(error, self.session.file))

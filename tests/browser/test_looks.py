@@ -1,0 +1,186 @@
+"""A page on a laptop, a phone and paper, in light and dark, and for those who do not see it."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium.webdriver import ActionChains, Chrome, Keys
+from selenium.webdriver.common.by import By
+
+from gearcam.report.page import page
+from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, settle, until
+
+NAIL = "nail_machine_two_phase"
+TEXT, SHAPE = 4.5, 3.0
+"""Least contrast of text and of what shows a shape or a control (WCAG 2.2, 1.4.3 and 1.4.11)."""
+
+Written = Callable[[str], Path]
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance of ``#rrggbb`` (WCAG 2.2)."""
+    parts = [int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: str, other: str) -> float:
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_colours_stand_out(scheme: str, browser: Chrome, page_of: Written) -> None:
+    open_page(browser, page_of("groove_cam"), prefers_color_scheme=scheme)
+    source = page_of("groove_cam").read_text("utf-8")
+    names = set(re.findall(r"--([a-z]+(?:-[a-z0-9]+)*): #", source))
+    script = """
+    const style = getComputedStyle(document.documentElement);
+    return arguments[0].map((name) => style.getPropertyValue(`--${name}`));
+    """
+    values = browser.execute_script(script, sorted(names))
+    colour = {name: value.strip() for name, value in zip(sorted(names), values, strict=True)}
+    assert (
+        luminance(colour["ground"]) > 0.5
+        if scheme == "light"
+        else luminance(colour["ground"]) < 0.1
+    )
+    lines = [f"line-{k}" for k in range(1, 7)]
+    for name in ("text", "muted", "accent", "error", "warning", "note", "limit"):
+        assert min(contrast(colour[name], colour[on]) for on in ("ground", "page")) >= TEXT, name
+    assert contrast(colour["on-accent"], colour["accent"]) >= TEXT
+    for name in (*lines, "edge", "ink-1", "ink-2", "contact", "pitch", "centrode"):
+        assert contrast(colour[name], colour["ground"]) >= SHAPE, name
+    for k in (1, 2):
+        for name in (f"ink-{k}", "contact", "pitch", "centrode"):
+            assert contrast(colour[name], colour[f"fill-{k}"]) >= SHAPE, name
+
+
+@pytest.mark.parametrize(("name", "size"), [(NAIL, LAPTOP), (NAIL, PHONE), ("groove_cam", PHONE)])
+def test_nothing_is_wider_than_the_window(
+    name: str, size: tuple[int, int], browser: Chrome, page_of: Written
+) -> None:
+    open_page(browser, page_of(name), size)
+    for details in browser.find_elements(By.CSS_SELECTOR, "details"):
+        browser.execute_script("arguments[0].open = true", details)
+    wide = "const e = document.scrollingElement; return [e.scrollWidth, e.clientWidth]"
+    assert browser.execute_script(wide) == [size[0], size[0]]
+
+
+def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: Written) -> None:
+    open_page(browser, page_of(NAIL), PHONE)
+    browser.execute_script("document.getElementById('facts').scrollIntoView()")
+    top = "return document.getElementById('controls').getBoundingClientRect().top"
+    assert browser.execute_script(top) == 0
+
+
+def test_all_that_is_worked_has_a_name(browser: Chrome, page_of: Written) -> None:
+    open_page(browser, page_of(NAIL))
+    nodes: list[dict[str, Any]] = browser.execute_cdp_cmd("Accessibility.getFullAXTree", {})[
+        "nodes"
+    ]
+    found: dict[str, list[str]] = {}
+    for node in nodes:
+        if not node["ignored"]:
+            role = node["role"]["value"]
+            found.setdefault(role, []).append(node.get("name", {}).get("value", ""))
+    for role in (
+        "button",
+        "slider",
+        "checkbox",
+        "combobox",
+        "image",
+        "link",
+        "region",
+        "navigation",
+    ):
+        assert found[role], role
+        assert all(found[role]), role
+    assert (len(found["main"]), len(found["banner"])) == (1, 1)
+    assert len(found["image"]) >= 7  # the parts and the charts
+    assert len(set(found["button"])) == len(found["button"])
+
+
+def test_tab_leads_from_the_picture_to_its_controls(browser: Chrome, page_of: Written) -> None:
+    open_page(browser, page_of(NAIL))
+    keys = ActionChains(browser).send_keys(Keys.TAB).send_keys(Keys.ENTER)
+    keys.perform()
+    order = []
+    for _ in range(5):
+        ActionChains(browser).send_keys(Keys.TAB).perform()
+        order.append(browser.switch_to.active_element.get_attribute("id"))
+    assert order in (
+        ["parts", "play", "place", "speed", "fit"],
+        ["play", "place", "speed", "fit", "mesh"],
+    )
+
+
+def test_paper_is_light_without_controls_and_leaves_no_trace(
+    browser: Chrome, page_of: Written
+) -> None:
+    open_page(browser, page_of(NAIL), prefers_color_scheme="dark")
+    until(lambda: browser.find_elements(By.CLASS_NAME, "uplot"))
+    script = """
+    window.seen = [];
+    const pen = document.getElementById("parts").getContext("2d");
+    const width = () => document.querySelector(".uplot").clientWidth;
+    const tell = () => seen.push([pen.getImageData(2, 2, 1, 1).data[0], width()]);
+    tell();
+    addEventListener("beforeprint", tell);
+    addEventListener("afterprint", tell);
+    """
+    browser.execute_script(script)
+    printed = browser.execute_cdp_cmd("Page.printToPDF", {})["data"]
+    assert base64.b64decode(printed)[:5] == b"%PDF-"
+    until(lambda: browser.execute_script("return seen.length === 3"))
+    before, paper, after = browser.execute_script("return seen")
+    assert (before[0] < 60, paper[0], after) == (True, 255, before)
+    assert paper[1] < before[1]
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    for name in ("controls", "options"):
+        assert not browser.find_element(By.ID, name).is_displayed()
+
+
+def test_another_document_keeps_place_view_and_choices(browser: Chrome, page_of: Written) -> None:
+    document = open_page(browser, page_of(NAIL))
+    other = open_page(browser, page_of("ring_ellipse"))
+    go(browser, 123.0)
+    browser.find_element(By.ID, "nearer").click()
+    box = browser.find_element(By.CSS_SELECTOR, "#seen input")
+    box.click()
+    shown = "return [gearcam.place, arguments[0].checked, arguments[0].isConnected]"
+    browser.execute_script("gearcam.show(arguments[0])", document)
+    settle(browser)
+    assert browser.execute_script(shown, box) == [123.0, False, True]
+    assert browser.find_element(By.ID, "parts").get_attribute("class") == "near"
+    assert browser.title == browser.find_element(By.TAG_NAME, "h1").text == document["title"]
+    draft = {key: other[key] for key in ("title", "scene")}
+    draft["scene"] = {**other["scene"], "contacts": {}}
+    draft["blocks"] = {"verdict": other["blocks"]["verdict"]}
+    browser.execute_script("gearcam.show(arguments[0])", draft)
+    settle(browser)
+    assert browser.execute_script(shown, box) == [123.0, False, True]
+    assert browser.find_element(By.TAG_NAME, "h1").text == other["title"]
+    assert len(browser.find_elements(By.CLASS_NAME, "chart")) == len(document["charts"])
+    assert complaints(browser) == []
+
+
+def test_what_a_document_tells_is_no_markup(
+    browser: Chrome, tmp_path: Path, page_of: Written
+) -> None:
+    document = open_page(browser, page_of("groove_cam"))
+    bad = "</script><script>window.bad = 1</script><img src=x onerror='window.bad = 1'>"
+    document["title"] = document["scene"]["title"] = document["scene"]["driver"] = bad
+    for chart in document["charts"]:
+        chart["title"] = chart["y"] = chart["lines"][0]["label"] = bad
+    path = tmp_path / "bad.html"
+    path.write_bytes(page(document))
+    open_page(browser, path)
+    assert browser.title == bad
+    assert browser.execute_script("return window.bad") is None
+    assert browser.find_element(By.CSS_SELECTOR, ".chart h3").text.startswith("</script>")
