@@ -176,6 +176,8 @@ def test_what_a_document_tells_is_no_markup(
     document = open_page(browser, page_of("groove_cam"))
     bad = "</script><script>window.bad = 1</script><img src=x onerror='window.bad = 1'>"
     document["title"] = document["scene"]["title"] = document["scene"]["driver"] = bad
+    contacts = document["scene"]["contacts"]
+    document["scene"]["contacts"] = {bad + name: one for name, one in contacts.items()}
     for chart in document["charts"]:
         chart["title"] = chart["y"] = chart["lines"][0]["label"] = bad
     path = tmp_path / "bad.html"
@@ -183,4 +185,5 @@ def test_what_a_document_tells_is_no_markup(
     open_page(browser, path)
     assert browser.title == bad
     assert browser.execute_script("return window.bad") is None
-    assert browser.find_element(By.CSS_SELECTOR, ".chart h3").text.startswith("</script>")
+    for told in (".chart h3", ".chart .unit", ".chart .legend li", "#side option", "#told"):
+        assert "</script>" in browser.find_element(By.CSS_SELECTOR, told).text

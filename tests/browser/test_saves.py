@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -14,7 +15,6 @@ import pytest
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 
-from gearcam.result import Result
 from helpers_browser import go, open_page, until
 
 NAIL = "nail_machine_two_phase"
@@ -23,7 +23,7 @@ ROUNDED = 2e-4
 """Lengths are written in steps of 1e-4 mm, points and placements apart."""
 
 Written = Callable[[str], Path]
-Built = Callable[[str], Result]
+Built = Callable[[str], Any]
 
 
 def saved(browser: Chrome, folder: Path, button: str, name: str) -> Path:
@@ -36,7 +36,7 @@ def saved(browser: Chrome, folder: Path, button: str, name: str) -> Path:
     return path
 
 
-def points_of(path: ET.Element) -> np.ndarray:
+def points_of(path: ET.Element) -> Any:
     """Points of a path where its placement puts them, y upwards, mm."""
     numbers = [float(one) for one in re.findall(r"-?[\d.]+(?:e-?\d+)?", path.attrib["d"])]
     flat = np.array(numbers).reshape(-1, 2) @ [1.0, 1j]
@@ -46,7 +46,7 @@ def points_of(path: ET.Element) -> np.ndarray:
     return flat * np.exp(1j * math.radians(turn)) + complex(x, y)
 
 
-def box(points: np.ndarray) -> list[float]:
+def box(points: Any) -> list[float]:
     return [points.real.min(), points.imag.min(), points.real.max(), points.imag.max()]
 
 

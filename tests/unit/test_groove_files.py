@@ -81,7 +81,7 @@ def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     assert set(result.files("tool-path")) >= {"tool_path_relief.csv", "tool_path_inner.dxf"}
 
 
-@pytest.mark.parametrize("side", ["front", "back"])
+@pytest.mark.parametrize("side", [pytest.param("front", marks=pytest.mark.slow), "back"])
 def test_step_holds_the_groove(side: str) -> None:
     result = gearcam.build(read(PLAIN, ('"front"', f'"{side}"')))
     (solid,) = read_step(result.files("step")["cam.step"])

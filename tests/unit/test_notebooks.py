@@ -52,6 +52,7 @@ def test_what_is_stored_is_small_and_of_no_machine(path: Path) -> None:
     assert not [word for word in (" at 0x", "/home/", "/tmp/", "iopub", '"stderr"') if word in text]
 
 
+@pytest.mark.slow
 def test_a_failing_cell_is_seen(tmp_path: Path) -> None:
     cell = nbformat.v4.new_code_cell("import gearcam as gc\ngc.Gearpair")
     nbformat.write(nbformat.v4.new_notebook(cells=[cell]), tmp_path / "wrong.ipynb")

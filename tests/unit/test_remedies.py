@@ -66,6 +66,7 @@ LONG = {
     "phases of a ring",
     "a rim that follows, too thin for its bolts",
     "bolts on the edge of a plate",
+    "bolts in each other",
 }
 
 

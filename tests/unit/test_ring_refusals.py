@@ -65,11 +65,20 @@ def test_the_ring_comes_second() -> None:
 
 @pytest.mark.parametrize("lobes", [[2, 1], [48, 24]])
 def test_lobes_are_swapped_with_the_teeth_of_a_ring_given_first(lobes: list[int]) -> None:
-    made = {"kind": "gear-pair", "name": "r", "law": {"type": "lobed", "eccentricity": 0.05}}
-    made["law"] |= {"lobes": lobes}
+    made: dict[str, Any] = {"kind": "gear-pair", "name": "r"}
+    made["law"] = {"type": "lobed", "eccentricity": 0.05, "lobes": lobes}
     made["pair"] = {"type": "internal", "module_mm": 2, "teeth": [48, 24]}
     found = gc.remedies(gc.build(gc.design(made))).found
     assert {"pair.teeth": [24, 48], "law.lobes": [1, 2]} in [one.changes for one in found]
+
+
+def test_swapped_lobes_are_kept_where_they_fit() -> None:
+    """[2, 4] for [4, 2]; in lowest terms too."""
+    made: dict[str, Any] = {"kind": "gear-pair", "name": "r"}
+    made["pair"] = {"module_mm": 2, "teeth": [40, 80]}
+    made["law"] = {"type": "lobed", "eccentricity": 0.05, "lobes": [4, 2]}
+    found = gc.remedies(gc.build(gc.design(made))).found
+    assert [one.changes for one in found] == [{"law.lobes": [2, 4]}, {"law.lobes": [1, 2]}]
 
 
 def test_the_inverse_of_a_law_is_that_of_the_ring_given_second() -> None:

@@ -10,7 +10,8 @@ names it, and only that of a file is loaded. Its modules:
   ``assembled(result, measured)`` returns its solids where they stand and ``framed(result)`` what
   a notebook shows;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
-- `advice`: ``ways(...)`` yields changes that may help where it is refused or has errors;
+- `advice`: ``seek(search, refusal)`` leads the search for changes that help where it is refused
+  or has errors, ``hopeless(result)`` tells what need not be built to its end;
 - `public`: in its ``__all__`` the classes that people who write Python make designs of (the
   package `gearcam.kinds` tells type checkers of them);
 - `describe`: what schema, template and list of laws say of its main part, and the table of each

@@ -1,6 +1,7 @@
 // The charts: uPlot draws axes and lines; limits, values and the cursor of the parts are added.
 
-const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]]; // beside colours, for who sees none
+// Lines differ by more than their colours.
+const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]];
 const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
 const FREE = 0.06; // of a range, left free above and below, and beside dots
@@ -131,10 +132,13 @@ class ChartView {
     if (this.plot) return;
     const ink = (name) => () => this.page.colours[name];
     const axis = {
-      stroke: ink("muted"), font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif",
+      stroke: ink("muted"),
+      font: "12px system-ui, sans-serif",
+      labelFont: "12px system-ui, sans-serif",
       grid: { stroke: ink("rule"), width: 1 }, ticks: { stroke: ink("rule"), width: 1, size: 4 },
     };
-    const wide = (_, texts) => 14 + 7 * Math.max(3, ...(texts ?? []).map((text) => text.length));
+    // wide enough for most, so that charts below each other line up
+    const wide = (_, texts) => 14 + 7 * Math.max(6, ...(texts ?? []).map((text) => text.length));
     this.plot = new uPlot({
       mode: 2, // lines with places of their own, which need not rise
       width: this.home.clientWidth || PRINTED.width,
@@ -157,7 +161,8 @@ class ChartView {
   series(line, k) {
     const facets = [{ scale: "x", auto: true }, { scale: "y", auto: true }];
     const ink = `line-${(k % 6) + 1}`;
-    return { label: line.label, stroke: "none", facets, paths: (plot, row) => this.line(plot, row, line.dots, ink, k) };
+    const paths = (plot, row) => this.line(plot, row, line.dots, ink, k);
+    return { label: line.label, stroke: "none", facets, paths };
   }
 
   // Straight from point to point; what is null breaks a line.

@@ -17,7 +17,10 @@ const page = {
   shown: read("document"),
   place: 0,
   cycles: 0, // that were played: wheels need not have come round
-  seen: { points: true, action: true, carry: true, pitch: false, contacts: [], lines: { PITCH: true } },
+  // of the scene, by what is asked for
+  seen: {
+    points: true, action: true, carry: true, pitch: false, contacts: [], lines: { PITCH: true },
+  },
   colours: palette(),
   playing: false,
   forth: 1, // -1 on the way back of what does not repeat
@@ -171,9 +174,10 @@ let offered = "";
 function offer() {
   const { scene, seen } = page;
   const sets = Object.keys(scene.contacts);
-  const dashed = new Set(scene.bodies.flatMap((body) => body.lines.filter((line) => line.dashed).map((line) => line.layer)));
+  const lines = scene.bodies.flatMap((body) => body.lines).filter((line) => line.dashed);
+  const dashed = new Set(lines.map((line) => line.layer));
   const teeth = scene.bodies.some((body) => body.teeth);
-  const wanted = JSON.stringify([sets, [...dashed], teeth, Boolean(scene.pitch)]);
+  const wanted = JSON.stringify([sets.toSorted(), [...dashed].sort(), teeth, Boolean(scene.pitch)]);
   if (wanted === offered) return;
   offered = wanted;
   const home = element("seen");
@@ -186,7 +190,8 @@ function offer() {
   if (scene.pitch) check(home, "pitch point", seen.pitch, (on) => (seen.pitch = on));
   for (const layer of dashed) {
     seen.lines[layer] ??= false;
-    check(home, LINES[layer] ?? layer.toLowerCase(), seen.lines[layer], (on) => (seen.lines[layer] = on));
+    const text = LINES[layer] ?? layer.toLowerCase();
+    check(home, text, seen.lines[layer], (on) => (seen.lines[layer] = on));
   }
   sides(sets, teeth || sets.some((name) => scene.contacts[name].teeth));
   home.hidden = !home.children.length;

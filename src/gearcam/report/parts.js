@@ -64,7 +64,8 @@ class Parts {
   set scene(scene) {
     this.own = scene;
     const [left, bottom, right, top] = scene.box;
-    this.canvas.style.setProperty("--shape", Math.min(1.35, Math.max(0.8, (right - left) / (top - bottom))));
+    const shape = (right - left) / (top - bottom);
+    this.canvas.style.setProperty("--shape", Math.min(1.35, Math.max(0.8, shape)));
     if (this.fitted) this.fit();
   }
 
@@ -102,7 +103,8 @@ class Parts {
     const after = Math.min(1e5, Math.max(1e-3, before * factor));
     this.view.scale = after;
     this.fitted = false;
-    if (!this.following) this.pan((x - 0.5 * width) * (1 - after / before), (y - 0.5 * height) * (1 - after / before));
+    const back = 1 - after / before;
+    if (!this.following) this.pan((x - 0.5 * width) * back, (y - 0.5 * height) * back);
     this.moved();
   }
 

@@ -4,44 +4,54 @@ const PIXELS = 960; // width of a saved drawing for which widths of lines are to
 
 const digits = (value) => String(Number(value.toFixed(4)));
 
+// Attributes of an element, numbers in steps of a tenth of a micrometre.
+function attributes(values) {
+  const shown = (value) => (typeof value === "number" ? digits(value) : value);
+  const told = Object.entries(values).filter(([, value]) => value !== null);
+  return told.map(([name, value]) => ` ${name}="${shown(value)}"`).join("");
+}
+
 // The whole drawing in mm, y upwards within the group; colours of paper.
 function svgOf(scene, place, cycles, seen) {
   const [left, bottom, right, top] = scene.box;
   const margin = 0.03 * (right - left);
   const pixel = (right - left) / PIXELS;
-  const [wide, tall] = [right - left + 2 * margin, top - bottom + 2 * margin];
+  const corner = { x: left - margin, y: -top - margin };
+  const size = { width: right - left + 2 * margin, height: top - bottom + 2 * margin };
+  const sheet = {
+    xmlns: "http://www.w3.org/2000/svg",
+    width: `${digits(size.width)}mm`,
+    height: `${digits(size.height)}mm`,
+    viewBox: [corner.x, corner.y, size.width, size.height].map(digits).join(" "),
+  };
   const colours = palette(true);
-  const view = [left - margin, -top - margin, wide, tall].map(digits).join(" ");
-  const size = `width="${digits(wide)}mm" height="${digits(tall)}mm" viewBox="${view}"`;
-  const ground = `x="${digits(left - margin)}" y="${digits(-top - margin)}" width="${digits(wide)}" height="${digits(tall)}"`;
-  const drawn = [];
-  for (const mark of marksOf(scene, place, cycles, seen, pixel)) {
-    if (mark.chains.length) drawn.push(elementOf(mark, pixel, colours));
-  }
+  const marks = [...marksOf(scene, place, cycles, seen, pixel)];
   return [
-    `<svg xmlns="http://www.w3.org/2000/svg" ${size}>`,
+    `<svg${attributes(sheet)}>`,
     `<title>${escaped(`${scene.title}, ${scene.driver}: ${digits(place)}`)}</title>`,
-    `<rect ${ground} fill="${colours.ground}"/>`,
+    `<rect${attributes({ ...corner, ...size, fill: colours.ground })}/>`,
     `<g transform="scale(1 -1)" stroke-linejoin="round" fill-rule="evenodd">`,
-    ...drawn,
+    ...marks.filter((mark) => mark.chains.length).map((mark) => elementOf(mark, pixel, colours)),
     "</g>",
     "</svg>",
     "",
   ].join("\n");
 }
 
-function elementOf(mark, pixel, colours) {
-  const { x = 0, y = 0, turn = 0 } = mark.pose ?? {};
-  // degrees in all digits: a wheel's rim moves a micrometre in a few millionths of a turn
-  const pose = mark.pose ? ` transform="translate(${digits(x)} ${digits(y)}) rotate(${(turn * 180) / Math.PI})"` : "";
-  const dash = mark.dash ? ` stroke-dasharray="${mark.dash.map((one) => digits(one * pixel)).join(" ")}"` : "";
-  const way = mark.chains.map((points) => {
-    const steps = [];
-    for (let k = 0; k < points.length; k += 2) steps.push(`${digits(points[k])} ${digits(points[k + 1])}`);
-    return `M${steps.join(" ")}${mark.closed ? "Z" : ""}`;
-  });
-  const style = `fill="${mark.fill ? colours[mark.fill] : "none"}" stroke="${colours[mark.ink]}" stroke-width="${digits((mark.width ?? 1.2) * pixel)}"`;
-  return `<path${pose} ${style}${dash} d="${way.join("")}"/>`;
+function elementOf({ chains, closed, pose, fill, ink, width = 1.2, dash }, pixel, colours) {
+  const end = closed ? "Z" : "";
+  const ways = chains.map((points) => `M${points.map(digits).join(" ")}${end}`);
+  return `<path${attributes({
+    // degrees in all digits: few of them would move a rim by more than a micrometre
+    transform: pose
+      ? `translate(${digits(pose.x)} ${digits(pose.y)}) rotate(${(pose.turn * 180) / Math.PI})`
+      : null,
+    fill: fill ? colours[fill] : "none",
+    stroke: colours[ink],
+    "stroke-width": width * pixel,
+    "stroke-dasharray": dash ? dash.map((one) => digits(one * pixel)).join(" ") : null,
+    d: ways.join(""),
+  })}/>`;
 }
 
 const escaped = (text) => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
@@ -57,7 +67,8 @@ function csvOf(chart) {
     last = own;
   }
   const rows = Math.max(...columns.map((column) => column.length));
-  const cell = (value) => (typeof value === "string" ? `"${value.replaceAll('"', '""')}"` : value ?? "");
+  const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
+  const cell = (value) => (typeof value === "string" ? quoted(value) : value ?? "");
   const row = (_, k) => columns.map((column) => cell(column[k])).join(",");
   return `${Array.from({ length: rows }, row).join("\r\n")}\r\n`;
 }

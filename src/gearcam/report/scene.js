@@ -143,7 +143,9 @@ function columnOf(toothed, body) {
 
 function* bodyMarks(body, pose, tone) {
   const ink = body.ink ?? (body.name === "frame" ? "text" : `ink-${tone}`);
-  for (const chains of platesOf(body)) yield { chains, closed: true, fill: `fill-${tone}`, ink, pose };
+  for (const chains of platesOf(body)) {
+    yield { chains, closed: true, fill: `fill-${tone}`, ink, pose };
+  }
   yield { chains: body.floor, closed: true, fill: `floor-${tone}`, ink, pose };
   for (const line of body.lines.filter((one) => !one.dashed)) {
     const fill = line.layer === "MARK" && line.closed ? ink : null;
@@ -165,16 +167,17 @@ function* actionMarks(found, pixel) {
   for (const { x, y, fx, fy } of found) {
     const [ex, ey] = [x + reach * fx, y + reach * fy];
     const line = [x - reach * fx, y - reach * fy, ex, ey];
-    const wing = (side) => [ex - head * (fx - side * 0.4 * fy), ey - head * (fy + side * 0.4 * fx)];
+    const wing = (side) => [ex - head * (fx - side * fy), ey - head * (fy + side * fx)];
+    const tip = [ex, ey, ...wing(0.4), ...wing(-0.4)];
     yield { chains: [line], closed: false, ink: "contact", width: 1.5 };
-    yield { chains: [[ex, ey, ...wing(1), ...wing(-1)]], closed: true, fill: "contact", ink: "contact" };
+    yield { chains: [tip], closed: true, fill: "contact", ink: "contact" };
   }
 }
 
 function dot({ x, y }, radius, ink) {
   const points = [];
-  for (let k = 0; k < 24; k++) {
-    points.push(x + radius * Math.cos((k * Math.PI) / 12), y + radius * Math.sin((k * Math.PI) / 12));
+  for (let angle = 0; angle < 2 * Math.PI; angle += Math.PI / 12) {
+    points.push(x + radius * Math.cos(angle), y + radius * Math.sin(angle));
   }
   return { chains: [points], closed: true, fill: ink, ink: "ground" };
 }
