@@ -67,8 +67,8 @@ def until(true: Callable[[], Any]) -> Any:
 
 def shown(page: Chrome) -> list[dict[str, Any]]:
     return page.execute_script(
-        "return window.documents.map((one) => ({box: one.scene.box, charts: (one.charts || []).length,"
-        " facts: one.blocks.facts, files: one.blocks.files, draft: one.scene.places.length < 721}))"
+        "return window.documents.map((one) => ({charts: (one.charts || []).length,"
+        " facts: one.blocks.facts, draft: one.scene.places.length < 721}))"
     )
 
 
