@@ -39,8 +39,8 @@ def followed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[st
         steps: list[Any] = [int(s) if s.isdigit() else s for s in re.findall(r"[^.\[\]]+", key)]
         place: Any = made
         for step, after in pairwise(steps):
-            if isinstance(after, int) and not isinstance(place[step], list):
-                place[step] = [place[step]] * 2
+            if isinstance(after, int) and not isinstance(place.get(step), list):
+                place[step] = [place.get(step, 0)] * 2
             place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
         place[steps[-1]] = value
     return made

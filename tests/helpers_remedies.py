@@ -56,6 +56,22 @@ ARM = {"type": "roller", "roller_radius_mm": 6, "motion": "oscillating", "arm_mm
 ARM["pivot_distance_mm"] = 80
 FACE = {"type": "flat", "motion": "oscillating", "pivot_distance_mm": 80}
 
+BOLTED = {"bolts": [0, 6], "bolt_circle_mm": [0, 126], "bolt_diameter_mm": [0, 5.5]}
+
+PLATE = {"height_mm": 60, "bolts": 2, "bolt_diameter_mm": 6.6, "bolt_spacing_mm": 160,
+         "bolt_height_mm": 8}  # fmt: skip
+
+
+def plate(**blank: float) -> dict[str, Any]:
+    """A translating cam whose plate is bolted down, with other sizes of its blank."""
+    made = cam(ROLLER, {"form": "translating", "thickness_mm": 12, "walls": "both",
+                        "run_in_mm": 20, "run_out_mm": 20}, lift=15)  # fmt: skip
+    for phase, way in zip(made["motion"], (60, 30, 40, 10), strict=True):
+        del phase["angle_deg"]
+        phase["way_mm"] = way
+    return made | {"blank": PLATE | blank}
+
+
 REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
     "concave part too tight": (
         pair({"type": "limacon", "eccentricity": 0.7}, [20, 20]),
@@ -186,6 +202,26 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
              [60, 120], pair=RING),
         {"law.ratios"},
     ),
+    "lobes that fit when swapped": (
+        pair({"type": "lobed", "eccentricity": 0.1, "lobes": [4, 2]}, [20, 40]), {"law.lobes"}
+    ),
+    "an outside within the roots, and bolts": (
+        pair(CIRCLE, [24, 48], pair=RING, ring={"outer_diameter_mm": 90}, blank=BOLTED),
+        {"ring.outer_diameter_mm"},
+    ),
+    "a rim too thin for its bolts": (
+        pair(CIRCLE, [24, 48], pair=RING, ring={"rim_mm": 6}, blank=BOLTED), {"ring.rim_mm"}
+    ),
+    "bolts within the teeth of a thin rim": (
+        pair(CIRCLE, [24, 48], pair=RING, ring={"rim_mm": 6},
+             blank=BOLTED | {"bolt_circle_mm": [0, 100]}),
+        {"ring.rim_mm"},
+    ),
+    "a rim that follows, too thin for its bolts": (
+        pair({"type": "ellipse", "eccentricity": 0.3}, [24, 48], pair=RING,
+             ring={"rim_mm": 6, "outer": "follow"}, blank=BOLTED),
+        {"ring.rim_mm"},
+    ),
     "teeth of an open pair": (pair(DOOR, [30, 36]), {"pair.teeth"}),
     "a long way": (pair(DOOR | {"driven_travel_deg": 300, "ratios": [1, 0.6, 0.6]}, [40, 40]),
                    {"law.driven_travel_deg"}),
@@ -199,6 +235,9 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
         ]},
         {"cam.prime_radius_mm", "motion[0].to_mm"},
     ),
+    "bolts beyond a plate": (plate(bolt_spacing_mm=230), {"blank.bolt_spacing_mm"}),
+    "bolts on the edge of a plate": (plate(bolt_height_mm=2), {"blank.bolt_height_mm"}),
+    "bolts in each other": (plate(bolt_spacing_mm=5), {"blank.bolt_spacing_mm"}),
     "arm": (cam(ARM, {"prime_radius_mm": 15}), {"cam.prime_radius_mm"}),
     "arm's swing": (
         cam(ARM, {"prime_radius_mm": 60}, lift=150), {"motion[0].lift_deg", "motion[2].lift_deg"}

@@ -245,7 +245,8 @@ def remedies(
     refusal : InfeasibleError, optional
         How it was refused; found by building where left out.
     patience : float, s
-        Time after which no other design is tried.
+        Time after which no other design is tried on a usual machine; designs are counted, ten a
+        second, so that the answer is the same everywhere.
 
     Returns
     -------

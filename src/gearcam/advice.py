@@ -28,7 +28,14 @@ if TYPE_CHECKING:
 Changes = Mapping[str, object]
 
 PATIENCE: Final = 6.0
-"""Seconds after which a search is given up."""
+"""Seconds after which a search is given up, on a usual machine."""
+
+_PACE: Final = 10.0
+"""Designs that a usual machine builds in a second, about. A search counts what it builds, not the
+time, so that its answers are the same everywhere."""
+
+_SLACK: Final = 10.0
+"""How many times longer than on a usual machine a search may take: some wheels take long."""
 
 _PARTS: Final = 40
 """Steps between the near and the far end of a way."""
@@ -77,15 +84,15 @@ class Remedies(Brief):
     tried : tuple of str
         Keys that were changed in the search.
     gave_up : bool
-        Whether the time was over before all ways were tried to their end.
-    seconds : float
-        The time that it was given.
+        Whether it was ended before all ways were tried to their end.
+    builds : int
+        How many designs were tried.
     """
 
     found: tuple[Remedy, ...] = ()
     tried: tuple[str, ...] = ()
     gave_up: bool = False
-    seconds: float = PATIENCE
+    builds: int = 0
 
 
 def remedies(
@@ -100,7 +107,7 @@ def remedies(
     refusal : InfeasibleError, optional
         How it was refused; found by building it where left out.
     patience : float, s
-        Time after which no other build is begun.
+        Time after which no other build is begun on a usual machine: as many are counted.
 
     Returns
     -------
@@ -114,16 +121,16 @@ def remedies(
         except InfeasibleError as error:
             refusal = error
     elif not refusal.ways and not refusal.more_teeth and _builds(result):
-        return Remedies(seconds=patience)  # a study was refused, not the design
+        return Remedies()  # a study was refused, not the design
     if refusal is None and not errors:
-        return Remedies(seconds=patience)
-    search = Search(result, frozenset(error.code for error in errors), patience)
+        return Remedies()
+    search = Search(result, refusal, frozenset(error.code for error in errors), patience)
     search.advice.seek(search, refusal)
     return Remedies(
         found=tuple(search.found),
         tried=tuple(search.tried),
         gave_up=search.gave_up,
-        seconds=patience,
+        builds=search.builds,
     )
 
 
@@ -149,25 +156,35 @@ def _builds(result: Result) -> bool:
 
 
 class Search:
-    """A search within a time: what was tried, and what was found.
+    """A search within a number of builds: what was tried, and what was found.
 
     Parameters
     ----------
     result : Result
         Of the design that is to be changed.
+    refusal : InfeasibleError or None
+        How it was refused.
     codes : frozenset of str
         Findings that are to go.
     patience : float, s
-        Time after which no other build is begun.
+        Time after which no other build is begun on a usual machine.
     """
 
-    def __init__(self, result: Result, codes: frozenset[str], patience: float) -> None:
-        self.result, self.codes = result, codes
+    def __init__(
+        self,
+        result: Result,
+        refusal: InfeasibleError | None,
+        codes: frozenset[str],
+        patience: float,
+    ) -> None:
+        self.result, self.refusal, self.codes = result, refusal, codes
         self.advice = KINDS[result.design.kind].room("advice")
-        self.until = time.perf_counter() + patience
+        self.most, self.builds = round(_PACE * patience), 0
+        self.until = time.perf_counter() + _SLACK * patience
         self.found: list[Remedy] = []
         self.tried: dict[str, None] = {}
         self.gave_up = False
+        self.second: InfeasibleError | None = None
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -175,24 +192,43 @@ class Search:
         return document_of(self.result.design)
 
     def over(self) -> bool:
-        """Whether the time is over; then a search is given up."""
-        over = time.perf_counter() > self.until
+        """Whether enough was built; then a search is given up."""
+        over = self.builds >= self.most or time.perf_counter() > self.until
         self.gave_up |= over
         return over
 
+    def changed(self, changes: Changes) -> Any:
+        """Return the result of the changed design; counted."""
+        self.tried |= dict.fromkeys(changes)
+        self.builds += 1
+        return type(self.result)(self.result.design.with_(changes), self.result.tolerances)
+
+    def left(self, changes: Changes) -> frozenset[str] | None:
+        """Return what is left of the errors of the changed design, others too; None if refused.
+
+        What it is refused for is kept, if that is another thing than the design was.
+        """
+        self.second = None
+        try:
+            other = self.changed(changes)
+            if self.advice.hopeless(other):
+                return None
+            findings = other.findings
+        except InfeasibleError as error:
+            if self.refusal is None or error.what != self.refusal.what:
+                self.second = error
+            return None
+        except DesignError:
+            return None
+        return frozenset(
+            finding.code
+            for finding in findings
+            if finding.severity == "error" or finding.code in self.codes
+        )
+
     def cures(self, changes: Changes) -> bool:
         """Whether the changed design builds, without the errors and without others."""
-        self.tried |= dict.fromkeys(changes)
-        try:
-            other = type(self.result)(self.result.design.with_(changes), self.result.tolerances)
-            if self.advice.hopeless(other):
-                return False
-            findings = other.findings
-        except (InfeasibleError, DesignError):
-            return False
-        return all(
-            finding.severity != "error" and finding.code not in self.codes for finding in findings
-        )
+        return self.left(changes) == frozenset()
 
     def keep(self, changes: Changes, less: Changes | None = None) -> None:
         """Write a remedy down: its `changes`, and the next smaller ones, `less`."""
@@ -227,10 +263,26 @@ class Search:
         return True
 
     def follow(self, ways: Iterable[Way]) -> None:
-        """Follow `ways`, each for one wheel and, where that does not do, for both."""
+        """Follow `ways`, each for one wheel and, where that does not do, for both.
+
+        Where a changed design is refused for something else, ways out of that are followed too.
+        """
         for way in ways:
-            if not self.along(way) and (both := _for_both(way)) is not None:
+            if self.along(way):
+                continue
+            if (both := _for_both(way)) is not None:
                 self.along(both)
+            elif way.near and not self.over() and self.left(_tidy(way.near)) is None:
+                for other in self.second.ways if self.second else ():
+                    self.along(_joined(way.near, other))
+
+
+def _joined(changes: Changes, way: Way) -> Way:
+    """Return a way that makes other changes too."""
+    return Way(
+        near={**changes, **way.near} if way.near else {},
+        far={**changes, **way.far} if way.far else {},
+    )
 
 
 def _for_both(way: Way) -> Way | None:

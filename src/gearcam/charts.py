@@ -1,8 +1,9 @@
 """Charts: what is drawn over an angle, as data, and their drawing.
 
-A *chart* has one horizontal axis, *lines* over it and the *limits* that they are held against. The
-folder of a kind makes its charts from the arrays of a result (see `gearcam.designs.kind`); nothing
-here knows what they tell of. Drawing needs matplotlib, which the extra ``plot`` brings.
+A *chart* has one horizontal axis, *lines* over it, the *limits* that they are held against, and
+*marked places* on the axis, such as the knots of a law. The folder of a kind makes its charts from
+the arrays of a result (see `gearcam.designs.kind`); nothing here knows what they tell of. Drawing
+needs matplotlib, which the extra ``plot`` brings.
 """
 
 from __future__ import annotations
@@ -63,6 +64,22 @@ class Limit:
     value: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class MarkedPlace:
+    """A place on the horizontal axis.
+
+    Parameters
+    ----------
+    label : str
+        What is there; the same for all places of a sort.
+    value : float
+        In the unit of the horizontal axis.
+    """
+
+    label: str
+    value: float
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Chart:
     """Lines over an angle or a number, with limits.
@@ -77,6 +94,8 @@ class Chart:
         At least one.
     limits : tuple of Limit
         Those that hold for the lines.
+    marks : tuple of MarkedPlace
+        Places within the lines.
     """
 
     title: str
@@ -84,6 +103,7 @@ class Chart:
     y: str
     lines: tuple[Line, ...]
     limits: tuple[Limit, ...] = ()
+    marks: tuple[MarkedPlace, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Chart of {self.title}: {', '.join(line.label for line in self.lines)}>"
@@ -99,7 +119,7 @@ class Chart:
         Returns
         -------
         Axes
-            Of matplotlib, with title, labels, limits and legend.
+            Of matplotlib, with title, labels, limits, marked places and legend.
 
         Raises
         ------
@@ -117,11 +137,16 @@ class Chart:
                 ax.axhline(limit.value, color="0.35", ls="--", lw=1.0, label=text)
             else:
                 ax.plot([], [], color="0.35", ls=" ", label=f"{text}, beyond this chart")
+        told: set[str] = set()
+        for mark in self.marks:  # a legend names each sort once
+            label = None if mark.label in told else mark.label
+            ax.axvline(mark.value, color="0.5", ls=":", lw=0.8, label=label)
+            told.add(mark.label)
         free = _MARGIN * (high - low)
         ax.set(title=self.title, xlabel=self.x, ylabel=self.y, ylim=(low - free, high + free))
         ax.margins(x=_MARGIN if any(line.dots for line in self.lines) else 0.0)
         ax.grid(visible=True, alpha=0.3)
-        if self.limits or len(self.lines) > 1:
+        if self.limits or self.marks or len(self.lines) > 1:
             ax.legend(fontsize="small")
         return ax
 
@@ -141,6 +166,12 @@ class Chart:
         return min(low, *seen, low), max(high, *seen, high)
 
 
+def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]:
+    """Return the `knots` of a law, in the unit of an axis, between its ends `low` and `high`."""
+    inside = knots[(knots > low) & (knots < high)]
+    return tuple(MarkedPlace(label="knots", value=value) for value in inside.tolist())
+
+
 Charts = Mapping[str, Callable[[Any], Chart]]
 """What makes each chart of a kind from its result, by name."""
 
@@ -152,22 +183,3 @@ def _new_axes() -> Axes:
         raise MissingExtraError("charts", "plot") from error
     _, ax = plt.subplots(layout="constrained")
     return ax
-
-
-def with_both_sides(places: Array, knots: Array) -> Array:
-    """Return places on an axis with both sides of knots among them.
-
-    Parameters
-    ----------
-    places : (n,) array
-        Rising.
-    knots : (m,) array
-        Where what is drawn may jump; those outside the places are left out.
-
-    Returns
-    -------
-    (k,) array
-        Rising: of a knot the last number before it, and itself.
-    """
-    inside = knots[(knots > places[0]) & (knots < places[-1])]
-    return np.union1d(places, np.concatenate([inside, np.nextafter(inside, -np.inf)]))

@@ -16,24 +16,28 @@ import sys
 import textwrap
 import time
 import traceback
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam import build, remedies
+from gearcam.commands import demand_new_name
 from gearcam.console import (
     DEBUG,
     all_lines,
     complain,
     fault_text,
-    infeasible_text,
     law_lines,
     progress_bar,
     quieten,
+    refusal_text,
     remedy_lines,
     say,
 )
 from gearcam.designs import KINDS, Design, load
+from gearcam.designs.faults import unknown_word
+from gearcam.designs.kind import all_formats
 from gearcam.designs.outputs import FORMATS
 from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
 
@@ -90,11 +94,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    functions = (_build, _check, _laws, _new, _migrate, _schema)
+    functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema)
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
     if word in own:
-        formats = _formats() if {"-h", "--help"} & set(words) else FORMATS
+        formats = all_formats() if {"-h", "--help"} & set(words) else FORMATS
         parser = _parser(word, own[word], formats)
         own[word](**vars(parser.parse_intermixed_args(words[1:])))
         return
@@ -121,7 +125,7 @@ def _dispatch(words: list[str]) -> None:
         top.print_help(sys.stderr)
         raise SystemExit(WRONG)
     else:
-        _refuse([_unknown(word, "is not a command", docs)])
+        _refuse([unknown_word(word, "is not a command", docs)])
 
 
 def _commands_of_kinds() -> Iterator[Command]:
@@ -138,8 +142,10 @@ def _parser(
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
     if command in (_build, _check, _migrate):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
-    if command in (_build, _check):
+    if command in (_build, _check, _compare):
         _add_common(parser)
+    if command in (_compare, _view):
+        import_module(f"gearcam.{name}.command").arguments(parser)
     if command is _build:
         words = f"write only these: {','.join(formats)}"
         parser.add_argument("--only", action="append", metavar="KINDS", help=words)
@@ -155,11 +161,6 @@ def _parser(
 def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="DIR", default="output", help="where to write")
     parser.add_argument("--debug", action="store_true", help=f"show tracebacks (or set {DEBUG})")
-
-
-def _formats() -> tuple[str, ...]:
-    """Return every kind of file that a design of some kind can give."""
-    return tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
 
 
 def _command_help(docs: Mapping[str, str]) -> str:
@@ -184,6 +185,23 @@ def _check(files: list[str], output: str, debug: bool) -> None:
         return result.check(output)
 
     _each_result(files, "checked", action, debug=debug)
+
+
+def _view(file: str, port: int, no_browser: bool) -> None:
+    """Show a design's page in the browser, and follow the file as it is saved."""
+    from gearcam.view.command import view
+
+    _each([file], "shown", lambda one: view(one, port, browser=not no_browser) or GOOD)
+
+
+def _compare(files: list[str], debug: bool, **options: Any) -> None:
+    """Lay designs, or variants of one, side by side: facts, and a page DIR/compare.html."""
+    from gearcam.compare.command import compare
+
+    def work(_: str) -> int:
+        return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(compare(files, **options), GOOD)
+
+    _each([" ".join(files)], "compared", work, debug=debug)
 
 
 def _of_kind(command: Command, words: list[str]) -> None:
@@ -221,23 +239,21 @@ def _laws() -> None:
 def _new(kind: str, file: str | None, process: str | None) -> None:
     """Write a commented design file to start from; an existing file is never overwritten."""
     from gearcam.designs.template import template
+    from gearcam.export.write import write_new
 
     if kind not in KINDS:
-        _refuse([_unknown(kind, "is not a kind of design", KINDS, "KIND")])
+        _refuse([unknown_word(kind, "is not a kind of design", KINDS, "KIND")])
     if process is not None and process not in KINDS[kind].processes:
-        _refuse([_unknown(process, "is not known here", KINDS[kind].processes, "--for")])
+        _refuse([unknown_word(process, "is not known here", KINDS[kind].processes, "--for")])
     text = template(kind, Path(file or "").stem, process or "")
     if file is None:
         say(text.rstrip("\n"))
         return
     try:
-        with Path(file).open("x", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
-    except FileExistsError:
-        _refuse([Problem("exists, and is not overwritten", file=file)])
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        _refuse([Problem(f"cannot be written: {reason}", file=file)])
+        write_new(file, text)
+    except WriteError as error:
+        complain(str(error))
+        raise SystemExit(WRONG) from None
     say(f"{file}: written; build it with: gearcam build {shlex.quote(file)}")
 
 
@@ -271,19 +287,16 @@ def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
         return None
     kinds = [word.strip() for words in only for word in words.split(",") if word.strip()]
     if not kinds:
-        _refuse([Problem("nothing is listed", key="--only", allowed=", ".join(_formats()))])
-    strange = [kind for kind in kinds if kind not in FORMATS and kind not in _formats()]
+        _refuse([Problem("nothing is listed", key="--only", allowed=", ".join(all_formats()))])
+    strange = [kind for kind in kinds if kind not in FORMATS and kind not in all_formats()]
     if strange:
-        _refuse([_unknown(kind, "is not a kind of file", _formats(), "--only") for kind in strange])
+        _refuse(
+            [
+                unknown_word(kind, "is not a kind of file", all_formats(), "--only")
+                for kind in strange
+            ]
+        )
     return tuple(dict.fromkeys(kinds))
-
-
-def _unknown(word: str, what: str, known: Collection[str], key: str = "") -> Problem:
-    """Return the problem of a `word` that is none of those `known` for a `key`."""
-    from gearcam.designs.faults import did_you_mean, show
-
-    allowed, hint = ", ".join(known), did_you_mean(word, known)
-    return Problem(f"{show(word)} {what}", key=key, allowed=allowed, hint=hint)
 
 
 def _refuse(problems: Sequence[Problem]) -> None:
@@ -322,9 +335,7 @@ def _each(
         except KeyboardInterrupt:
             raise SystemExit(_interrupted()) from None
         except DesignError as error:
-            count = len(error.problems)
-            complain(f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}")
-            complain(textwrap.indent(str(error), "  "))
+            complain(refusal_text(error, file, done))
             codes.append(WRONG)
         except (WriteError, MissingExtraError) as error:
             complain(f"{file}: {error}")
@@ -341,7 +352,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     """Do something with one file and say what came of it."""
     start = time.perf_counter()
     design = load(file) if adapt is None else adapt(load(file))
-    _demand_new_name(design, file, names)
+    demand_new_name(design, file, names)
     from gearcam.numeric.memory import keep_freed_memory
 
     keep_freed_memory()
@@ -350,7 +361,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         with progress_bar(file) as progress:
             written = action(result, progress)
     except InfeasibleError as error:
-        complain(f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}")
+        complain(refusal_text(error, file, done))
         for line in remedy_lines(remedies(result, error)):
             complain(f"  {line}")
         return IMPOSSIBLE
@@ -364,14 +375,6 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     for line in remedy_lines(remedies(result)) if errors else ():
         say(f"  {line}")
     return FINDINGS if errors else GOOD
-
-
-def _demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:
-    """Refuse a second design that would be written over the first one of the same call."""
-    before = names.setdefault(design.name.casefold(), file)
-    if before != file:
-        message = f'"{design.name}" is taken by {before} in this call'
-        raise DesignError([Problem(message, file=file, key="name", value=design.name)])
 
 
 def _fault(error: Exception, *, file: str = "", debug: bool = False) -> int:

@@ -15,13 +15,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
+from gearcam.errors import DesignError, InfeasibleError
 from gearcam.facts import lined_up
-from gearcam.numerals import shown, size_of, with_unit
+from gearcam.numerals import size_of, with_unit
 
 if TYPE_CHECKING:
     from gearcam.advice import Remedies
     from gearcam.designs.listing import Listed
-    from gearcam.errors import InfeasibleError
     from gearcam.findings import Finding
     from gearcam.written import Written
 
@@ -100,6 +100,15 @@ def fault_text(error: Exception, file: str) -> str:
     )
 
 
+def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> str:
+    """Return why nothing was `done` with a `file` in words: the `error`, with every problem."""
+    if isinstance(error, InfeasibleError):
+        return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
+    count = len(error.problems)
+    told = textwrap.indent(str(error), "  ")
+    return f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}\n{told}"
+
+
 def infeasible_text(error: InfeasibleError) -> str:
     """Return why a design cannot be made, with its numbers and the way out, indented."""
     lines = [f"{error.what}, at {error.where}" if error.where else error.what]
@@ -122,7 +131,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more" if found.found else "a remedy"
-        yield f"the search for {sought} was given up after {shown(found.seconds)} s"
+        yield f"the search for {sought} was given up after {found.builds} designs"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 

@@ -207,6 +207,11 @@ class Facts(Mapping[str, Any]):
             if isinstance(fact, Fact) and fact.shown:
                 yield _quantity(name, fact)
 
+    def told(self) -> Iterator[NamedFact]:
+        """Yield the quantities of the headline, then the others that are always shown."""
+        yield from map(self.quantity, self._headline)
+        yield from (one for one in self.shown() if one.name not in self._headline)
+
     def quantity(self, name: str) -> NamedFact:
         """Return one quantity by its dotted `name`."""
         return next(one for one in self.quantities() if one.name == name)

@@ -29,9 +29,9 @@ SHOWN: Final = 560
 MARGIN: Final = 0.04
 """Margin, part of the drawing's width."""
 
-FILLS: Final = ("#cfe0f2", "#f8e0c6")
-INKS: Final = ("#27598c", "#a35f22")
-"""Soft fill and dark stroke of wheel 1 and wheel 2."""
+FILLS: Final = ("#cfe0f2", "#f8e0c6", "#dcebd3")
+INKS: Final = ("#27598c", "#a35f22", "#4d7a34")
+"""Soft fill and dark stroke of wheel 1, of wheel 2 or a follower, and of the second of two cams."""
 
 CENTRODE_INK: Final = "#5a5a5a"
 TEXT_INK: Final = "#222222"

@@ -120,14 +120,14 @@ class Result(Displayed):
         return data.decode()
 
     def _repr_html_(self) -> str:
+        from gearcam.markup import page, refusal
+
         try:
             facts, findings = self.facts, self.findings
+            if REPORT in KINDS[self.design.kind].formats:
+                return KINDS[self.design.kind].room("files").framed(self)
         except GearcamError as error:
-            from gearcam.markup import refusal
-
             return refusal(self.design.name, error)
-        from gearcam.markup import page
-
         told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
         return page(self.picture(), facts, told)
 

@@ -36,7 +36,13 @@ def wheel(name: str, number: int, clearance: float, rounding: float) -> Gear:
 @pytest.mark.parametrize("name", ["circular", "ellipse", "press"])
 @pytest.mark.parametrize("number", [1, 2])
 @pytest.mark.parametrize(
-    ("clearance", "rounding"), [(0.05, 0.0), (0.0, 0.1), (0.03, 0.25), (0.02, 0.45)]
+    ("clearance", "rounding"),
+    [
+        (0.05, 0.0),
+        pytest.param(0.0, 0.1, marks=pytest.mark.slow),
+        pytest.param(0.03, 0.25, marks=pytest.mark.slow),
+        (0.02, 0.45),
+    ],
 )
 def test_teeth_are_the_parallels_of_plain_teeth(
     name: str, number: int, clearance: float, rounding: float

@@ -67,6 +67,7 @@ def kinematics(name: str) -> tuple[Rolling, Basic]:
     return rolling, Basic(2.0, tip_radius=radius)
 
 
+@cache
 def cut(name: str, k: int, steps: int) -> Any:
     rolling, basic = kinematics(name)
     curvature = ring(name).toothing.cutter.kc

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from claims.claim import RiseClaim
 from claims.of_polynomials import POLYNOMIALS
+from gearcam.laws.rises.base import RiseParameters
 from gearcam.laws.rises.formula import FormulaRise
 from gearcam.laws.rises.points import BSplineRise, TableRise
 from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
@@ -21,6 +22,19 @@ from gearcam.laws.rises.simple import (
 )
 
 
+def _quintic(parameters: RiseParameters) -> RiseClaim:
+    """Return what is claimed of ``10*x^3 - 15*x^4 + 6*x^5``, whatever makes it."""
+    return RiseClaim(
+        parameters=parameters,
+        values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
+        velocities={0.25: 270 / 256, 0.5: 1.875},
+        peak_velocity=1.875,
+        peak_acceleration=10 / math.sqrt(3),
+        peak_jerk=60.0,
+        continuity=2,
+    )
+
+
 def formula() -> tuple[RiseClaim, ...]:
     quarter = 0.25 - 0.5 / math.pi
     swing = math.tanh(2.0)
@@ -33,15 +47,7 @@ def formula() -> tuple[RiseClaim, ...]:
         peak_jerk=4 * math.pi**2,
         continuity=2,
     )
-    quintic = RiseClaim(
-        parameters=FormulaRise(formula="x**3*(10 - 15*x + 6*x**2)"),
-        values={0.25: 53 / 512, 0.75: 459 / 512},
-        velocities={0.25: 270 / 256, 0.5: 1.875},
-        peak_velocity=1.875,
-        peak_acceleration=10 / math.sqrt(3),
-        peak_jerk=60.0,
-        continuity=2,
-    )
+    quintic = _quintic(FormulaRise(formula="x**3*(10 - 15*x + 6*x**2)"))
     rough = RiseClaim(
         parameters=FormulaRise(formula="(1 + tanh(4*x - 2)/tanh(2))/2"),
         values={0.5: 0.5, 0.75: 0.5 + math.tanh(1.0) / (2 * swing)},
@@ -59,15 +65,7 @@ def formula() -> tuple[RiseClaim, ...]:
 
 def b_spline() -> tuple[RiseClaim, ...]:
     """One span is the 3-4-5; two spans of degree 4 have ``S = 8*phi^3*(1 - phi)`` up to 1/2."""
-    one = RiseClaim(
-        parameters=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
-        values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
-        velocities={0.25: 270 / 256, 0.5: 1.875},
-        peak_velocity=1.875,
-        peak_acceleration=10 / math.sqrt(3),
-        peak_jerk=60.0,
-        continuity=2,
-    )
+    one = _quintic(BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5))
     # velocity 24*phi^2 - 32*phi^3, acceleration 48*phi*(1 - 2*phi), jerk 48 - 192*phi
     two = RiseClaim(
         parameters=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0)),
@@ -84,14 +82,8 @@ def b_spline() -> tuple[RiseClaim, ...]:
 def table() -> tuple[RiseClaim, ...]:
     """Return splines that reproduce their curve: a quintic, and a line with its slopes."""
     places = (0.0, 0.1, 0.3, 0.35, 0.7, 1.0)
-    quintic = RiseClaim(
-        parameters=TableRise(x=places, y=tuple(x**3 * (10 - 15 * x + 6 * x * x) for x in places)),
-        values={0.25: 53 / 512, 0.5: 0.5, 0.75: 459 / 512},
-        velocities={0.25: 270 / 256, 0.5: 1.875},
-        peak_velocity=1.875,
-        peak_acceleration=10 / math.sqrt(3),
-        peak_jerk=60.0,
-        continuity=2,
+    quintic = _quintic(
+        TableRise(x=places, y=tuple(x**3 * (10 - 15 * x + 6 * x * x) for x in places))
     )
     line = RiseClaim(
         parameters=TableRise(

@@ -17,10 +17,10 @@ from witness import sweep
 
 STEPS = np.array([1000, 2000, 4000, 8000])
 WHEELS = [
-    ("ellipse", 1, (1, 13)),
-    ("ellipse", 2, (7, 20)),
+    ("ellipse", 1, (13,)),
+    ("ellipse", 2, (7,)),
     ("two phases", 2, (3, 16, 17)),
-    ("three phases", 2, (15, 16, 30)),
+    ("three phases", 2, (15, 30)),
 ]
 
 

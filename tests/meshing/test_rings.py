@@ -221,7 +221,7 @@ def dense_touch(name: str, side: int, phi1: float, distance: float) -> float:
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 @pytest.mark.parametrize("more", [0.0, 0.1, -0.1])
 def test_first_touch_is_that_of_dense_points(name: str, side: int, more: float) -> None:
-    phi1 = phases(9)
+    phi1 = phases(5)
     distance = made(name).pair.center_distance + more
     pairs = flank_pairs(made(name).gears, side, -distance)
     found = touches(pairs, phi1)

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import Phase as Stage
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.cams.disc import DiscCam, make_cam
@@ -22,6 +21,7 @@ from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.errors import InfeasibleError
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase, levels
 from helpers_cams import angles, back, corners_of, dwell, program, resting, rise, stiffness
+from helpers_random import QUICK
 
 LAWS = [
     "constant-velocity",
@@ -155,24 +155,14 @@ def demand_motion(made: DiscCam) -> None:
     assert missing.max() <= made.shortfall + room.max()
 
 
-quick = settings(
-    derandomize=True,
-    database=None,
-    deadline=None,
-    max_examples=25,
-    phases=[Stage.generate, Stage.shrink],
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
-
-
-@quick
+@QUICK
 @given(cams())
 def test_any_cam_moves_its_follower_or_is_refused_with_a_reason(design: Given) -> None:
     demand_cam(design)
 
 
 @pytest.mark.slow
-@settings(quick, max_examples=600)
+@settings(QUICK, max_examples=600)
 @given(cams())
 def test_many_cams_move_their_followers_or_are_refused(design: Given) -> None:
     demand_cam(design)
@@ -182,7 +172,7 @@ def test_gentle_cams_are_never_refused_or_trimmed() -> None:
     """Cycloidal rises of a fifth of the prime radius in quarters."""
     trimmed = []
 
-    @settings(quick, max_examples=15)
+    @settings(QUICK, max_examples=15)
     @given(rounded(20, 60), rounded(0.05, 0.6), rounded(-0.3, 0.3), rounded(0.05, 0.2))
     def one(prime: float, radius: float, offset: float, lift: float) -> None:
         follower = {"type": "roller", "roller_radius": radius * prime, "offset": offset * prime}

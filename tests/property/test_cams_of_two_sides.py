@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import shapely
-from hypothesis import HealthCheck, given, settings
-from hypothesis import Phase as Stage
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
@@ -26,6 +24,7 @@ from gearcam.laws.phases_of_lift import levels
 from gearcam.laws.program import Program, make_program
 from gearcam.tolerances import DEFAULT
 from helpers_cams import TURN, program, rise
+from helpers_random import QUICK, close
 from property.test_cams import LAWS, dwell, programs, rounded, segment
 from witness.cam_sweep import Follower, swept
 from witness.roller_bands import band, island
@@ -33,11 +32,6 @@ from witness.roller_bands import band, island
 CHORD = 2e-3
 
 Given = tuple[dict[str, Any], float, Any]
-
-
-def close(contour: Any, region: Any) -> None:
-    off = shapely.symmetric_difference(contour.polygon, region).area
-    assert off < 3.0 * CHORD * region.length + 1e-9
 
 
 def turns(motion: Program, count: int) -> Any:
@@ -100,7 +94,7 @@ def demand_conjugate(design: Any) -> bool:
         assert made.nearest or made.limit is not None
         return False
     for wall, centers in zip(made.walls, centers_of(made), strict=True):
-        close(wall.contour, island(band(centers, wall.mechanism.radius)))
+        close(wall.contour, island(band(centers, wall.mechanism.radius)), CHORD)
         assert np.isfinite(wall.shortfall)
         assert wall.contour.moments.area == pytest.approx(wall.size.area, rel=1e-6)
     assert made.prime2 == pytest.approx(design[2].prime, rel=1e-9)
@@ -163,7 +157,7 @@ def demand_yoke(design: Given) -> bool:
         region = swept(own, theta, lift, 3.0 * scale, 0)
     else:
         region = island(band(1j * (m.start + lift) * np.exp(-1j * theta), m.radius))
-    close(made.contour, region)
+    close(made.contour, region, CHORD)
     if m.flat and not made.corners and not made.undercut:
         assert made.size.perimeter == pytest.approx(math.pi * scale, rel=1e-9)
         vertices = made.contour.vertices @ [1.0, 1j]
@@ -172,14 +166,7 @@ def demand_yoke(design: Given) -> bool:
     return True
 
 
-quick = settings(
-    derandomize=True,
-    database=None,
-    deadline=None,
-    max_examples=20,
-    phases=[Stage.generate, Stage.shrink],
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+quick = settings(QUICK, max_examples=15)
 
 
 @quick

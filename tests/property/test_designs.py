@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, Phase, assume, given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from gearcam.errors import InfeasibleError
@@ -24,6 +24,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import Assembly, explained, job
+from helpers_random import QUICK
 
 MODULE = 2.0
 """mm; the size is a matter of scale, which has a test of its own."""
@@ -160,14 +161,7 @@ def demand_pair(given: Given) -> GearPairResult | None:
     return made
 
 
-quick = settings(
-    derandomize=True,
-    database=None,
-    deadline=None,
-    max_examples=60,
-    phases=[Phase.generate, Phase.shrink],
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
-)
+quick = settings(QUICK, max_examples=30)
 
 
 @quick
@@ -183,7 +177,7 @@ def test_many_designs_can_be_cut_or_are_refused_with_a_reason(design: Given) -> 
     demand_pair(design)
 
 
-@settings(quick, max_examples=15)
+@settings(quick, max_examples=8)
 @given(st.integers(17, 60), rounded(0.0, 0.3), st.sampled_from([1e-4, 1e-3]))
 def test_mild_designs_are_never_refused(z: int, swing: float, tolerance: float) -> None:
     law = Formula(ratio=f"1 + {swing}*cos(phi1)")

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, given, settings
-from hypothesis import Phase as Stage
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.cams.groove import GrooveCam, make_groove
@@ -16,6 +15,7 @@ from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.errors import InfeasibleError
 from helpers_cams import program
+from helpers_random import QUICK, close
 from property.test_cams import programs, rounded
 from witness.roller_bands import band, island
 
@@ -67,23 +67,15 @@ def demand_groove(design: Given) -> None:
         return
     region = band(centers_of(made), 0.5 * made.width)
     inner, outer = (wall.contour for wall in made.walls)
-    for contour, edge in ((inner, island(region)), (outer, shapely.Polygon(region.exterior))):
-        off = shapely.symmetric_difference(contour.polygon, edge).area
-        assert off < 3.0 * CHORD * edge.length + 1e-9
+    close(inner, island(region), CHORD)
+    close(outer, shapely.Polygon(region.exterior), CHORD)
     assert outer.polygon.contains(inner.polygon)
     play = made.lost_motion.value
     assert np.isfinite(play)
     assert play >= 0.0
 
 
-quick = settings(
-    derandomize=True,
-    database=None,
-    deadline=None,
-    max_examples=20,
-    phases=[Stage.generate, Stage.shrink],
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
+quick = settings(QUICK, max_examples=15)
 
 
 @quick

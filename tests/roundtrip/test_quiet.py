@@ -51,7 +51,7 @@ def strictly(folder: Path, *words: str) -> None:
         ("log_spiral", GEARS + STEP),
         ("feeder", GEARS),
         ("plate_cam_offset_roller", GEARS + ",tool-path,curvature"),
-        ("flat_follower", GEARS),
+        pytest.param("flat_follower", GEARS, marks=pytest.mark.slow),
     ],
 )
 def test_designs_of_all_kinds_are_built_quietly(tmp_path: Path, name: str, files: str) -> None:

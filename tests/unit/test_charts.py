@@ -13,8 +13,9 @@ import pytest
 
 import gearcam
 from arch import rules
-from gearcam.charts import Chart, Limit, Line, with_both_sides
+from gearcam.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.errors import DesignError, MissingExtraError
+from gearcam.numeric.piecewise import with_both_sides
 
 mpl.use("Agg")
 PROFILES = sorted((rules.ROOT / "profiles").glob("*.toml"))
@@ -140,6 +141,113 @@ def test_a_pair_of_teeth_is_one_line_of_sliding_without_bridges():
     long = [piece[np.isfinite(piece)] for piece in pieces if len(piece) > 20]
     assert len(long) > 30
     assert all(piece.min() < 0.0 < piece.max() for piece in long)
+
+
+def test_the_ratio_is_the_slope_of_the_position():
+    for path, scale in ((PAIR, 1.0), (PAIR.with_name("feeder.toml"), math.degrees(1.0))):
+        result = gearcam.build(gearcam.load(path))
+        place, ratio = (result.chart(name).lines[0] for name in ("position", "ratio"))
+        x = 0.5 * (place.x[1:] + place.x[:-1])
+        long = np.diff(place.x) > 0.1
+        slope = scale * np.diff(place.y)[long] / np.diff(place.x)[long]
+        assert slope == pytest.approx(np.interp(x[long], ratio.x, ratio.y), rel=1e-4)
+    assert place.x[-1] == 540.0  # 60 teeth of the rack under a wheel of 40
+
+
+@pytest.mark.parametrize(
+    ("name", "knots"),
+    [
+        ("nail_machine_two_phase", [160.0]),
+        ("plate_cam_offset_roller", [90.0, 180.0, 270.0]),
+        ("translating_cam", [20.0, 80.0, 110.0, 150.0]),  # ways, mm
+        ("feeder", [360.0]),
+        ("ellipse", []),
+    ],
+)
+def test_knots_are_marked(name, knots):
+    result = gearcam.build(gearcam.load(PAIR.with_name(f"{name}.toml")))
+    over = result.charts[0]
+    for chart in map(result.chart, result.charts):
+        if chart.x != result.chart(over).x or "patch" in chart.title or "Sliding" in chart.title:
+            continue
+        assert [one.value for one in chart.marks] == pytest.approx(knots)
+        assert {one.label for one in chart.marks} <= {"knots"}
+
+
+def test_contact_patches_are_those_of_a_study():
+    # the closed form of a study is that of the exact depth, the chart's that of the lever
+    result = gearcam.build(gearcam.load(PAIR.with_name("ellipse.toml")))
+    each, together = result.chart("contact_patch").lines
+    table = result.mesh(steps=24).columns
+    known = np.isfinite(table["closed_mm2"])
+    met = 0
+    for x, area in zip(table["phi1_deg"][known], table["closed_mm2"][known], strict=True):
+        here = each.y[np.abs(each.x - x) < 1e-9]
+        met += here.size > 0
+        assert not here.size or np.abs(here / area - 1.0).min() < 2e-3
+        assert together.y[np.searchsorted(together.x, x - 1e-9)] >= 0.998 * area
+    assert met > 20
+    # of a turn, at one moment, it is what all pairs have together
+    at = each.x == 15.0
+    assert together.y[together.x == 15.0] == pytest.approx(each.y[at].sum())
+
+
+def test_transmission_errors_are_those_of_a_study():
+    # backlash lets the driven wheel lag, by more where it is small
+    result = gearcam.build(gearcam.load(PAIR.with_name("shop_order.toml")))
+    told = result.mesh(steps=72).facts["meshing.transmission_error"]
+    drive, coast = result.chart("transmission_error").lines
+    assert np.ptp(drive.y) == pytest.approx(told["peak_to_peak"], rel=1e-3)
+    assert abs(drive.y.mean()) < 1e-3 * np.ptp(drive.y)
+    # held back, the wheel is ahead where it was behind
+    lag = {side: result.contact(0.0, side)["lag_rad"][0] for side in ("drive", "coast")}
+    assert lag["coast"] < 0.0 < lag["drive"]
+    assert np.ptp(coast.y) > 0.0
+    # without backlash there is none
+    assert not np.any(gearcam.build(gearcam.load(PAIR)).chart("transmission_error").lines[0].y)
+
+
+@pytest.mark.parametrize(
+    ("name", "ends", "limits"),
+    [
+        # half the groove's width, 12.05 mm, on either side of the pitch curve
+        ("groove_cam", ("inner wall", "outer wall"), (1.0 / 6.025, -1.0 / 6.025)),
+        ("translating_cam", ("lower wall", "upper wall"), (1.0 / 6.025, -1.0 / 6.025)),
+        ("conjugate_cams", ("cam 1", "cam 2"), (1.0 / 8.0,)),
+        ("yoke_cam", ("profile",), ()),
+    ],
+)
+def test_all_walls_have_their_curvature_and_their_roller(name, ends, limits):
+    found = chart(PAIR.with_name(f"{name}.toml"), "curvature")
+    walls = [one.label for one in found.lines if one.label.endswith("before trimming")]
+    assert [wall.partition(" before")[0].split(" of ")[-1] for wall in walls] == list(ends)
+    rollers = [one.value for one in found.limits if one.label.startswith("roller")]
+    assert rollers == pytest.approx(list(limits))
+
+
+def test_pressure_angles_of_both_conjugate_cams():
+    path = PAIR.with_name("conjugate_cams.toml")
+    result = gearcam.build(gearcam.load(path))
+    for line, told in zip(
+        result.chart("pressure_angle").lines,
+        (result.facts["cam.pressure_angle_deg"], result.facts["cam.cam2.pressure_angle_deg"]),
+        strict=True,
+    ):
+        largest = max(abs(value) for kind in ("rise", "return") for value in told[kind].values())
+        assert np.abs(line.y).max() == pytest.approx(largest, rel=1e-3)
+
+
+def test_marked_places_are_drawn_and_told_once():
+    line = Line(label="values", x=np.arange(3.0), y=np.array([0.0, 1.0, 2.0]))
+    marks = tuple(MarkedPlace(label="knots", value=value) for value in (0.5, 1.5))
+    ax = Chart(title="t", x="x", y="y", lines=(line,), marks=marks).draw()
+    drawn = [
+        float(np.asarray(one.get_xdata())[0]) for one in ax.lines if one.get_linestyle() == ":"
+    ]
+    assert drawn == [0.5, 1.5]
+    legend = ax.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["values", "knots"]
 
 
 def test_far_limits_are_told_not_drawn():

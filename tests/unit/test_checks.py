@@ -146,8 +146,8 @@ CASES = [
     Case(
         "acceleration",
         "warning",
-        lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.5001)), (240, 240)),
-        lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.4999)), (240, 240)),
+        lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.5001)), (160, 160)),
+        lambda: job(Fourier(cosines=(0.0, 0.0, 0.0, 0.4999)), (160, 160)),
     ),
     Case("self-crossing", "warning", lambda: door(1e-9), lambda: door(-1e-9)),
     Case("concave-teeth", "warning", lambda: shaped(1.0001), lambda: shaped(0.9999)),

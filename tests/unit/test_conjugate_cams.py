@@ -120,7 +120,7 @@ def test_a_pivot_out_of_reach_is_moved(pivot: float, other: float) -> None:
         _ = result.cam
     (_, way) = caught.value.ways
     assert way.near == {"follower.pivot_distance_mm": other}
-    search = Search(result, frozenset(), 60.0)
+    search = Search(result, None, frozenset(), 60.0)
     assert search.along(way)
     assert gearcam.build(search.found[0].design).cam.facts
 
@@ -236,6 +236,16 @@ def test_the_command_follows_either(tmp_path: File, capsys: pytest.CaptureFixtur
     assert "largest difference" in capsys.readouterr().out
     # the first roller on the second cam finds another motion
     assert main(["follow", str(PATH), profile, "-o", str(tmp_path)]) in (0, 1)
+
+
+def test_the_picture_shows_two_tints_and_both_rollers_on_top() -> None:
+    text = gearcam.build(read()).files("svg")["cams.svg"].decode()
+    fills = [re.search(rf'class="{name}-profile" fill="(#\w+)"', text) for name in ("cam1", "cam2")]
+    first, second = (found and found[1] for found in fills)
+    assert None not in (first, second)
+    assert first != second
+    assert 'fill-opacity="0.6"' in text
+    assert text.rindex('class="cam2-') < text.index('class="follower"')
 
 
 def test_facts() -> None:

@@ -81,7 +81,7 @@ def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     assert set(result.files("tool-path")) >= {"tool_path_relief.csv", "tool_path_inner.dxf"}
 
 
-@pytest.mark.parametrize("side", ["front", "back"])
+@pytest.mark.parametrize("side", [pytest.param("front", marks=pytest.mark.slow), "back"])
 def test_step_holds_the_groove(side: str) -> None:
     result = gearcam.build(read(PLAIN, ('"front"', f'"{side}"')))
     (solid,) = read_step(result.files("step")["cam.step"])
@@ -139,6 +139,12 @@ def test_an_unknown_key_is_answered_with_those_of_the_form() -> None:
         (problem,) = caught.value.problems
         assert known in problem.allowed.split(", ")
         assert foreign not in problem.allowed.split(", ")
+
+
+def test_the_sheet_of_a_groove_tells_its_diameter() -> None:
+    data = gearcam.build(FILE_DESIGN).files("drawing-svg")["cam_drawing.svg"].decode()
+    assert "Ø110" in data
+    assert "R55" not in data
 
 
 def test_contact_of_each_wall() -> None:

@@ -6,16 +6,17 @@ import contextlib
 import io
 import math
 import re
+import struct
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
-from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 
 import gearcam
+import picture
 from gearcam.cli import main
 from gearcam.designs import KINDS, document_of, loads
 from gearcam.findings import CHECKS
@@ -33,7 +34,6 @@ CONVENTIONS = (ROOT / "docs" / "conventions.md").read_text(encoding="utf-8")
 CAMS = ROOT / "docs" / "cams.md"
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
 PROFILE = ROOT / "profiles" / "nail_machine_two_phase.toml"
-PICTURE = ROOT / "docs" / "nail_machine_two_phase.svg"
 WRITTEN_LATER = {"docs/performance.md"}
 
 
@@ -302,13 +302,10 @@ def test_every_key_of_design_files_is_described(name: str) -> None:
     assert [key for key in entries if f"`{key}`" not in told] == []
 
 
-def features(svg: bytes) -> list[tuple[str | None, str | None]]:
-    """Class and text of every element of a picture, in order."""
-    return [(part.get("class"), part.text) for part in ET.fromstring(svg).iter()]
-
-
-def test_the_picture_is_the_programs_own(example: Run, tmp_path: Path) -> None:
-    written = example.names["result"].write(tmp_path, files=["svg"])
-    made = features((written.directory / "pair.svg").read_bytes())
-    assert ("gear2-outline", None) in made
-    assert features(PICTURE.read_bytes()) == made
+def test_the_picture_is_that_of_the_tool() -> None:
+    data = picture.PICTURE.read_bytes()
+    assert f"]({picture.PICTURE.relative_to(ROOT)})" in README.partition("\n\n")[2]
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    assert struct.unpack(">II", data[16:24]) == picture.SIZE
+    assert picture.PROFILE == PROFILE
+    assert "report" in gearcam.load(PROFILE).output.files

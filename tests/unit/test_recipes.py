@@ -37,9 +37,9 @@ def run(code: str, folder: Path) -> str:
     return done.stdout
 
 
-def test_there_are_ten_recipes() -> None:
-    assert [int(title.partition(".")[0]) for title in RECIPES] == list(range(1, 11))
-    assert PAGE.count("```python") == 10
+def test_there_are_twelve_recipes() -> None:
+    assert [int(title.partition(".")[0]) for title in RECIPES] == list(range(1, 13))
+    assert PAGE.count("```python") == 12
 
 
 @pytest.mark.parametrize("title", RECIPES)

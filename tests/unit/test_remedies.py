@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping
 from functools import cache
+from itertools import count
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -30,7 +31,7 @@ DESIGNS = {name: (made[0], made[-1]) for name, made in (REFUSED | ERRORS).items(
 
 @cache
 def search(name: str, folder: Path) -> Remedies:
-    """What the search finds, with time for slow machines."""
+    """What the search finds, with as many builds as it wants."""
     return gearcam.remedies(job_of(DESIGNS[name][0], folder), patience=20.0)
 
 
@@ -63,6 +64,9 @@ LONG = {
     "rounded tips",
     "harmonics of a ring",
     "phases of a ring",
+    "a rim that follows, too thin for its bolts",
+    "bolts on the edge of a plate",
+    "bolts in each other",
 }
 
 
@@ -157,7 +161,18 @@ def test_a_search_that_takes_too_long_is_given_up_and_says_so(folder: Path) -> N
     found = gearcam.remedies(made, patience=0.0)
     assert found.gave_up
     assert not found.found
-    assert [*remedy_lines(found)] == ["the search for a remedy was given up after 0 s"]
+    assert [*remedy_lines(found)] == ["the search for a remedy was given up after 0 designs"]
+
+
+def test_a_slow_machine_finds_the_same(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = job_of(DESIGNS["short teeth"][0], folder)
+    found = gearcam.remedies(made)
+    few = gearcam.remedies(made, patience=0.3)
+    assert (few.builds, few.gave_up) == (3, True)
+    clock = count(step=2.0)
+    monkeypatch.setattr("gearcam.advice.time", SimpleNamespace(perf_counter=clock.__next__))
+    assert gearcam.remedies(made) == found
+    assert found.found
 
 
 def test_what_was_tried_is_told_only_where_nothing_was_found() -> None:

@@ -194,7 +194,7 @@ BEYOND = ("ratios for", "knots must", "first knot", "last ratio", "more than one
 
 
 @given(st.lists(st.tuples(PLACES, VALUES | st.none()), min_size=1, max_size=3))
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=250, deadline=None)
 def test_reader_and_schema_refuse_the_same_files(edits: Edits) -> None:
     document = _edited(edits)
     faults = examine(document, stem="file").faults
@@ -230,7 +230,7 @@ BEYOND_CAMS = (
 
 
 @given(st.lists(st.tuples(CAM_PLACES, CAM_VALUES | st.none()), min_size=1, max_size=3))
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=250, deadline=None)
 def test_reader_and_schema_refuse_the_same_cams(edits: Edits) -> None:
     document = _edited(edits, CAM)
     faults = examine(document, stem="file").faults

@@ -79,6 +79,39 @@ def test_the_largest_addendum_and_the_fewest_teeth_are_ways_out() -> None:
             assert collision(less) is not None
 
 
+def contact_on_circles(z1: int, z2: int, addendum: float) -> float:
+    """Contact ratio of circles inside each other, module 1: between both addendum circles."""
+    alpha = math.radians(20)
+    out, back = (
+        math.sqrt((0.5 * z + height) ** 2 - (0.5 * z * math.cos(alpha)) ** 2)
+        for z, height in ((z1, addendum), (z2, -addendum))
+    )
+    return (out - back + 0.5 * (z2 - z1) * math.sin(alpha)) / (math.pi * math.cos(alpha))
+
+
+def _rough(k: int) -> float:
+    """The addendum, in steps, at which tips of circles with 8k and 9k teeth just pass."""
+    return math.floor(highest_on_circles(8 * k, 9 * k) / 0.05) * 0.05
+
+
+def test_fewer_teeth_do_with_a_shorter_addendum() -> None:
+    """The fewest whose tips pass where flanks still touch for 1.1 pitches."""
+    given = (16, 18)
+    found = gearcam.remedies(ring({"type": "constant"}, given), patience=PATIENCE).found
+    taken = [one for one in found if set(one.changes) == {"pair.teeth", "rack.addendum"}]
+    fewest = min(k for k in range(3, 10) if contact_on_circles(8 * k, 9 * k, _rough(k)) >= 1.1)
+    assert [one.changes["pair.teeth"] for one in taken] == [[8 * fewest, 9 * fewest]]
+    assert taken[0].changes["rack.addendum"] == pytest.approx(_rough(fewest))
+    assert taken[0].less["pair.teeth"] == [8 * (fewest - 1), 9 * (fewest - 1)]
+    (steep,) = (one for one in found if "rack.pressure_angle_deg" in one.changes)
+    counts = [one.design.to_dict()["pair"]["teeth"][0] for one in (steep, *taken, found[-1])]
+    assert given[0] < counts[0] < counts[1] < counts[2]
+    other = gearcam.build(steep.design)
+    assert isinstance(other, GearPairResult)
+    assert collision(other) is None
+    assert overlap(other) == 0.0
+
+
 @pytest.mark.slow
 def test_where_teeth_and_addendum_do_not_help_the_ring_is_made_larger() -> None:
     result = ring({"type": "formula", "ratio": "1 + 0.02*cos(5*phi1)"}, (40, 48))

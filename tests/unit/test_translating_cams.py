@@ -35,7 +35,6 @@ from helpers_step_read import read_step
         (FILE, 'walls = "both"\n', "", "cam.groove_depth_mm", "one wall has none"),
         (FILE, "bolt_height_mm = 8\n", "", "blank.bolt_height_mm", "is missing beside bolts"),
         (FILE, "[output]", "[output]\nkerf_mm = 0.2", "output.kerf_mm", "milled"),
-        (FILE, '"stl"', '"curvature"', "output.files", "closed curves"),
         (FILE, "density", "clearance_mm = 0.1\ndensity", "blank.clearance_mm", "roller_clearance"),
         (ONE, "[cam]", "pivot_height_mm = 5\n[cam]", "follower.pivot_height_mm", "no pivot"),
         (ONE, "law = \"3-4-5\"\nlift_mm = 15", "law = \"3-4-5\"", "motion[0].lift_mm", "missing"),
@@ -220,7 +219,7 @@ def test_what_the_plate_has_no_room_for_is_moved(key: str, value: float) -> None
     result = gearcam.build(read(FILE).with_({key: value}))
     with pytest.raises(InfeasibleError) as caught:
         _ = result.parts
-    search = Search(result, frozenset(), 60.0)
+    search = Search(result, None, frozenset(), 60.0)
     assert any(search.along(way) for way in caught.value.ways)
     (remedy,) = search.found
     assert list(remedy.changes) == [key]

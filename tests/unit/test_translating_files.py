@@ -14,6 +14,8 @@ import shapely
 import gearcam
 from gearcam.drawings import cut_drawing, reach
 from gearcam.errors import DesignError, InfeasibleError
+from gearcam.sheets import wheel_sheet
+from gearcam.sheets.sheet import LinearDimension
 from helpers_sliding import DEEP, FILE, ONE, built, cam_of
 
 
@@ -82,6 +84,31 @@ def test_the_kerf_of_a_groove_that_goes_through() -> None:
     blank = shapely.Polygon(reach(paths["BLANK_KERF"]))
     assert blank.area == pytest.approx(shapely.box(0, 0, 194.1, 60).buffer(0.2).area, rel=1e-4)
     assert set(result.files("dxf")) == {"cam.dxf"}
+
+
+def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
+    """A cross, and its distances from the nearer side and from the lower edge."""
+    (sheet,) = (wheel_sheet(part, {}, "t") for part in built(FILE).parts)
+    told = sorted(
+        float(abs(one.second - one.first)[int(one.vertical)])
+        for one in sheet.dimensions
+        if isinstance(one, LinearDimension)
+    )
+    assert told == pytest.approx([8.0, 12.0, 12.05, 22.5, 60.0, 194.1])
+    assert any("X, Y from the cross" in text.text for text in sheet.texts)
+    bare = built(FILE, ("bolts = 2", "bolts = 0"), ("bolt_spacing_mm = 160\n", ""))
+    assert len(wheel_sheet(bare.part, {}, "t").dimensions) == 4
+
+
+def test_three_points_tell_the_curvature_of_an_open_pitch_curve() -> None:
+    """The error falls: with its sign and all, the exact curvature is that of the points."""
+    rows = built(ONE).files("curvature")["curvature.csv"].decode().splitlines()
+    table = dict(zip(rows[0].split(","), np.loadtxt(rows[1:], delimiter=",").T, strict=True))
+    # second order but at knots, where the slope of the curvature jumps: there the first
+    order = np.polyfit(np.log(table["spacing_mm"]), np.log(table["rms_error_per_mm"]), 1)[0]
+    assert 1.3 < order < 2.1
+    assert table["largest_error_per_mm"][-1] < 2e-5
+    assert np.all(np.diff(table["spacing_mm"]) < 0.0)
 
 
 def test_the_way_of_a_tool() -> None:

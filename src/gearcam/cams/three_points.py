@@ -86,19 +86,22 @@ def curvature_study(
     exact: Callable[[Array], Array],
     counts: Sequence[int],
     period: float = 2.0 * math.pi,
+    closed: bool = True,
 ) -> CurvatureStudy:
     """Compare the curvature from three points with the exact one, for rising numbers of points.
 
     Parameters
     ----------
     curve : callable
-        ``curve(u) -> (n,) complex array``, mm: a closed curve.
+        ``curve(u) -> (n,) complex array``, mm: a curve.
     exact : callable
         ``exact(u) -> (n,) array``, 1/mm: its curvature, positive where it turns left.
     counts : sequence of int
         Numbers of points, at even steps of u from 0.
     period : float
         Range of u.
+    closed : bool
+        Whether it ends where it begins; of an open curve the ends have no curvature.
 
     Returns
     -------
@@ -106,10 +109,10 @@ def curvature_study(
     """
     rows = []
     for count in counts:
-        u = np.arange(count, dtype=np.float64) * (period / count)
+        u = np.linspace(0.0, period, count, endpoint=not closed)
         points = curve(u)
-        error = three_point_curvature(points) - exact(u)
-        spacing = np.abs(np.roll(points, -1) - points).max()
+        error = three_point_curvature(points, closed) - exact(u if closed else u[1:-1])
+        spacing = np.abs(np.diff(points, append=points[:1] if closed else points[-1:])).max()
         rows.append((spacing, np.abs(error).max(), math.sqrt(np.mean(error**2))))
     spacing, largest, rms = np.array(rows).T
     return CurvatureStudy(count=np.array(counts), spacing=spacing, largest=largest, rms=rms)

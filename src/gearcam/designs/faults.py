@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -101,6 +101,12 @@ def did_you_mean(word: Any, known: Iterable[str]) -> str:
     """Return the question with the nearest known word, or nothing."""
     near = nearest(word, known) if isinstance(word, str) else ""
     return f"did you mean {near}?" if near else ""
+
+
+def unknown_word(word: str, what: str, known: Collection[str], key: str = "") -> Problem:
+    """Return the problem of a `word` that is none of those `known`, told as `what`, of a `key`."""
+    allowed, hint = ", ".join(known), did_you_mean(word, known)
+    return Problem(f"{show(word)} {what}", key=key, allowed=allowed, hint=hint)
 
 
 def key_hint(key: str, known: Mapping[str, Key] | Iterable[str]) -> str:

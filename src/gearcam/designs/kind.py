@@ -7,12 +7,15 @@ names it, and only that of a file is loaded. Its modules:
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
 - `facts`: ``facts(result, measured)`` returns what is known of it;
 - `files`: ``FILES``, what makes each kind of file; where it has ``report`` among them,
-  ``assembled(result, measured)`` returns its solids where they stand;
+  ``assembled(result, measured)`` returns its solids where they stand and ``framed(result)`` what
+  a notebook shows;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
-- `advice`: ``ways(...)`` yields changes that may help where it is refused or has errors;
+- `advice`: ``seek(search, refusal)`` leads the search for changes that help where it is refused
+  or has errors, ``hopeless(result)`` tells what need not be built to its end;
 - `public`: in its ``__all__`` the classes that people who write Python make designs of (the
   package `gearcam.kinds` tells type checkers of them);
-- `describe`: what schema, template and list of laws say of its main part;
+- `describe`: what schema, template and list of laws say of its main part, and the table of each
+  of its items;
 - `commands`, where it has any: ``COMMANDS`` of the command line.
 """
 
@@ -179,6 +182,11 @@ class _Kinds(Mapping[str, DesignKind]):
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
+
+
+def all_formats() -> tuple[str, ...]:
+    """Return every kind of file that a design of some kind can give."""
+    return tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
 
 
 def _names() -> tuple[str, ...]:

@@ -48,9 +48,13 @@ class Span:
 
 @dataclass(frozen=True)
 class Spans:
-    """Where everything stands: ``key = value`` in `pairs`, the ends of ``[table]`` in `heads`."""
+    """Where everything stands: ``key = value`` in `pairs`, the ends of ``[table]`` in `heads`.
+
+    Where the items of lists begin and end is in `items`.
+    """
 
     pairs: dict[Path, Span] = field(default_factory=dict)
+    items: dict[Path, tuple[int, int]] = field(default_factory=dict)
     heads: dict[Path, int] = field(default_factory=dict)
 
 
@@ -201,9 +205,10 @@ class _Walk:
         if self.take("["):
             index = 0
             while not self.take("]"):
-                item = (*path, index)
-                self.mark(item, self.at)
+                item, start = (*path, index), self.at
+                self.mark(item, start)
                 self.value(item)
+                self.spans.items[item] = (start, self.end)
                 self.take(",")
                 index += 1
                 self.more()

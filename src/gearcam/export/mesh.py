@@ -92,9 +92,13 @@ def view_page(bodies: Mapping[str, Mesh]) -> str:
 
     It needs no network, as it holds the bodies and all its scripts, and a browser with WebGL.
     """
+    from trimesh.scene import Camera
     from trimesh.viewer.notebook import scene_to_html
 
-    return scene_to_html(_scene(bodies))
+    scene = _scene(bodies)
+    scene.camera = Camera(name="camera", fov=(60.0, 45.0))  # one made for it has a random name
+    scene.set_camera()
+    return scene_to_html(scene)
 
 
 def trimeshes(bodies: Mapping[str, Mesh]) -> dict[str, Trimesh]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from gearcam.numerals import shown
+
 if TYPE_CHECKING:
     from gearcam.drawings import Drawing
     from gearcam.export.dxf import DxfStyle
@@ -90,10 +92,20 @@ def part_facts(part: Part, tools: ToolLimits, density: float | None) -> dict[str
     return {name: value for name, value in made.items() if value}
 
 
+_FEW = 4
+"""Digits of each of several numbers in a row of a drawing's table."""
+
+
 def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
     """Return the rows of a drawing's table: those quantities of `names` that `facts` have."""
     known = {one.name: one for one in facts.quantities()}
-    return {known[name].meaning: known[name].text for name in names if name in known}
+    found = [known[name] for name in names if name in known]
+    return {
+        one.meaning: " : ".join(shown(part, _FEW) for part in one.value) + f" {one.unit}"
+        if isinstance(one.value, list)
+        else one.text
+        for one in found
+    }
 
 
 def sheet_bytes(sheet: Any, style: DxfStyle, ending: str) -> Files:

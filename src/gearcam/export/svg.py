@@ -73,6 +73,7 @@ def _element(feature: Feature, pixel: float) -> str:
     """Return the SVG element of one feature; the class is its layer."""
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
     wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == drawings.FOLLOWER else 0
+    wheel = 2 if feature.layer.startswith("CAM2") else wheel
     ink, fill = INKS[wheel], FILLS[wheel]
     fills = {drawings.MARK: ink, **dict.fromkeys((*drawings.OUTER, drawings.FOLLOWER), fill)}
     inside = fill if feature.metal else fills.get(feature.kind, GROUND)
@@ -84,7 +85,9 @@ def _element(feature: Feature, pixel: float) -> str:
         line = f'stroke="{TEXT_INK}"'
     if dashed or isinstance(shape, Path | Cross):
         inside = "none"
-    style = f'class={name} fill="{inside}" {line}'
+    # the first of two cams is seen through the second
+    clear = ' fill-opacity="0.6"' if wheel == 2 and feature.kind in drawings.OUTER else ""
+    style = f'class={name} fill="{inside}"{clear} {line}'
     match shape:
         case Circle(center=center, diameter=diameter):
             place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'

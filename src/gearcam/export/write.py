@@ -234,6 +234,31 @@ def _copy(source: Path, target: Path) -> None:
         shutil.copy2(source, target, follow_symlinks=False)
 
 
+def write_new(path: str | os.PathLike[str], text: str) -> None:
+    """Write a file that is not there yet.
+
+    Parameters
+    ----------
+    path : path
+        Where.
+    text : str
+        Its content.
+
+    Raises
+    ------
+    WriteError
+        If there is one already, or the disk refuses.
+    """
+    try:
+        with Path(path).open("x", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+    except FileExistsError as error:
+        raise WriteError(f"{path}: exists, and is not overwritten") from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise WriteError(f"{path}: cannot be written: {reason}") from error
+
+
 def rewrite(file: str | os.PathLike[str], content: bytes) -> None:
     """Give an existing file another content.
 

@@ -211,8 +211,8 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
             if gear.ring:
                 what = "outside the roots"
                 across = shown(2.0 * (gear.largest_radius + least), 12)
-                hint = f"ring.rim_mm = {shown(least, 12)} keeps the limit, and a round outside of "
-                hint += f"{across} mm does"
+                hint = f"ring.rim_mm = {shown(least, 12)} keeps the limit or, of a round outside, "
+                hint += f"ring.outer_diameter_mm = {across} in its place"
             elif largest > 0:
                 hint = (
                     f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the "

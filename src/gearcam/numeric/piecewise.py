@@ -319,3 +319,22 @@ def _extremes_among(
         order = np.argsort(places, kind="stable")
         found.append((places[order], np.append(own[:, [0, -1]], tops[which == k])[order]))
     return found
+
+
+def with_both_sides(places: Array, knots: Array) -> Array:
+    """Return places on an axis with both sides of knots among them.
+
+    Parameters
+    ----------
+    places : (n,) array
+        Rising.
+    knots : (m,) array
+        Where what is drawn may jump; those outside the places are left out.
+
+    Returns
+    -------
+    (k,) array
+        Rising: of a knot the last number before it, and itself.
+    """
+    inside = knots[(knots > places[0]) & (knots < places[-1])]
+    return np.union1d(places, np.concatenate([inside, np.nextafter(inside, -np.inf)]))

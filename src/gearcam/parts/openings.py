@@ -16,15 +16,16 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
+from gearcam.parts.apart import demand_apart
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
+from gearcam.parts.workpiece import FINE, Workpiece
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
 _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
 
-_FINE: Final = 4e-5
-"""Sagitta of chords that stand for openings when it is asked what they meet, in rims."""
 
 _RIMS: Final = 32
 """Chords of a quarter of a circle around the outline's corners."""
@@ -45,39 +44,6 @@ _RAYS: Final = 91
 
 _QUARTER: Final = 64
 """Chords of a quarter of what is kept free around core and openings."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Workpiece:
-    """What a blank is made into: a wheel of a pair, or a cam.
-
-    Parameters
-    ----------
-    name : str
-        What a person calls it.
-    rim : float, mm
-        What lightening holes leave below the edge where the design gives none.
-    travel : float or None, rad
-        How far an open wheel turns; None for a closed one.
-    wheel : int or None
-        1 or 2; None of what stands alone.
-    within : str
-        What its openings keep within, in words.
-    """
-
-    name: str
-    rim: float
-    travel: float | None = None
-    wheel: int | None = None
-    within: str = "the outline"
-
-    def key(self, name: str) -> str:
-        """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""
-        return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
-
-    def refusal(self, what: str, place: str = "[blank]", **told: Any) -> InfeasibleError:
-        """Return a refusal of `what` at a `place` in mm; `told` goes to `InfeasibleError`."""
-        return InfeasibleError(what, where=f"{self.name}, {place}", unit="mm", **told)
 
 
 def bore(blank: WheelBlank) -> Circle | Loop:
@@ -145,7 +111,7 @@ def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> P
     from shapely import Polygon, intersection_all
 
     regions = [
-        Polygon(edge.points(_FINE * work.rim), [hole.points(_FINE * work.rim) for hole in at])
+        Polygon(edge.points(FINE * work.rim), [hole.points(FINE * work.rim) for hole in at])
         for edge, at in zip(edges, [[hole] for hole in inner] or [[]] * len(edges), strict=True)
     ]
     made: Any = intersection_all(regions)
@@ -189,80 +155,6 @@ def openings(
     if blank.lightening_holes:
         found += _lightening(wide, solid, found, work)
     return tuple(found)
-
-
-def demand_apart(
-    found: Sequence[Opening], blank: WheelBlank, solid: Polygon, work: Workpiece
-) -> None:
-    """Refuse openings that meet each other, the hub's edge or the outline.
-
-    Parameters
-    ----------
-    found : sequence of Opening
-        The openings.
-    blank : WheelBlank
-        With the hub, and how much wider bores are than given.
-    solid : shapely.Polygon
-        What they go through.
-    work : Workpiece
-        What is ordered, for messages.
-
-    Raises
-    ------
-    InfeasibleError
-        If they do.
-    """
-    from shapely import Polygon
-
-    edges = [opening.shape.points(_FINE * work.rim) for opening in found]
-    regions = [Polygon(edge) for edge in edges]
-    for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
-        if not solid.contains(region):
-            raise _no_room(opening, solid, work.within, work, blank.widening)
-        away = np.hypot(*edge.T)
-        if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
-            raise _no_room(opening, solid, "the edge of the hub", work, blank.widening)
-        for other, second in zip(found[:number], regions[:number], strict=True):
-            if region.intersects(second):
-                raise _no_room(opening, solid, f"the {other.name}", work, blank.widening)
-
-
-_SMALLER: Final = (
-    ("bolt", "bolt_diameter_mm", 0.1),
-    ("bolt", "bolt_circle_mm", 0.1),
-    ("bolt", "bolt_height_mm", 0.1),
-    ("bolt", "bolt_spacing_mm", 0.1),
-    ("hub", "hub_diameter_mm", 0.1),
-    ("bore", "bore_diameter_mm", 0.1),
-)
-"""Words of a refusal, and what may be made smaller then, down to mm."""
-
-
-def _no_room(
-    opening: Opening, solid: Polygon, what: str, work: Workpiece, widening: float
-) -> InfeasibleError:
-    """Return the refusal of what meets something; diameters as the design gives them."""
-    from shapely import Point
-
-    shape, value, limit, nearest = opening.shape, None, None, "each needs a place of its own"
-    if isinstance(shape, Circle) and what == work.within:
-        center = Point(*shape.center)
-        inside = solid.contains(center)
-        value = shape.diameter - widening
-        limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
-        outside = f"its middle does not lie within {what}"
-        nearest = "the limit is the room around its middle" if limit else outside
-    return work.refusal(
-        f"the {opening.name} meets {what}",
-        value=value,
-        limit=limit,
-        nearest=nearest,
-        ways=tuple(
-            Way(far={work.key(key): small})
-            for word, key, small in _SMALLER
-            if word in f"{opening.name} {what}"
-        ),
-    )
 
 
 def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece) -> Opening:

@@ -9,6 +9,8 @@ Depends on parts' shapes; shapely inside the functions.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -17,7 +19,7 @@ from gearcam.errors import Way
 from gearcam.numerals import rounded_down, shown
 from gearcam.numeric.arrays import Array
 from gearcam.parts.blank import WheelBlank
-from gearcam.parts.openings import Workpiece
+from gearcam.parts.workpiece import FINE, Workpiece
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -29,7 +31,13 @@ _SHARE: Final = 0.999
 """Share of a room that a remedy takes: walls are measured between chords."""
 
 
-def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float) -> None:
+def demand_bolts(
+    blank: WheelBlank,
+    solid: Polygon,
+    work: Workpiece,
+    wall: float,
+    outside: Callable[[float], dict[str, object]],
+) -> None:
     """Refuse bolt holes that do not lie in the rim.
 
     Parameters
@@ -42,6 +50,8 @@ def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float
         What it is.
     wall : float, mm
         Wall that remedies leave on both sides.
+    outside : callable
+        Which value of the design makes the ring as large as a radius, mm.
 
     Raises
     ------
@@ -54,7 +64,8 @@ def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float
     room = float(_rooms(blank, solid, np.array([blank.bolt_circle]))[0])
     if wide < room:
         return
-    far = float(np.hypot(*np.array(solid.exterior.coords).T).max())
+    away = np.hypot(*np.array(solid.exterior.coords).T)
+    low, far = float(away.min()), float(away.max())
     circles = 2.0 * far * np.arange(1, _CIRCLES) / _CIRCLES
     rooms = _rooms(blank, solid, circles)
     best, most = float(circles[rooms.argmax()]), float(rooms.max()) - taken
@@ -64,6 +75,17 @@ def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float
         ways.append(Way(near={diameter: _SHARE * (room - taken)}))
     elif most > 0.0:
         ways.append(Way(near={circle: best, diameter: min(blank.bolt_diameter, _SHARE * most)}))
+    hole, reach = _hole(solid), 0.5 * wide + wall
+    if hole is not None:
+        roots = float(np.hypot(*np.array(hole.exterior.coords).T).max())
+        clears = hole.distance(_middles(blank, np.array([blank.bolt_circle]))).min() >= reach
+        across = blank.bolt_circle if clears else 2.0 * (roots + reach)
+        if 0.5 * across + reach > low:
+            moved = {} if clears else {circle: across}
+            radius = (0.5 * across + reach) / _SHARE
+            ways.append(Way(near={**moved, **outside(radius)}))
+            if far - low > FINE * work.rim:  # not round: as large everywhere only beyond
+                ways[-1] = replace(ways[-1], far={**moved, **outside(radius + far - low)})
     ways.append(Way(near={work.key("bolts"): 0}))
     roomiest = f"no bolt circle keeps walls of {shown(wall)} mm: a larger rim of [ring] may"
     if most > 0.0:
@@ -79,12 +101,24 @@ def demand_bolts(blank: WheelBlank, solid: Polygon, work: Workpiece, wall: float
     )
 
 
-def _rooms(blank: WheelBlank, solid: Polygon, circles: Array) -> Array:
-    """Return the diameters of the largest holes that fit on bolt circles, mm; 0 where none does."""
+def _hole(solid: Polygon) -> Polygon | None:
+    """Return what a ring that goes all around has within its teeth."""
+    from shapely import Polygon
+
+    return Polygon(solid.interiors[0]) if len(solid.interiors) else None
+
+
+def _middles(blank: WheelBlank, circles: Array) -> Any:
+    """Return the middles of the holes on bolt circles, (bolts, n)."""
     from shapely import points
 
     turns = blank.bolt_angle + 2.0 * math.pi * np.arange(blank.bolts) / blank.bolts
     spokes = 0.5 * np.exp(1j * turns)[:, None] * circles
-    middles: Any = points(spokes.real, spokes.imag)
+    return points(spokes.real, spokes.imag)
+
+
+def _rooms(blank: WheelBlank, solid: Polygon, circles: Array) -> Array:
+    """Return the diameters of the largest holes that fit on bolt circles, mm; 0 where none does."""
+    middles = _middles(blank, circles)
     away = np.where(solid.contains(middles), solid.boundary.distance(middles), 0.0)
     return 2.0 * away.min(axis=0)

@@ -118,8 +118,9 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
     -------
     dict
         ``name``, ``title``, ``x``, ``y`` (labels), ``moves``, ``range`` (of the vertical axis, with
-        the limits that are near), ``lines`` (``label``, ``x``, ``y``, ``dots``) and ``limits``
-        (``label``, ``value``, ``seen``).
+        the limits that are near), ``lines`` (``label``, ``x``, ``y``, ``dots``), ``limits``
+        (``label``, ``value``, ``seen``) and ``marks``, places on the horizontal axis (``label``,
+        ``value``).
     """
     low, high = chart.range
     return {
@@ -137,6 +138,7 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
             {"label": one.label, "value": one.value, "seen": low <= one.value <= high}
             for one in chart.limits
         ],
+        "marks": [{"label": one.label, "value": one.value} for one in chart.marks],
     }
 
 

@@ -1,13 +1,17 @@
-"""The kind of file ``report``, of every kind of design."""
+"""The kind of file ``report``, of every kind of design, and its page in a notebook."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from html import escape
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from gearcam.export.shared import Files
     from gearcam.result import Result
+
+_FRAME: Final = "border:0;width:100%;height:min(85vh,760px);resize:vertical"
+"""Of a page in a notebook: parts and first charts are seen, the others by scrolling in it."""
 
 
 def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
@@ -16,3 +20,13 @@ def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
     from gearcam.report.solids import solids_shown
 
     return {PAGE: page(document(result, measured), solids=solids_shown(result))}
+
+
+def framed(result: Result) -> str:
+    """Return the page of a `result` as HTML that a notebook shows: a frame, without solids."""
+    from gearcam.report.page import document, page
+
+    shown = escape(page(document(result)).decode())
+    return (
+        f'<iframe title="{escape(result.design.name)}" style="{_FRAME}" srcdoc="{shown}"></iframe>'
+    )

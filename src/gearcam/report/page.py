@@ -8,13 +8,13 @@ page holds one and shows it when it is opened; a page that is served is given ot
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.advice import remedies
+from gearcam.advice import Remedies, remedies
 from gearcam.designs.kind import KINDS
 from gearcam.numerals import shown, size_of
 from gearcam.report.data import chart_data, scene_data
@@ -30,6 +30,12 @@ PAGE: Final = "report.html"
 
 BLOCKS: Final = ("verdict", "findings", "files", "facts", "accuracy")
 """Places of the page that are written from facts, each a template."""
+
+DRAFTED: Final = ("verdict", "findings", "facts")
+"""Those that follow a slider while it is dragged."""
+
+DRAFT_PLACES: Final = 120
+"""Steps of the driver in a draft's scene: 3 degrees of a turn, between which lines are straight."""
 
 SCRIPTS: Final = (
     "uPlot/uPlot.iife.min.js",
@@ -85,6 +91,8 @@ def page(
             view=_embedded((solids or {}).get("view", "")),
             style=_own("uPlot/uPlot.min.css", "page.css", "solids.css"),
             script=_own(*SCRIPTS),
+            live_style=_own("live.css") if live else "",
+            live_script=_own("live.js") if live else "",
             licence=_own("uPlot/LICENSE"),
         )
         .encode()
@@ -121,23 +129,61 @@ def document(result: Result, measured: Mapping[str, Any] = MappingProxyType({}))
     }
 
 
-def blocks(result: Result, measured: Mapping[str, Any] = MappingProxyType({})) -> dict[str, str]:
-    """Return the HTML of every one of `BLOCKS`, told of a `result` and of what was `measured`."""
+def draft(result: Result) -> dict[str, Any]:
+    """Return what of a document can follow a slider: no charts, remedies and files."""
+    made = KINDS[result.design.kind].room("scene").scene(result, DRAFT_PLACES)
+    return {
+        "title": result.design.name,
+        "kind": result.design.kind,
+        "scene": scene_data(made),
+        "blocks": blocks(result, names=DRAFTED, seek=False),
+    }
+
+
+def blocks(
+    result: Result,
+    measured: Mapping[str, Any] = MappingProxyType({}),
+    *,
+    names: Sequence[str] = BLOCKS,
+    seek: bool = True,
+) -> dict[str, str]:
+    """Return blocks of HTML by name.
+
+    Parameters
+    ----------
+    result : Result
+        What they tell of.
+    measured : mapping
+        What was measured on its files, by group of facts.
+    names : sequence of str
+        Which of `BLOCKS`.
+    seek : bool
+        Whether remedies are sought, which may take seconds.
+
+    Returns
+    -------
+    dict of str to str
+    """
     facts = result.facts_with(measured)
     told = {
         "title": result.design.name,
         "facts": facts,
         "findings": result.findings,
-        "verdict": _verdict(result.findings),
-        "remedies": remedies(result),
+        "verdict": verdict(result.findings),
+        "remedies": remedies(result) if seek else Remedies(),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
         "errors": _errors(facts.document.get("accuracy", {})),
         "timings": result.timings,
     }
-    return {name: _templates().get_template(f"{name}.html").render(told) for name in BLOCKS}
+    return {name: rendered(f"{name}.html", told) for name in names}
 
 
-def _verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
+def rendered(name: str, told: Mapping[str, Any]) -> str:
+    """Return the HTML of a template of this folder, by `name`, with what is `told`."""
+    return _templates().get_template(name).render(told)
+
+
+def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
     """Return the worst severity there is, a note where there is none, and what it means."""
     found = {one.severity for one in findings}
     worst = next((one for one in _VERDICTS if one in found), "note")

@@ -142,7 +142,7 @@ function columnOf(toothed, body) {
 }
 
 function* bodyMarks(body, pose, tone) {
-  const ink = body.name === "frame" ? "text" : `ink-${tone}`;
+  const ink = body.ink ?? (body.name === "frame" ? "text" : `ink-${tone}`);
   for (const chains of platesOf(body)) {
     yield { chains, closed: true, fill: `fill-${tone}`, ink, pose };
   }

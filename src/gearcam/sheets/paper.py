@@ -29,8 +29,8 @@ BINDING: Final = 20.0
 MARGIN: Final = 10.0
 """From the paper's left edge, and from the others, to the frame, mm."""
 
-TABLE: Final = 80.0
-LABELS: Final = 38.0
+TABLE: Final = 86.0
+LABELS: Final = 45.0
 ROW: Final = 5.0
 """Width of the table and of its labels, and height of a row, mm."""
 

@@ -73,6 +73,11 @@ class _Wheel:
         return self.points.max(axis=0)
 
     @property
+    def round(self) -> bool:
+        """Whether the outline is a circle about the axis, as of most rings and grooves."""
+        return float(np.ptp(np.hypot(*self.points.T))) < SAME
+
+    @property
     def turns(self) -> bool:
         """Whether the axis lies within the outline: racks have none."""
         corners = as_complex(self.part.contours[-1].points(self.part.tolerance))
@@ -80,6 +85,11 @@ class _Wheel:
             return False
         turn = float(np.angle(np.roll(corners, -1) / corners).sum())
         return abs(turn) > math.pi
+
+    @property
+    def placed(self) -> bool:
+        """Whether holes are told from an origin that no axis shows."""
+        return not self.turns and any(one.kind == HOLE for one in self.part.openings)
 
     @property
     def bore(self) -> Edge | None:
@@ -121,9 +131,8 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     keyed = wheel.bore if isinstance(wheel.bore, Loop) else None
     shown = 2.0 * wheel.bore_radius if keyed else 0.0
     size = wheel.high - wheel.low + [part.thickness + shown, 0.0]
-    levels = (
-        1 + len(part.bosses) + (part.hub is not None) + len(part.recesses)
-    )  # below the side view
+    levels = 1 + len(part.bosses) + (part.hub is not None) + len(part.recesses)  # of the side view
+    levels = max(levels, 1 + wheel.placed)
     below = FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if keyed else 0.0)
     rows = len(facts) + len(part.openings) + 2
@@ -137,6 +146,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
         _bore_view(board, keyed, right)
     _callouts(board, wheel)
     about = " R, X, Y and angles from the axis." if wheel.turns else ""
+    about = " X, Y from the cross." if wheel.placed else about
     notes = [
         f"Chord tolerance of the outline: {fine(part.tolerance)} mm.",
         "Outline: the DXF file of this part.",
@@ -166,11 +176,23 @@ def _front_view(board: Board, wheel: _Wheel) -> None:
     first = FIRST_LEVEL * board.unit
     left, low = wheel.points[wheel.points.argmin(axis=0)]
     right, high = wheel.points[wheel.points.argmax(axis=0)]
-    if isinstance(part.contours[-1], Circle):
+    if wheel.round:
         board.linear(left, right, float(low[1]) - first, prefix="Ø")
         return
-    board.linear(left, right, float(low[1]) - first)
+    if wheel.placed:
+        _origin(board, wheel)
+    board.linear(left, right, float(low[1]) - first - LEVEL * board.unit * wheel.placed)
     board.linear(low, high, float(left[0]) - first, vertical=True)
+
+
+def _origin(board: Board, wheel: _Wheel) -> None:
+    """Show the origin of a part without an axis, from which its holes are told."""
+    first, (left, bottom), right = FIRST_LEVEL * board.unit, wheel.low.tolist(), wheel.high[0]
+    side, way = (left, -2.0) if abs(left) < abs(right) else (float(right), 1.0)
+    board.centre(np.zeros(2), 0.0)
+    if abs(side) > SAME:
+        board.linear((0.0, 0.0), (side, bottom), bottom - first)
+    board.linear((0.0, 0.0), (side, bottom), side + way * first, vertical=True)
 
 
 def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
@@ -197,6 +219,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     lengths += [(left, end)] if part.hub is not None else []
     lengths += [(back + one.low, back + one.high) for one in part.recesses]
     hidden = base if part.recesses else -0.5 * hub.diameter
+    lengths.sort(key=lambda one: one[1] - one[0])  # no line of a longer one is crossed
     for level, (low, high) in enumerate(lengths):
         y = [base if (x in (back, back + part.width)) else hidden for x in (low, high)]
         at = base - (FIRST_LEVEL + LEVEL * level) * unit
@@ -260,7 +283,7 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
     """Draw what points into the front view: places that are fixed first."""
     part = wheel.part
     _holes(board, part)
-    if wheel.turns:
+    if wheel.turns and (part.inner or not wheel.round):
         _radii(board, wheel)
     for opening in part.openings:
         if opening.kind == SLOT and isinstance(opening.shape, Loop):

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.cams.checks import KIND, pressure_limit
-from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
+from gearcam.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 from gearcam.findings import limit_of
 from gearcam.kinds.cam.build import pressure_column, rho_column
 from gearcam.numeric.columns import Columns
+from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
 
@@ -37,13 +38,20 @@ def _places(result: CamResult) -> tuple[str, str]:
     return driver.column, f"{driver.called} {driver.symbol}, {driver.unit}"
 
 
+def _knots(result: CamResult) -> tuple[MarkedPlace, ...]:
+    driver = result.mechanism.driver
+    return knot_marks(driver.scale * np.asarray(result.program.knots), 0.0, driver.turn)
+
+
 def _of_lift(name: str, result: CamResult) -> Chart:
     table = _table(result)
     column = next(column for column in table if column.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
     places, told = _places(result)
     line = Line(label=name, x=table[places], y=table[column])
-    return Chart(title=f"Follower's {name}", x=told, y=f"{name}, {unit}", lines=(line,))
+    return Chart(
+        title=f"Follower's {name}", x=told, y=f"{name}, {unit}", lines=(line,), marks=_knots(result)
+    )
 
 
 def _pressure_angle(result: CamResult) -> Chart:
@@ -61,6 +69,7 @@ def _pressure_angle(result: CamResult) -> Chart:
             for column in (pressure_column(one),)
         ),
         limits=(Limit(label="limit", value=limit), Limit(label="limit", value=-limit)),
+        marks=_knots(result),
     )
 
 
@@ -83,8 +92,10 @@ def _curvature(result: CamResult) -> Chart:
     largest = _TIMES * max(1.0 / radius if radius else 0.0, *map(float, pitch))
     tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
     limits = [Limit(label="tool at hand, concave profile", value=-2.0 / tool)] if tool else []
-    if radius > 0.0:
-        limits.append(Limit(label="roller, convex pitch curve", value=1.0 / radius))
+    rollers = {one.side / one.mechanism.radius: one for one in result.cam.walls if radius}
+    for value, wall in rollers.items():
+        what = "convex" if wall.side > 0 else "concave"
+        limits.append(Limit(label=f"roller, {what} pitch curve", value=value))
     if result.mechanism.flat:
         del lines["pitch curve"]
     places, told = _places(result)
@@ -101,6 +112,7 @@ def _curvature(result: CamResult) -> Chart:
             for label, values in lines.items()
         ),
         limits=tuple(limits),
+        marks=_knots(result),
     )
 
 

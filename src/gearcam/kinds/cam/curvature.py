@@ -24,7 +24,7 @@ def curvature_columns(
     motion : PitchMotion
         Its pitch curve is studied, of a flat follower its profile.
     counts : sequence of int
-        Numbers of points, at even cam angles.
+        Numbers of points, at even cam angles or ways.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def curvature_columns(
         found = curve.contact(theta, 0)
         return np.asarray(found.turning.c[0] / found.pitch_speed.c[0])
 
-    study = curvature_study(points, exact, counts)
+    study = curvature_study(points, exact, counts, closed=motion.program.closed)
     columns = {
         "points": study.count.astype(np.float64),
         "spacing_mm": study.spacing,

@@ -8,6 +8,7 @@ from typing import Any, Final
 from gearcam.designs.faults import description
 from gearcam.designs.listing import Listed, listed
 from gearcam.designs.schema import chosen, table_schema, told
+from gearcam.designs.table import Table
 from gearcam.designs.template import entry_lines, key_line, law_comment
 from gearcam.kinds.cam.design import KIND
 from gearcam.kinds.cam.motion import (
@@ -79,6 +80,14 @@ def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
         for word, keys in twins(known).items()
     ]
     return made | {"allOf": either} if either else made
+
+
+def known(raw: Mapping[str, Any]) -> Table:
+    """Return the table of a phase, or of a motion over the whole turn, as a file holds it."""
+    if "type" in raw:
+        return phase_table(raw["type"], raw.get("law", ""))
+    rows, formula = turn_tables()
+    return formula if "lift" in raw else rows
 
 
 def lines() -> Iterator[str]:

@@ -17,6 +17,7 @@ from gearcam.export.shared import (
     sheet_bytes,
     sheet_rows,
 )
+from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:

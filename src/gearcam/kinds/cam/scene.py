@@ -88,7 +88,9 @@ def _carried(motion: PitchMotion, theta: Array, pose: float) -> tuple[Array, Pla
         way = pivot * (1.0 - np.exp(1j * turn))
     else:
         turn, way = np.zeros_like(theta), 1j * np.exp(1j * m.tilt) * lift
-    return (-turn, -np.conj(way)) if motion.clockwise else (turn, way)
+    if motion.clockwise:
+        turn, way = -turn, -np.conj(way)
+    return turn, np.asarray(way, dtype=np.complex128)
 
 
 def _contacts(
@@ -107,7 +109,7 @@ def _contacts(
             force=normals * stand,
         )
 
-    walls = result.cam.walls
-    if result.form.half_turns:  # touched from below half a turn before it is from above
-        return {"upper side": found(*walls), "lower side": found(*walls, math.pi)}
-    return {wall.called: found(wall) for wall in walls}
+    if result.form.half_turns:  # what the lower side touches, the upper one does half a turn later
+        (profile,) = result.cam.walls
+        return {"upper side": found(profile), "lower side": found(profile, math.pi)}
+    return {wall.called: found(wall) for wall in result.cam.walls}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -11,11 +10,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import limit_of
-from gearcam.gears.subject import KIND
+from gearcam.kinds.gear_pair.shorter import lower, shorter
 
 if TYPE_CHECKING:
-    from gearcam.advice import Changes, Search
+    from gearcam.advice import Changes, Remedy, Search
 
 _MOST: Final = 400
 """Most teeth of a wheel that are tried: beyond them nobody is helped."""
@@ -23,17 +21,11 @@ _MOST: Final = 400
 _LIKELY: Final = 1.5
 """How many times more teeth are tried first where an error does not tell."""
 
-_SHARE: Final = 0.6
-"""Part of the time that tooth counts may take where there are other ways."""
-
 _OF_TEETH: Final = frozenset({"contact-ratio", "undercut", "tips-collide"})
 """Findings that more teeth or a smaller swing may lift."""
 
-_LOW: Final = 0.3
-"""Lowest addendum, in modules, that is tried where tips collide: lower ones do not mesh."""
-
-_FINE: Final = 0.005
-"""Step to which the largest one is found, in modules."""
+_USUAL: Final = 1.5
+"""How many times more teeth are welcome with the addendum that is wanted."""
 
 _TIMES: Final = (1, 2, 4)
 """How many times the wheel's teeth are tried with a larger ring, if fewer do not do."""
@@ -45,17 +37,23 @@ _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.cleara
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
     """Lead a `search` for remedies: tooth counts, what a `refusal` names, a milder law."""
     factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
-    ways = [*(refusal.ways if refusal else ()), *_others(search, refusal, factor)]
-    last = [*_larger_ring(search)]
-    if factor:
-        end = search.until
-        if ways or last:
-            search.until = end - (1.0 - _SHARE) * (end - time.perf_counter())
-        _more_teeth(search, factor)
-        search.until = end
-    search.follow(ways)
-    if not search.found:
-        any(search.along(way) for way in last)
+    collide = "tips-collide" in search.codes
+    if collide:
+        search.follow(lower(search))
+    lowered = bool(search.found)
+    times = _more_teeth(search, factor) if factor else None
+    if collide and not lowered and (times is None or times > _USUAL):
+        shorter(search, times)
+        search.found.sort(key=_count)
+    search.follow([*(refusal.ways if refusal else ()), *_others(search, refusal, factor)])
+    if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
+        any(search.along(way) for way in _larger_ring(search))
+
+
+def _count(remedy: Remedy) -> int:
+    """Return how many teeth the pair of a remedy has."""
+    design: Any = remedy.design
+    return sum(design.pair.teeth)
 
 
 def hopeless(result: Any) -> bool:
@@ -65,8 +63,11 @@ def hopeless(result: Any) -> bool:
     return contact_bound(*result.pair.toothings) < 1.0
 
 
-def _more_teeth(search: Search, factor: float) -> None:
-    """Find the fewest teeth in the same ratio, `factor` times as many being likely."""
+def _more_teeth(search: Search, factor: float) -> float | None:
+    """Find the fewest teeth in the same ratio, `factor` times as many being likely.
+
+    Returned is how many times more they are, None where none do.
+    """
     given: tuple[int, int] = search.result.design.pair.teeth
     common = math.gcd(*given)
 
@@ -78,7 +79,7 @@ def _more_teeth(search: Search, factor: float) -> None:
     while high <= most and not search.over() and not search.cures(teeth(high)):
         low, high = high, min(2 * high, most) if high < most else most + 1
     if high > most or search.over():
-        return
+        return None
     middle = high - 1  # the guess is often right
     while high - low > 1 and not search.over():
         low, high = (low, middle) if search.cures(teeth(middle)) else (middle, high)
@@ -89,6 +90,7 @@ def _more_teeth(search: Search, factor: float) -> None:
         small = {"pair.module_mm": float(f"{module * common / high:.6g}")}
         if search.cures({**teeth(high), **small}):
             search.keep({**teeth(high), **small})
+    return high / common
 
 
 def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Way]:
@@ -125,28 +127,6 @@ def _usual_cutter(search: Search) -> Iterator[Way]:
             yield Way(near={"ring.cutter_teeth": round(cutter.teeth, 3)})
 
 
-def _lower(search: Search) -> Iterator[Way]:
-    """Yield the largest addendum with which tips pass each other."""
-    result: Any = search.result
-    limit = limit_of(KIND, "tips-collide", result.design.limits)
-
-    def passes(addendum: float) -> bool:
-        other = type(result)(result.design.with_({"rack.addendum": addendum}), result.tolerances)
-        try:
-            found = other.subject.tip_pass
-        except InfeasibleError:
-            return False
-        return found is None or found.margin >= limit
-
-    low, high = round(_LOW / _FINE), math.floor(result.pair.rack.addendum / _FINE)
-    if low >= high or not passes(_LOW):
-        return
-    while high - low > 1 and not search.over():
-        middle = (low + high) // 2
-        low, high = (middle, high) if passes(middle * _FINE) else (low, middle)
-    yield Way(near={"rack.addendum": low * _FINE})
-
-
 def _milder(search: Search) -> Iterator[Way]:
     """Yield ways to a law that swings less."""
     law, teeth = search.document["law"], search.result.design.pair.teeth
@@ -174,9 +154,7 @@ def _other_ratios(search: Search) -> Iterator[Way]:
 def _of_errors(search: Search) -> Iterator[Way]:
     """Yield the ways out of a pair's findings that are errors."""
     addendum = value_at(search.document, "rack.addendum")
-    if "tips-collide" in search.codes:
-        yield from _lower(search)
-    elif search.codes & _OF_TEETH and addendum is not None and addendum < 1.0:
+    if search.codes & _OF_TEETH and addendum is not None and addendum < 1.0:
         yield Way(far={"rack.addendum": 1.0})
     if search.codes & _OF_TEETH:
         if search.document["pair"]["x"]:

@@ -151,6 +151,11 @@ class GearPairResult(PairStages):
         return contacts_at(self, pairs, self._phases(phi1))
 
     @cached_property
+    def paths_of_contact(self) -> dict[Side, Columns]:
+        """The tables of `contact` of both sides, over `phases`."""
+        return {side: self.contact(self.phases, side) for side in get_args(Side)}
+
+    @cached_property
     def contact_ratio(self) -> float:
         """The smallest contact ratio of any pair of flanks, either way, mounted as designed."""
         return self.subject.contact_ratio

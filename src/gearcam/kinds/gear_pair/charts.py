@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.charts import Chart, Charts, Limit, Line, with_both_sides
+from gearcam.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 from gearcam.findings import limit_of
 from gearcam.gears.checks import KIND, undercut_curvatures
 from gearcam.gears.contact import COAST, DRIVE
 from gearcam.kinds.gear_pair.columns import centrode_columns
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.columns import Columns
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
@@ -28,36 +30,49 @@ _APART: Final = 1.5
 _SIDES: Final = {"drive": "flanks that drive", "coast": "flanks that hold back"}
 
 
-def _phases(result: GearPairResult) -> Array:
-    """Return driver angles, rad, of one turn or the whole travel, at both sides of all knots."""
-    lobes, period = result.law.lobes, result.law.period
-    phi1 = result.centrode_angles()
-    knots = np.asarray(result.law.knots, dtype=float)
-    if lobes.closed:
-        phi1 = phi1[phi1 <= lobes.n1 * period]
-        knots = np.concatenate([knots + lobe * period for lobe in range(lobes.n1)])
-    return with_both_sides(phi1, knots)
+_NOISE: Final = 1e-12
+"""Lag below which a pair of teeth touches in its place, rad or mm, and part of a turn by which a
+knot may lie before its end: rounding."""
+
+
+def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
+    """Return the knots of the law within the driver's turn, or its travel."""
+    end = float(result.phases[-1]) * (1.0 - _NOISE)
+    return knot_marks(np.degrees(result.knots), 0.0, math.degrees(end))
 
 
 def _of_centrodes(
     title: str, unit: str, names: dict[str, str], result: GearPairResult, *, bend: bool = False
 ) -> Chart:
-    table = centrode_columns(result, _phases(result))
+    table = centrode_columns(result, result.phases)
     with np.errstate(divide="ignore"):
         lines = tuple(
             Line(label=label, x=table["phi1_deg"], y=1.0 / table[name] if bend else table[name])
             for name, label in names.items()
             if name in table
         )
-    return Chart(title=title, x=DRIVER, y=unit, lines=lines)
+    return Chart(title=title, x=DRIVER, y=unit, lines=lines, marks=_knots(result))
+
+
+def _position(result: GearPairResult) -> Chart:
+    table = result.motion(result.phases)
+    name, label = ("travel_mm", "rack") if result.pair.on_rack else ("phi2_deg", "driven wheel")
+    unit = "travel, mm" if result.pair.on_rack else "driven angle phi2, deg"
+    return Chart(
+        title=f"Position of the {label}",
+        x=DRIVER,
+        y=unit,
+        lines=(Line(label=label, x=table["phi1_deg"], y=table[name]),),
+        marks=_knots(result),
+    )
 
 
 def _ratio(result: GearPairResult) -> Chart:
     if result.pair.on_rack:
-        table = result.motion(_phases(result))
+        table = result.motion(result.phases)
         line = Line(label="rack", x=table["phi1_deg"], y=table["velocity_mm_per_rad"])
         title, unit = "Velocity of the rack", "velocity, mm/rad"
-        return Chart(title=title, x=DRIVER, y=unit, lines=(line,))
+        return Chart(title=title, x=DRIVER, y=unit, lines=(line,), marks=_knots(result))
     return _of_centrodes("Transmission ratio", "ratio i21", {"ratio": "ratio i21"}, result)
 
 
@@ -79,8 +94,8 @@ def _curvature(result: GearPairResult) -> Chart:
 
 
 def _pressure_angle(result: GearPairResult) -> Chart:
-    phi1, pair = _phases(result), result.pair
-    r, slope = pair.rolling.radii(phi1 % result.law.period if pair.closed else phi1, 1)
+    phi1, pair = result.phases, result.pair
+    r, slope = pair.rolling.radii(phi1 % result.law.period if result.law.lobes.closed else phi1, 1)
     lean, alpha = np.arctan(slope / r), pair.rack.pressure_angle
     limit = limit_of(KIND, "pressure-angle", result.design.limits)
     return Chart(
@@ -92,6 +107,7 @@ def _pressure_angle(result: GearPairResult) -> Chart:
             for way, sign in (("forward", -1.0), ("backward", 1.0))
         ),
         limits=(Limit(label="limit", value=math.degrees(limit)),),
+        marks=_knots(result),
     )
 
 
@@ -112,27 +128,72 @@ def _contact_ratio(result: GearPairResult) -> Chart:
     )
 
 
+def _by_pair(result: GearPairResult, table: Columns, y: Array, label: str) -> Line:
+    """Return what is told of points of contact as a line for each pair of teeth."""
+    apart = _APART * math.degrees(np.diff(result.phases).max())
+    x, tooth = table["phi1_deg"], table["tooth1"]
+    order = np.lexsort([x, tooth])
+    x, y, tooth = x[order], y[order], tooth[order]
+    # one that is in contact at 0 deg is met at both ends
+    cuts = np.flatnonzero((np.diff(tooth) != 0) | (np.diff(x) > apart)) + 1
+    return Line(label=label, x=np.insert(x, cuts, np.nan), y=np.insert(y, cuts, np.nan))
+
+
 def _sliding(result: GearPairResult) -> Chart:
-    phi1 = _phases(result)
-    apart = _APART * math.degrees(np.diff(phi1).max())
-    lines = []
-    for side, label in _SIDES.items():
-        found = result.contact(phi1, side)  # pyright: ignore[reportArgumentType]
-        x, y, tooth = (found[name] for name in ("phi1_deg", "sliding_mm_per_rad", "tooth1"))
-        order = np.lexsort([x, tooth])
-        x, y = x[order], y[order]
-        # a line for each pair of teeth; one that is in contact at 0 deg is met at both ends
-        cuts = np.flatnonzero((np.diff(tooth[order]) != 0) | (np.diff(x) > apart)) + 1
-        lines.append(Line(label=label, x=np.insert(x, cuts, np.nan), y=np.insert(y, cuts, np.nan)))
+    tables = result.paths_of_contact.items()
     return Chart(
         title="Sliding on the driver's flank, tip outward, as designed",
         x=DRIVER,
         y="sliding over the driver's speed, mm/rad",
+        lines=tuple(
+            _by_pair(result, table, table["sliding_mm_per_rad"], _SIDES[side])
+            for side, table in tables
+        ),
+    )
+
+
+def _contact_patch(result: GearPairResult) -> Chart:
+    """Return the areas of contact patches in closed form: 003, figs. 2.34 to 2.38."""
+    ahead = result.design.meshing.overclosure
+    table = result.paths_of_contact["drive" if ahead > 0.0 else "coast"]
+    lever = np.abs(table["x_mm"] * table["force_y"] - table["y_mm"] * table["force_x"])
+    bend, depth = table["relative_curvature_per_mm"], abs(ahead) * lever
+    with np.errstate(divide="ignore", invalid="ignore"):
+        area = np.where(bend > 0.0, (4.0 / 3.0) * depth * np.sqrt(2.0 * depth / bend), np.nan)
+    x, phase = np.unique(table["phi1_deg"], return_inverse=True)
+    # their sum; of both sides of a knot, which may be one number in degrees, the mean
+    total = np.bincount(phase, area * table["pairs"]) / np.bincount(phase)
+    together = Line(label="all pairs of teeth", x=x, y=total)
+    return Chart(
+        title=f"Contact patches, driver turned ahead by {shown(math.degrees(ahead))} deg",
+        x=DRIVER,
+        y="area of overlap, mm^2",
+        lines=(_by_pair(result, table, area, "each pair of teeth"), together),
+    )
+
+
+def _transmission_error(result: GearPairResult) -> Chart:
+    x, lines = np.unique(np.degrees(result.phases)), []
+    unit = result.pair.rolling.guide.unit
+    for side, table in result.paths_of_contact.items():
+        lag, phase = table[f"lag_{unit}"], np.searchsorted(x, table["phi1_deg"])
+        # the leading tooth pair is the one that the driven element is pushed farthest by
+        sign = 1.0 if side == "drive" else -1.0
+        least = np.full(len(x), np.inf)
+        np.minimum.at(least, phase, sign * np.where(np.abs(lag) > _NOISE, lag, 0.0))
+        y = sign * np.where(np.isfinite(least), least, np.nan)
+        lines.append(Line(label=_SIDES[side], x=x, y=y - np.nanmean(y)))
+    return Chart(
+        title="Transmission error as designed: lag less its mean",
+        x=DRIVER,
+        y=f"{'rack' if unit == 'mm' else 'driven wheel'} behind, {unit}",
         lines=tuple(lines),
+        marks=_knots(result),
     )
 
 
 CHARTS: Final[Charts] = {
+    "position": _position,
     "ratio": _ratio,
     "radii": partial(
         _of_centrodes,
@@ -144,5 +205,7 @@ CHARTS: Final[Charts] = {
     "pressure_angle": _pressure_angle,
     "contact_ratio": _contact_ratio,
     "sliding": _sliding,
+    "contact_patch": _contact_patch,
+    "transmission_error": _transmission_error,
 }
 """What makes each chart."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from gearcam.designs.listing import Listed, listed
 from gearcam.designs.schema import chosen, table_schema, told
+from gearcam.designs.table import Table
 from gearcam.designs.template import beside, entry_lines, key_line, law_comment
 from gearcam.kinds.gear_pair.design import KIND, law_table
 from gearcam.laws.ratio.base import LAWS
@@ -23,6 +24,11 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
         for name, entry in LAWS.items()
     }
     return {"type": "object", "description": f"the ratio of the pair. {words}", **main}, laws
+
+
+def known(raw: Mapping[str, Any]) -> Table:
+    """Return the table of a law as a file holds it."""
+    return law_table(raw["type"])
 
 
 def lines() -> Iterator[str]:

@@ -21,6 +21,7 @@ from gearcam.export.shared import (
 )
 from gearcam.kinds.gear_pair.columns import POINTS
 from gearcam.numerals import shown
+from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:

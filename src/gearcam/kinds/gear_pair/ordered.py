@@ -88,7 +88,13 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
     inner = toothed if gear.hollow else []
     work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2)
     wall = limit_of(PARTS_KIND, "thin-wall", design.limits)
-    demand_bolts(blank, solid_of(contours, inner, work), work, wall)
+
+    def larger(radius: float) -> dict[str, object]:
+        if ring.outer_diameter is not None:
+            return {"ring.outer_diameter_mm": 2.0 * radius}
+        return {"ring.rim_mm": radius - roots}
+
+    demand_bolts(blank, solid_of(contours, inner, work), work, wall, larger)
     return make_part(
         gear.name,
         contours,

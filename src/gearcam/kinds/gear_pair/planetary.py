@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from gearcam.designs.faults import Fault, show
+from gearcam.designs.faults import Fault
 from gearcam.numerals import shown
 
 _RULE: Final = "two tooth counts, driver first, for each pair of wheels by itself"
@@ -53,27 +53,25 @@ def planetary_fault(teeth: Any) -> Fault:
         With the numbers, where the counts of sun, planet and ring are told.
     """
     what = "a planet between sun and ring on a carrier is not made"
-    why = (
-        "one planet curve meshes with both at a constant distance only where "
-        "n_ring > n_sun + 2*n_planet, or on circles"
-    )
     counts = teeth if isinstance(teeth, list) and len(teeth) == 3 else []
     if not counts or any(type(count) is not int or count < 1 for count in counts):
-        _, e = planet_curve(4, 4, 13)
-        least = f"already with 4, 4 and 13 lobes it swings by {shown(e)} of its mean radius"
-        return Fault(("pair",), f"{what}: {why}; {least}", allowed=_RULE)
+        why = "wheels that are not round need a ring of more than sun + 2*planet teeth"
+        return Fault(("pair",), f"{what}: {why}", allowed=_RULE)
     sun, planet, ring = counts
     least = sun + 2 * planet
     if ring < least:
-        state = f"no curve closes with {show(counts)}"
+        state = f"a ring needs at least {least} teeth here"
+    elif ring == least:
+        state = "only round wheels mesh with these teeth"
     else:
         x, e = planet_curve(sun, planet, ring)
         lobes = planet // math.gcd(*counts)
+        wave = f"cos({lobes}*phi)" if lobes > 1 else "cos(phi)"
         state = (
-            f"with {show(counts)} it is A*x*(1 + e*cos({lobes}*phi)) with x = {shown(x)} and "
-            f"e = {shown(e)}"
+            f"at its angle phi its radius would be {shown(x)}*A*(1 + {shown(e)}*{wave}), A being "
+            "the centre distance"
         )
         if e >= 1.0:
             state += ", which is no curve about a shaft"
-    hint = f"with {least} teeth the ring and all wheels are round; more ask for a larger e"
-    return Fault(("pair", "teeth"), f"{what}: {why}; {state}", teeth, _RULE, hint)
+    hint = f"with {least} teeth the ring and all wheels are round"
+    return Fault(("pair", "teeth"), f"{what}: {state}", teeth, _RULE, hint)

@@ -22,6 +22,7 @@ from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 from gearcam.result import Result
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
 """Checks that can find something else in each step of stepped wheels."""
+
+_WHOLE = 1e-9
+"""Part of a lobe by which an end may lie beyond it: rounding."""
 
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
@@ -232,3 +236,18 @@ class PairStages(Result):
             turns = max(1, round(whole_turns / lobes.n1))
             end = whole_turns * lobes.period
         return np.linspace(0.0, end, CENTRODE_POINTS * turns + 1 if count is None else count)
+
+    @cached_property
+    def phases(self) -> Array:
+        """Driver angles, rad, of a turn or the whole travel, at both sides of all knots."""
+        phi1 = self.centrode_angles()
+        if self.pair.closed:
+            phi1 = phi1[phi1 <= self.law.lobes.n1 * self.law.period]
+        return with_both_sides(phi1, self.knots)
+
+    @property
+    def knots(self) -> Array:
+        """Knots of the law, rad, as often as they come until both wheels close, or to the end."""
+        period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
+        lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
+        return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])

@@ -171,12 +171,15 @@ def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
     if given is None:
         return lobes.n1
     if given[0] * lobes.n2 != given[1] * lobes.n1:
+        counts = [[lobes.n1, lobes.n2]]
+        if given[1] * lobes.n2 == given[0] * lobes.n1 and [*given[::-1]] not in counts:
+            counts.insert(0, [*given[::-1]])
         raise InfeasibleError(
             "the lobes are not in the ratio of the tooth counts",
             where="law.lobes",
             value=given[0] / given[1],
             limit=lobes.n1 / lobes.n2,
             nearest=f"the tooth counts ask for [{lobes.n1}, {lobes.n2}] or a multiple",
-            ways=(Way(near={"law.lobes": [lobes.n1, lobes.n2]}),),
+            ways=[Way(near={"law.lobes": both}) for both in counts],
         )
     return given[0]

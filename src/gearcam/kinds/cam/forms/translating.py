@@ -77,9 +77,6 @@ class Translating(Form):
             rule = 'with motion = "oscillating"'
             yield Fault(("follower", "pivot_height_mm"), message, follower.pivot_height, rule)
         yield from _groove_faults(follower, cam, blank, output)
-        if output is not None and "curvature" in output.files:
-            message = "three-point curvature is studied on closed curves"
-            yield Fault(("output", "files"), message, "curvature", "other files")
 
     def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
         """Return the lift over the way, with its run before and after."""
@@ -102,8 +99,8 @@ class Translating(Form):
 
     def parts(self, result: CamResult) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
+        from gearcam.parts.apart import demand_apart
         from gearcam.parts.body import Opening, Part, Recess
-        from gearcam.parts.openings import demand_apart
 
         design, cam = result.design, _made(result)
         thickness, depth = design.cam.thickness, design.cam.groove_depth
@@ -122,7 +119,10 @@ class Translating(Form):
                     edge=cam.groove, low=low, high=high, front=front, width=cam.width, place=(x, y)
                 )
                 recesses = [recess]
-        demand_apart(taken, design.blank, cam.edge.polygon, workpiece(STEM, thickness))
+        row = _blank(design)
+        sizes = {"bolt_spacing_mm": row.bolt_spacing, "bolt_height_mm": row.bolt_height}
+        places = {key: size for key, size in sizes.items() if size is not None}
+        demand_apart(taken, row, cam.edge.polygon, workpiece(STEM, thickness), places)
         return (
             Part(
                 name=STEM,

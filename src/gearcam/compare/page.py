@@ -1,0 +1,150 @@
+"""The page of variants: their curves in one chart each, their outlines laid over each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam import drawings
+from gearcam.charts import Chart, Limit, Line
+from gearcam.compare.table import rows
+from gearcam.compare.variants import Variant
+from gearcam.report.data import chart_data, scene_data
+from gearcam.report.page import BLOCKS, rendered, verdict
+from gearcam.scenes import PLACES, MovingBody, Scene
+
+PAGE: Final = "compare.html"
+"""Name of the file."""
+
+_INKS: Final = 6
+"""Colours of lines that a page has."""
+
+
+def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
+    """Return what a page shows of variants (see `gearcam.report.page`).
+
+    Parameters
+    ----------
+    variants : sequence of Variant
+        At least one that can be made.
+    title : str
+        What is compared.
+    """
+    made = [one for one in variants if one.scene is not None]
+    known = [(k, one.scene) for k, one in enumerate(made) if one.scene is not None]
+    drawn = [(k, scene) for k, scene in known if scene.driver == known[0][1].driver]
+    scenes = _together([scene for _, scene in drawn])
+    told = {
+        "title": title,
+        "variants": variants,
+        "made": made,
+        "drawn": [made[k].label for k, _ in drawn],
+        "verdicts": {one.label: verdict(one.result.findings) for one in made},
+        "first": rows(variants),
+        "every": rows(variants, every=True),
+    }
+    blocks = dict.fromkeys(BLOCKS, "")
+    blocks |= {name: rendered(f"variants_{name}.html", told) for name in ("verdict", "facts")}
+    return {
+        "title": title,
+        "kind": made[0].result.design.kind,
+        "blocks": blocks,
+        "scene": _laid_over(scenes, [k for k, _ in drawn]),
+        "charts": [
+            chart_data(name, joined(name, made), scenes[0].driver) for name in made[0].result.charts
+        ],
+    }
+
+
+def joined(name: str, variants: Sequence[Variant]) -> Chart:
+    """Return one chart with the lines of all variants.
+
+    Parameters
+    ----------
+    name : str
+        Of a chart of the first.
+    variants : sequence of Variant
+        That can be made; those whose chart of that name has other axes are left out.
+
+    Returns
+    -------
+    Chart
+    """
+    first = variants[0].result.chart(name)
+    charts = [(one.label, one.result.chart(name)) for one in variants]
+    charts = [(label, one) for label, one in charts if (one.x, one.y) == (first.x, first.y)]
+    lines, limits = [], []
+    for label, chart in charts:
+        single = len(chart.lines) == 1
+        lines += [
+            _line(line, label if single else f"{label}: {line.label}") for line in chart.lines
+        ]
+        limits += [(label, limit) for limit in chart.limits]
+    return Chart(title=first.title, x=first.x, y=first.y, lines=(*lines,), limits=_limits(limits))
+
+
+def _line(line: Line, label: str) -> Line:
+    return replace(line, label=label)
+
+
+def _limits(limits: Sequence[tuple[str, Limit]]) -> tuple[Limit, ...]:
+    """Return each limit once, with its variant where another has another value."""
+    values: dict[str, set[float]] = {}
+    for _, limit in limits:
+        values.setdefault(limit.label, set()).add(limit.value)
+    own = (
+        limit if len(values[limit.label]) == 1 else replace(limit, label=f"{label}: {limit.label}")
+        for label, limit in limits
+    )
+    return tuple(dict.fromkeys(own))
+
+
+def _together(scenes: Sequence[Scene]) -> list[Scene]:
+    """Return scenes of one driver over one cycle: the longest."""
+    if all(np.array_equal(one.places, scenes[0].places) for one in scenes):
+        return list(scenes)
+    start, end = min(one.places[0] for one in scenes), max(one.places[-1] for one in scenes)
+    places = np.linspace(start, end, PLACES + 1)
+    return [_over(one, places) for one in scenes]
+
+
+def _over(scene: Scene, places: np.ndarray) -> Scene:
+    """Return a scene over other places: what repeats goes on, what does not stays at its end."""
+    first, last = scene.places[0], scene.places[-1]
+    cycles = np.floor((places - first) / (last - first)) if scene.closed else 0.0 * places
+    within = places - cycles * (last - first)  # interp stays at the end beyond it
+
+    def moved(body: MovingBody) -> MovingBody:
+        turn = np.interp(within, scene.places, body.turn) + cycles * (body.turn[-1] - body.turn[0])
+        return replace(body, turn=turn, shift=np.interp(within, scene.places, body.shift))
+
+    bodies = tuple(moved(body) for body in scene.bodies)
+    return replace(scene, places=places, closed=False, bodies=bodies, contacts={}, pitch=None)
+
+
+def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any]:
+    """Return a scene with the bodies of all: the first as it is, of the others the outlines.
+
+    Their `numbers` among the variants choose the colours.
+    """
+    first = scenes[0]
+    others = [
+        (k, replace(body, features=kept))
+        for k, scene in zip(numbers[1:], scenes[1:], strict=True)
+        for body in scene.bodies
+        if (kept := tuple(one for one in body.features if one.kind not in drawings.DASHED))
+    ]
+    bodies = (*first.bodies, *(body for _, body in others))
+    closed = all(one.closed for one in scenes)
+    data = scene_data(replace(first, bodies=bodies, closed=closed))
+    for (k, _), body in zip(others, data["bodies"][len(first.bodies) :], strict=True):
+        chains = [*body["metal"], *body["floor"]]
+        body["lines"] += [
+            {"layer": "OUTLINE", "points": points, "closed": True, "dashed": False}
+            for points in chains
+        ]
+        body |= {"metal": [], "floor": [], "teeth": None, "ink": f"line-{k % _INKS + 1}"}
+    return data

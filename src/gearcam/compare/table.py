@@ -1,0 +1,120 @@
+"""The table of variants: a row for each fact, a column for each variant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from gearcam.compare.variants import Variant
+from gearcam.console import wrapped
+from gearcam.display import Brief
+from gearcam.facts import NamedFact, lined_up
+
+_SEVERITIES = ("error", "warning", "note")
+
+_CELL = 40
+"""Letters of a value in a terminal's table; lists may have many more."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row(Brief):
+    """A fact of every variant.
+
+    Parameters
+    ----------
+    name, meaning : str
+        As facts have them.
+    cells : tuple of str
+        Values with their units, one for each variant that can be made; empty where one has none.
+    limit : str
+        What they are held against, where that is the same for all.
+    """
+
+    name: str
+    meaning: str
+    cells: tuple[str, ...]
+    limit: str = ""
+
+    @property
+    def differs(self) -> bool:
+        """Whether people read different values."""
+        return len({*self.cells}) > 1
+
+
+def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]:
+    """Return the table.
+
+    Parameters
+    ----------
+    variants : sequence of Variant
+        Those that can be made are told of.
+    every : bool
+        All facts, not only those that people are always told.
+
+    Returns
+    -------
+    tuple of Row
+        Facts in their order, then the codes of findings by severity.
+    """
+    made = [one.result for one in variants if one.refusal is None]
+    if not made:
+        return ()
+    told = [
+        {fact.name: fact for fact in (one.facts.quantities() if every else one.facts.told())}
+        for one in made
+    ]
+    names = dict.fromkeys(name for facts in told for name in facts)
+    found = []
+    for severity in _SEVERITIES:
+        codes = [
+            dict.fromkeys(f.code for f in one.findings if f.severity == severity) for one in made
+        ]
+        cells = tuple(", ".join(some) or "none" for some in codes)
+        found.append(Row(name=f"findings.{severity}", meaning=f"{severity}s", cells=cells))
+    made_of = (_row([facts.get(name) for facts in told]) for name in names)
+    return (*(row for row in made_of if any(row.cells)), *found)
+
+
+def _row(facts: Sequence[NamedFact | None]) -> Row:
+    known = [one for one in facts if one is not None]
+    limits = {one.limit for one in known}
+    common = limits.pop() if len(limits) == 1 else ""
+    return Row(
+        name=known[0].name,
+        meaning=known[0].meaning,
+        cells=tuple("" if one is None else _cell(one, common) for one in facts),
+        limit=common,
+    )
+
+
+def _cell(fact: NamedFact, common: str) -> str:
+    return fact.text if fact.limit == common else f"{fact.text} ({fact.limit})"
+
+
+def lines(variants: Sequence[Variant], *, every: bool = False) -> Iterator[str]:
+    """Yield what a terminal shows of variants.
+
+    Parameters
+    ----------
+    variants : sequence of Variant
+        At least one that can be made.
+    every : bool
+        All facts by name, those that differ marked, not only those that differ.
+    """
+    labels = [one.label for one in variants if one.refusal is None]
+    all_rows = rows(variants, every=every)
+    if not labels:
+        return
+    table = [("", "", *labels, "")]
+    for row in all_rows:
+        if row.differs or every:
+            limit = f"({row.limit})" if row.limit else ""
+            name = row.name if every else row.meaning
+            cells = (
+                cell if len(cell) <= _CELL else f"{cell[: _CELL - 3]}..." for cell in row.cells
+            )
+            table.append(("*" if row.differs else "", name, *cells, limit))
+    yield from lined_up(table)
+    same = [f"{row.meaning} {row.cells[0]}" for row in all_rows if not row.differs]
+    if same and not every:
+        yield wrapped(f"the same in all: {'; '.join(same)}", first="", rest="  ")

@@ -1,0 +1,178 @@
+"""Variants: designs that are held against each other, made of files and of settings."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from gearcam import build
+from gearcam.designs import KINDS, Design, load
+from gearcam.designs.design import path_of
+from gearcam.designs.faults import show
+from gearcam.display import Brief
+from gearcam.errors import DesignError, GearcamError, Problem
+from gearcam.result import Result
+from gearcam.scenes import Scene
+
+MOST: Final = 12
+"""Variants that people can still see side by side."""
+
+_SET: Final = "--set"
+_FORM: Final = "KEY=VALUE,VALUE,... such as law.eccentricity=0.1,0.2 or pair.teeth=[20,20],[24,24]"
+
+Settings = Mapping[str, Sequence[Any]]
+"""Values by dotted key of a design file."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant(Brief):
+    """A design with what came of it.
+
+    Parameters
+    ----------
+    label : str
+        What tells it from the others.
+    result : Result
+        Its facts and findings are computed, if it can be made.
+    scene : Scene, optional
+        None where it cannot be made.
+    refusal : GearcamError, optional
+        Why it cannot.
+    """
+
+    label: str
+    result: Result
+    scene: Scene | None = None
+    refusal: GearcamError | None = None
+
+
+def settings_of(texts: Sequence[str]) -> dict[str, list[Any]]:
+    """Return the settings that are typed as `texts`; `DesignError` for what cannot be read."""
+    made: dict[str, list[Any]] = {}
+    for text in texts:
+        key, equals, words = (part.strip() for part in text.partition("="))
+        values = _values(words)
+        if not (key and equals):
+            raise _wrong(f"{show(text)} is no key with its values")
+        if key in made:
+            raise _wrong(f"{key} is set twice", "all values of a key in one list")
+        if not values:
+            raise _wrong(f"{key} has no value")
+        twice = [one for k, one in enumerate(values) if one in values[:k]]
+        if twice:
+            raise _wrong(f"{key}: {show(twice[0])} is listed twice", "each value once")
+        made[key] = values
+    return made
+
+
+def _values(words: str) -> list[Any]:
+    """Return values as a design file would hold them; words may stand without quotes."""
+    try:
+        return tomllib.loads(f"values = [{words}]")["values"]
+    except ValueError:
+        return [_value(word.strip()) for word in words.split(",")]
+
+
+def _value(word: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {word}")["value"]
+    except ValueError:
+        return word
+
+
+def _wrong(message: str, allowed: str = _FORM) -> DesignError:
+    return DesignError([Problem(message, key=_SET, allowed=allowed)])
+
+
+def variants_of(files: Sequence[str], settings: Settings) -> tuple[Variant, ...]:
+    """Return the variants of some files.
+
+    Parameters
+    ----------
+    files : sequence of str
+        Design files of one kind.
+    settings : mapping
+        Values by key; each file is made with each of them, with several keys with each of their
+        combinations.
+
+    Returns
+    -------
+    tuple of Variant
+        From two to `MOST`.
+
+    Raises
+    ------
+    DesignError
+        If there are not so many, for everything that is wrong in a file or with a setting, and for
+        designs of different kinds.
+    """
+    count = len(files) * math.prod(map(len, settings.values()))
+    if count < 2:
+        allowed = f"two design files or more, or {_SET} with two values or more"
+        raise DesignError([Problem("there is nothing to compare with", allowed=allowed)])
+    if count > MOST:
+        message, allowed = f"{count} variants cannot be seen side by side", f"at most {MOST}"
+        raise DesignError([Problem(message, allowed=allowed)])
+    designs = [load(file) for file in files]
+    _demand_one_kind(designs)
+    names = [design.name for design in designs]
+    names = names if len({*names}) == len(names) else list(files)
+    if len({*names}) < len(names):
+        raise DesignError([Problem("a file is given twice", allowed="each file once")])
+    heads = names if len(names) > 1 else [""]
+    changed = [
+        (" ".join(filter(None, (head, words))), design, changes)
+        for head, design in zip(heads, designs, strict=True)
+        for words, changes in _combinations(settings)
+    ]
+    made = _changed([(design, changes) for _, design, changes in changed])
+    return tuple(_built(label, design) for (label, *_), design in zip(changed, made, strict=True))
+
+
+def _demand_one_kind(designs: Sequence[Design]) -> None:
+    first = designs[0].kind
+    message = f"designs of different kinds have nothing in common: the first is a {first}"
+    problems = [
+        Problem(message, one.source, key="kind", value=one.kind, allowed=f'"{first}"')
+        for one in designs
+        if one.kind != first
+    ]
+    if problems:
+        raise DesignError(problems)
+
+
+def _combinations(settings: Settings) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield each combination of values, with its words."""
+    last = [str(path_of(key)[-1]) for key in settings]
+    short = len({*last}) == len(last) and not any(word.isdigit() for word in last)
+    names = last if short else list(settings)
+    for values in itertools.product(*settings.values()):
+        words = [f"{name}={show(value)}" for name, value in zip(names, values, strict=True)]
+        yield ", ".join(words), dict(zip(settings, values, strict=True))
+
+
+def _changed(wanted: Sequence[tuple[Design, Mapping[str, Any]]]) -> list[Design]:
+    """Return designs with their changes; all that is wrong is told at once, and once."""
+    made, problems = [], {}
+    for design, changes in wanted:
+        try:
+            made.append(design.with_(changes) if changes else design)
+        except DesignError as error:
+            problems |= {str(one): one for one in error.problems}
+    if problems:
+        raise DesignError(problems.values())
+    return made
+
+
+def _built(label: str, design: Design) -> Variant:
+    result = build(design)
+    try:
+        _ = result.facts, result.findings
+        scene = KINDS[design.kind].room("scene").scene(result)
+    except GearcamError as error:
+        return Variant(label=label, result=result, refusal=error)
+    return Variant(label=label, result=result, scene=scene)

@@ -1,0 +1,113 @@
+"""Whether openings keep apart from each other, from the hub's edge and from the outline.
+
+Depends on parts' shapes; shapely inside the functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError, Way
+from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Opening
+from gearcam.parts.shapes import Circle
+from gearcam.parts.workpiece import FINE, Workpiece
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+_SMALLER: Final = (
+    ("bolt", "bolt_diameter_mm", 0.1),
+    ("hub", "hub_diameter_mm", 0.1),
+    ("bore", "bore_diameter_mm", 0.1),
+)
+"""Words of a refusal, and what may be made smaller then, down to mm."""
+
+_FARTHER: Final = 2.0
+_NEARER: Final = 0.05
+"""Times what tells where bolts are: as far as they are moved."""
+
+
+def demand_apart(
+    found: Sequence[Opening],
+    blank: WheelBlank,
+    solid: Polygon,
+    work: Workpiece,
+    places: Mapping[str, float] | None = None,
+) -> None:
+    """Refuse openings that meet each other, the hub's edge or the outline.
+
+    Parameters
+    ----------
+    found : sequence of Opening
+        The openings.
+    blank : WheelBlank
+        With the hub, and how much wider bores are than given.
+    solid : shapely.Polygon
+        What they go through.
+    work : Workpiece
+        What is ordered, for messages.
+    places : mapping of str to float, optional
+        Keys of ``[blank]`` that tell where bolts are, with their values, mm; of a circle of bolts
+        where left out.
+
+    Raises
+    ------
+    InfeasibleError
+        If they do.
+    """
+    given = {"bolt_circle_mm": blank.bolt_circle} if places is None else places
+    from shapely import Polygon
+
+    edges = [opening.shape.points(FINE * work.rim) for opening in found]
+    regions = [Polygon(edge) for edge in edges]
+    for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
+        if not solid.contains(region):
+            raise _no_room(opening, solid, work.within, work, blank.widening, given)
+        away = np.hypot(*edge.T)
+        if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
+            raise _no_room(opening, solid, "the edge of the hub", work, blank.widening, given)
+        for other, second in zip(found[:number], regions[:number], strict=True):
+            if region.intersects(second):
+                raise _no_room(opening, solid, f"the {other.name}", work, blank.widening, given)
+
+
+def _no_room(
+    opening: Opening,
+    solid: Polygon,
+    what: str,
+    work: Workpiece,
+    widening: float,
+    places: Mapping[str, float],
+) -> InfeasibleError:
+    """Return the refusal of what meets something; diameters as the design gives them."""
+    from shapely import Point
+
+    shape, value, limit = opening.shape, None, None
+    nearest = "each needs a place of its own"
+    if isinstance(shape, Circle) and what == work.within:
+        center = Point(*shape.center)
+        inside = solid.contains(center)
+        value = shape.diameter - widening
+        limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
+        nearest = f"its middle does not lie within {what}"
+        if limit:
+            nearest = "the limit is the room around its middle"
+    told = f"{opening.name} {what}"
+    ways = [Way(far={work.key(key): small}) for word, key, small in _SMALLER if word in told]
+    if "bolt" in told:
+        ways += [
+            Way(far={work.key(key): times * place})
+            for key, place in places.items()
+            for times in (_NEARER, _FARTHER)
+        ]
+    return work.refusal(
+        f"the {opening.name} meets {what}",
+        value=value,
+        limit=limit,
+        nearest=nearest,
+        ways=ways,
+    )

@@ -1,0 +1,280 @@
+"""The session: what the page shows of a file, and what it is asked to try and to save."""
+
+from __future__ import annotations
+
+import codecs
+import hashlib
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, Final
+
+from gearcam.designs.reader import content_of, decoded, loads
+from gearcam.errors import DesignError, WriteError
+from gearcam.export.write import rewrite
+from gearcam.view import work
+from gearcam.view.numbers import numbers, replaced
+
+_LARGEST: Final = 1e15
+"""Beyond it no number of a design lies, and whole numbers are not exact."""
+
+
+class RequestError(ValueError):
+    """The page asked for what cannot be; the message says why."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class State:
+    """What is known of a file.
+
+    Parameters
+    ----------
+    number : int
+        Of the state; a later one has a larger number.
+    document : dict or None
+        The last that could be made; None before the first.
+    news : dict or None
+        What has come last: a whole document, or a draft.
+    sliders : list of dict
+        Numbers that a slider changes (see `gearcam.view.numbers.sliders`).
+    made : str
+        Hash of the content that document and sliders are made from.
+    text : str
+        That content.
+    error : str
+        What is wrong with the file since; empty where nothing is.
+    """
+
+    number: int = 0
+    document: dict[str, Any] | None = None
+    news: dict[str, Any] | None = None
+    sliders: list[dict[str, Any]] = field(default_factory=list)
+    made: str = ""
+    text: str = ""
+    error: str = ""
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What a page is told of it."""
+        return {
+            "number": self.number,
+            "document": self.news,
+            "keys": self.sliders,
+            "made": self.made,
+            "error": self.error,
+        }
+
+
+class Session:
+    """A design file that pages show.
+
+    Parameters
+    ----------
+    file : str
+        Its name.
+    workers : Executor
+        Where designs are built.
+    count : int
+        How many they are.
+    notice : callable
+        Called with each new state.
+    """
+
+    def __init__(
+        self, file: str, workers: Executor, count: int, notice: Callable[[State], None]
+    ) -> None:
+        self.file = file
+        self.state = State()
+        self.ended = False
+        self._workers = workers
+        self._notice = notice
+        self._news = threading.Condition()
+        self._newest = _Newest(count)
+        self._turn = self._whole = 0
+
+    def refresh(self, content: bytes | None) -> None:
+        """Have the file built anew: a draft first, where there is a page that shows one.
+
+        Parameters
+        ----------
+        content : bytes or None
+            What it holds; None where it cannot be read.
+        """
+        with self._news:
+            self._turn += 1
+            turn, first = self._turn, self.state.document is None
+        if not first:
+            draft = self._workers.submit(work.show_draft, content, self.file)
+            draft.add_done_callback(partial(self._take_draft, turn))
+        whole = self._workers.submit(work.show, content, self.file)
+        whole.add_done_callback(partial(self._take, turn, content))
+
+    def _take_draft(self, turn: int, done: Future[work.Reply]) -> None:
+        reply = _result(done, self.file)
+        with self._news:
+            before = self.state.document
+            if turn != self._turn or self._whole == turn or reply["error"] or before is None:
+                return
+            draft = reply["document"]
+            blocks = {**before["blocks"], **draft["blocks"]}
+            self._set(document={**before, **draft, "blocks": blocks}, news=draft, error="")
+
+    def _take(self, turn: int, content: bytes | None, done: Future[work.Reply]) -> None:
+        reply = _result(done, self.file)
+        with self._news:
+            if turn != self._turn:
+                return
+            self._whole = turn
+            if not reply["error"] and content is not None:
+                self._set(
+                    document=reply["document"],
+                    news=reply["document"],
+                    sliders=reply["sliders"],
+                    made=_hash(content),
+                    text=decoded(content, self.file),
+                    error="",
+                )
+                return
+            self._set(error=reply["error"])
+        if reply.get("refused") and content is not None:
+            found = self._workers.submit(work.seek, content, self.file, reply["error"])
+            found.add_done_callback(partial(self._take_remedies, turn))
+
+    def _take_remedies(self, turn: int, done: Future[work.Reply]) -> None:
+        reply = _result(done, self.file)
+        with self._news:
+            if turn == self._turn:
+                self._set(error=reply["error"])
+
+    def _set(self, **changes: Any) -> None:
+        self.state = replace(self.state, number=self.state.number + 1, **changes)
+        self._news.notify_all()
+        self._notice(self.state)
+
+    def wait(self, number: int, seconds: float) -> State:
+        """Return the state as soon as it is later than a `number`, or after some `seconds`."""
+        with self._news:
+            self._news.wait_for(lambda: self.ended or self.state.number > number, seconds)
+            return self.state
+
+    def end(self) -> None:
+        """Let those go who wait."""
+        with self._news:
+            self.ended = True
+            self._news.notify_all()
+
+    def follow(self, asked: Mapping[str, Any]) -> bytes | None:
+        """Return a reply to other numbers that the page asks to see (see `work.follow`).
+
+        Parameters
+        ----------
+        asked : mapping
+            ``changes``, ``last``, ``exact``.
+
+        Returns
+        -------
+        bytes or None
+            None where the page has asked for others since.
+
+        Raises
+        ------
+        RequestError
+            If it asks for what are no numbers of the file.
+        """
+        state, changes, last = self.state, asked.get("changes"), asked.get("last")
+        values = _values(changes, state)
+        if not isinstance(last, str) or last not in values:
+            raise RequestError("last: no key of the changes")
+        exact = asked.get("exact") is True
+
+        def reply() -> bytes:
+            one = self._workers.submit(work.follow, state.text, self.file, values, last, exact)
+            return one.result()
+
+        return self._newest.run(reply)
+
+    def save(self, asked: Mapping[str, Any]) -> None:
+        """Write other numbers into the file; its comments and their order stay.
+
+        Parameters
+        ----------
+        asked : mapping
+            ``changes``, and ``made``: the hash of the content that they were chosen on.
+
+        Raises
+        ------
+        RequestError
+            If the file has changed since, would not read as a design, or cannot be written.
+        """
+        values, made = _values(asked.get("changes"), self.state), asked.get("made")
+        try:
+            content = content_of(self.file)
+            if _hash(content) != made:
+                raise RequestError(f"{self.file} has changed since: nothing was written")
+            text = replaced(decoded(content, self.file), values)
+            loads(text, file=self.file)
+            mark = codecs.BOM_UTF8 if content.startswith(codecs.BOM_UTF8) else b""
+            rewrite(self.file, mark + text.encode())
+        except (DesignError, WriteError) as error:
+            raise RequestError(f"nothing was written: {error}") from error
+
+
+class _Newest:
+    """Lets the newest of those who ask go next, so many at a time; who waited before is sent off.
+
+    Parameters
+    ----------
+    places : int
+        At a time.
+    """
+
+    def __init__(self, places: int) -> None:
+        self._free = threading.Condition()
+        self._places = places
+        self._asked = 0
+
+    def run(self, work: Callable[[], bytes]) -> bytes | None:
+        """Return what some `work` gives, or None where a newer one came before it could begin."""
+        with self._free:
+            self._asked += 1
+            number = self._asked
+            self._free.notify_all()
+            self._free.wait_for(lambda: self._places > 0 or number < self._asked)
+            if number < self._asked:
+                return None
+            self._places -= 1
+        try:
+            return work()
+        finally:
+            with self._free:
+                self._places += 1
+                self._free.notify_all()
+
+
+def _values(changes: Any, state: State) -> dict[str, float]:
+    """Return numbers by key as a page has sent them, or refuse them."""
+    if not isinstance(changes, Mapping) or not changes:
+        raise RequestError("changes: no numbers by key")
+    known = numbers(state.text) if state.text else {}
+    for key, value in changes.items():
+        if key not in known:
+            raise RequestError("changes: a key that has no number in the file")
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise RequestError(f"{key}: not a number")
+        if not abs(value) <= _LARGEST:
+            raise RequestError(f"{key}: not a number of a design")
+    return dict(changes)
+
+
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _result(done: Future[work.Reply], file: str) -> work.Reply:
+    """Return a reply, or that a worker has died."""
+    try:
+        return done.result()
+    except Exception as error:
+        return {"error": work.fault_text(error, file)}

@@ -1,0 +1,116 @@
+"""The watch: which files a design reads, and whether one of them has been saved."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Final
+
+from gearcam.designs.reader import decoded, document_in
+from gearcam.errors import DesignError
+
+PAUSE: Final = 0.1
+"""Between two looks, s: what an eye does not notice."""
+
+_FRESH: Final = 2.0
+"""Age, s, below which a file may have changed again within the tick of its disk's clock."""
+
+_GONE: Final = 5
+"""Looks for which a file may be empty or away while a program saves it."""
+
+_Mark = tuple[int, int, str]
+
+
+class Watch:
+    """Looks at a design file and at the tables that it reads.
+
+    Parameters
+    ----------
+    file : str
+        The design file.
+    """
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self._marks: dict[str, _Mark | None] = {}
+        self._tables: list[str] = []
+        self._gone = 0
+
+    def look(self) -> tuple[bool, bytes | None]:
+        """Return whether a file has changed since the last look, and what the design file holds.
+
+        Returns
+        -------
+        changed : bool
+        content : bytes or None
+            None where it cannot be read.
+        """
+        content = _content(self.file)
+        if not content and self._gone < _GONE:
+            self._gone += 1
+            return False, content
+        self._gone = 0 if content else _GONE
+        marks = {name: self._mark(name) for name in (self.file, *self._tables)}
+        if [mark and mark[2] for mark in marks.values()] == [
+            mark and mark[2] for mark in self._marks.values()
+        ] and marks.keys() == self._marks.keys():
+            self._marks = marks
+            return False, content
+        if content:
+            self._tables = tables(content, self.file, self._tables)
+        self._marks = {name: self._mark(name) for name in (self.file, *self._tables)}
+        return True, content
+
+    def _mark(self, name: str) -> _Mark | None:
+        """Return time, size and hash of a file; the hash anew only where it may be another."""
+        try:
+            found = Path(name).stat()
+        except (OSError, ValueError):
+            return None
+        before = self._marks.get(name)
+        same = before is not None and before[:2] == (found.st_mtime_ns, found.st_size)
+        if before is not None and same and time.time() - found.st_mtime > _FRESH:
+            return before
+        held = hashlib.sha256(_content(name) or b"").hexdigest()
+        return found.st_mtime_ns, found.st_size, held
+
+
+def tables(content: bytes, file: str, before: list[str]) -> list[str]:
+    """Return the CSV files that a design file names.
+
+    Parameters
+    ----------
+    content : bytes
+        What the design file holds.
+    file : str
+        Its name.
+    before : list of str
+        What is returned where it cannot be read.
+
+    Returns
+    -------
+    list of str
+    """
+    try:
+        document = document_in(decoded(content, file), file)
+    except DesignError:
+        return before
+    return [os.fspath(Path(file).parent / name) for name in _named(document)]
+
+
+def _named(part: Any) -> Iterator[str]:
+    for key, item in part.items() if isinstance(part, dict) else enumerate(part):
+        if key == "file" and isinstance(item, str) and item:
+            yield item
+        elif isinstance(item, dict | list):
+            yield from _named(item)
+
+
+def _content(name: str) -> bytes | None:
+    try:
+        return Path(name).read_bytes()
+    except (OSError, ValueError):
+        return None

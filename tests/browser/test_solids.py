@@ -1,0 +1,146 @@
+"""The solids in a page: drawn when they are asked for, whole, turned by keys, and printed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium.webdriver import ActionChains, Chrome, Keys
+from selenium.webdriver.common.by import By
+
+from gearcam.compare.page import document as document_of_variants
+from gearcam.compare.variants import variants_of
+from gearcam.report.page import document, page
+from gearcam.report.solids import solids_shown
+from helpers_browser import LAPTOP, PHONE, complaints, open_page, requests, settle, until
+
+NAIL = "nail_machine_two_phase"
+PROFILES = Path(__file__).parents[2] / "profiles"
+INSIDE = "const view = document.querySelector('#solids iframe').contentWindow;"
+
+
+@pytest.fixture(scope="module")
+def solids_page(built: Callable[[str], Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("solids") / "nail.html"
+    result = built(NAIL)
+    path.write_bytes(page(document(result), solids=solids_shown(result)))
+    return path
+
+
+def show(browser: Chrome) -> None:
+    browser.find_element(By.CSS_SELECTOR, "#solids summary").click()
+    until(lambda: browser.execute_script("return document.querySelector('#solids [data-drawn]')"))
+
+
+def faults(browser: Chrome) -> list[str]:
+    """Complaints, but for those of a driver without a graphics card."""
+    return [one for one in complaints(browser) if "GPU stall due to ReadPixels" not in one]
+
+
+@pytest.mark.parametrize(("size", "scheme"), [(LAPTOP, "light"), (PHONE, "dark")])
+def test_solids_are_drawn_whole_when_they_are_asked_for(
+    size: tuple[int, int], scheme: str, browser: Chrome, solids_page: Path
+) -> None:
+    open_page(browser, solids_page, size, prefers_color_scheme=scheme)
+    assert browser.find_elements(By.TAG_NAME, "iframe") == []
+    show(browser)
+    script = f"""{INSIDE}
+    const ends = [Infinity, -Infinity, Infinity, -Infinity], colours = new Set();
+    view.scene.traverse((one) => {{
+      if (!one.isMesh) return;
+      colours.add(one.material.color.getHex());
+      const places = one.geometry.attributes.position;
+      for (let k = 0; k < places.count; k++) {{
+        const at = new view.THREE.Vector3().fromBufferAttribute(places, k);
+        at.applyMatrix4(one.matrixWorld).project(view.camera);
+        ends[0] = Math.min(ends[0], at.x); ends[1] = Math.max(ends[1], at.x);
+        ends[2] = Math.min(ends[2], at.y); ends[3] = Math.max(ends[3], at.y);
+      }}
+    }});
+    return [ends, [...colours], view.scene.background.getHex(), view.innerWidth];
+    """
+    (left, right, low, high), colours, ground, width = browser.execute_script(script)
+    assert -1.0 < left < 0.0 < right < 1.0
+    assert -1.0 < low < 0.0 < high < 1.0
+    assert max(right - left, high - low) > 0.9  # of 2: not small either
+    assert len(colours) == 2
+    assert ground == (0xFFFFFF if scheme == "light" else 0x1A2027)
+    assert width < size[0]  # beside the view the page scrolls
+    assert faults(browser) == []
+    assert [one for one in requests(browser) if one.startswith(("http", "ws"))] == []
+
+
+def test_keys_turn_and_zoom(browser: Chrome, solids_page: Path) -> None:
+    open_page(browser, solids_page)
+    show(browser)
+    browser.find_element(By.CSS_SELECTOR, "#solids iframe").click()
+    seen = f"{INSIDE} const p = view.camera.position.clone().sub(view.controls.target);"
+    places = []
+    for key in (Keys.ARROW_LEFT, Keys.ARROW_RIGHT, Keys.ARROW_UP, Keys.ARROW_DOWN, "+", "-"):
+        before = browser.execute_script(f"{seen} return [p.x, p.y, p.z, p.length()]")
+        ActionChains(browser).send_keys(key).perform()
+        places.append(
+            (before, browser.execute_script(f"{seen} return [p.x, p.y, p.z, p.length()]"))
+        )
+    for before, after in places[:4]:
+        assert after[3] == pytest.approx(before[3])
+        assert after[:3] != pytest.approx(before[:3], rel=1e-2)
+    assert places[1][1] == pytest.approx(places[0][0])  # back again
+    assert places[3][1] == pytest.approx(places[2][0])
+    assert places[4][1][3] < places[4][0][3] < places[5][1][3] * 1.001
+    assert places[0][1][0] > places[0][0][0]  # as if dragged to the left
+
+
+def test_paper_has_a_picture_of_what_is_seen(browser: Chrome, solids_page: Path) -> None:
+    open_page(browser, solids_page)
+    browser.execute_script("dispatchEvent(new Event('beforeprint'))")
+    assert browser.find_elements(By.CSS_SELECTOR, "#solids img") == []
+    show(browser)
+    for _ in range(2):
+        browser.execute_script("dispatchEvent(new Event('beforeprint'))")
+    (picture,) = browser.find_elements(By.CSS_SELECTOR, "#solids img")
+    assert not picture.is_displayed()
+    # more than one colour: it was taken while it was drawn
+    script = """
+    const done = arguments[0], shown = document.querySelector('#solids img');
+    shown.decode().then(() => {
+      const canvas = document.createElement('canvas');
+      [canvas.width, canvas.height] = [shown.naturalWidth, shown.naturalHeight];
+      const pen = canvas.getContext('2d');
+      pen.drawImage(shown, 0, 0);
+      const pixels = pen.getImageData(0, 0, canvas.width, canvas.height).data;
+      done(new Set(new Uint32Array(pixels.buffer)).size);
+    });
+    """
+    assert browser.execute_async_script(script) > 10
+
+
+def test_where_nothing_draws_them_words_say_so(browser: Chrome, solids_page: Path) -> None:
+    open_page(browser, solids_page)
+    browser.execute_script("HTMLCanvasElement.prototype.getContext = () => null")
+    browser.find_element(By.CSS_SELECTOR, "#solids summary").click()
+    settle(browser)
+    assert "no WebGL" in browser.find_element(By.ID, "solids").text
+    assert browser.find_elements(By.TAG_NAME, "iframe") == []
+
+
+def test_a_page_of_variants_is_drawn_and_moves(browser: Chrome, tmp_path: Path) -> None:
+    variants = variants_of([str(PROFILES / "ellipse.toml")], {"law.eccentricity": [0.1, 0.3]})
+    path = tmp_path / "compare.html"
+    path.write_bytes(page(document_of_variants(variants, "ellipse, variants")))
+    shown = open_page(browser, path, PHONE)
+    browser.execute_script("gearcam.go(90)")
+    settle(browser)
+    turns = [one["turn"] for one in browser.execute_script("return gearcam.poses()")]
+    wanted = [body["turn"] for body in shown["scene"]["bodies"]]
+    assert turns == [one if isinstance(one, (int, float)) else one[180] for one in wanted]
+    assert "--line-2" in path.read_text("utf-8")
+    assert [one.text for one in browser.find_elements(By.CSS_SELECTOR, ".variants b")] == [
+        "eccentricity=0.1", "eccentricity=0.3",
+    ]  # fmt: skip
+    assert not browser.find_element(By.ID, "accuracy").is_displayed()
+    wide = "const e = document.scrollingElement; return [e.scrollWidth, e.clientWidth]"
+    assert browser.execute_script(wide) == [PHONE[0], PHONE[0]]
+    assert complaints(browser) == []

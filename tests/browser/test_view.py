@@ -1,0 +1,176 @@
+"""The live view in a browser: it reloads, follows sliders, saves, and shows what is wrong."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium.webdriver import Chrome
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+NAIL = Path(__file__).parents[2] / "profiles" / "nail_machine_two_phase.toml"
+CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
+SECONDS = 60.0
+WAYS = (
+    "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1280,900",
+    "--disable-background-networking", "--no-first-run",
+)  # fmt: skip
+SPY = """
+    window.documents = [];
+    const show = window.gearcam.show;
+    window.gearcam.show = (next) => { window.documents.push(next); show(next); };
+"""
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Chrome]:
+    options = Options()
+    options.binary_location = CHROMIUM
+    for way in WAYS:
+        options.add_argument(way)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    made = Chrome(options=options, service=Service(DRIVER))
+    yield made
+    made.quit()
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    made = tmp_path / "nail.toml"
+    made.write_text(NAIL.read_text())
+    return made
+
+
+@pytest.fixture
+def page(file: Path, browser: Chrome) -> Iterator[Chrome]:
+    """The nail machine's page, as the command serves it; it must end as it should."""
+    words = [sys.executable, "-m", "gearcam", "view", str(file), "--no-browser"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        (address,) = re.findall(r"http://\S+/", process.stdout.readline())
+        browser.get(address)
+        until(lambda: browser.find_elements(By.ID, "parts"))
+        until(lambda: browser.execute_script("return !!window.gearcam"))
+        browser.execute_script(SPY)
+        yield browser
+        process.send_signal(signal.SIGINT)
+        assert process.wait(SECONDS) == 0
+    wrong = [one["message"] for one in browser.get_log("browser") if one["level"] == "SEVERE"]  # type: ignore[no-untyped-call]
+    assert [one for one in wrong if "ERR_" not in one] == []  # the server has just ended
+
+
+def until(true: Callable[[], Any]) -> Any:
+    end = time.monotonic() + SECONDS
+    while time.monotonic() < end:
+        found = true()
+        if found:
+            return found
+        time.sleep(0.05)
+    raise TimeoutError
+
+
+def shown(page: Chrome) -> list[dict[str, Any]]:
+    return page.execute_script(
+        "return window.documents.map((one) => ({box: one.scene.box, charts: one.charts.length,"
+        " facts: one.blocks.facts, files: one.blocks.files, draft: !one.scene.contacts.drive}))"
+    )
+
+
+def error(page: Chrome) -> str:
+    return page.find_element(By.ID, "error").text
+
+
+def slider(page: Chrome, key: str) -> Any:
+    return page.find_element(By.ID, f"key-{key}")
+
+
+def field(page: Chrome, key: str) -> Any:
+    return page.find_element(By.CSS_SELECTOR, f'input[aria-label="{key}, number"]')
+
+
+def test_the_page_follows_the_file(page: Chrome, file: Path) -> None:
+    file.write_text(file.read_text().replace("distance_mm = 180", "distance_mm = 200"))
+    until(lambda: shown(page) and not shown(page)[-1]["draft"])
+    last = shown(page)[-1]
+    assert last["charts"] >= 6
+    assert "200 mm" in last["facts"]
+    until(lambda: float(field(page, "pair.center_distance_mm").get_attribute("value")) == 200)
+
+
+def test_a_bad_file_is_told_and_the_last_good_page_stays(page: Chrome, file: Path) -> None:
+    good = file.read_text()
+    facts = page.find_element(By.ID, "facts").text
+    file.write_text(good.replace("teeth = [36, 36]", "teeth = [36]\nwheels = 2"))
+    told = until(lambda: error(page))
+    assert "2 problems" in told
+    assert "pair.wheels" in told
+    assert page.find_element(By.ID, "facts").text == facts
+    assert page.find_element(By.ID, "error").get_attribute("role") == "alert"
+    file.write_text(good)
+    until(lambda: not error(page))
+
+
+def test_a_slider_is_followed_coarsely_and_then_exactly(page: Chrome, file: Path) -> None:
+    before = file.read_text()
+    one = slider(page, "law.ratios[1]")
+    page.execute_script(
+        "for (const value of [0.41, 0.42, 0.43]) { arguments[0].value = value;"
+        " arguments[0].dispatchEvent(new Event('input')); }",
+        one,
+    )
+    until(lambda: shown(page))
+    assert shown(page)[0]["draft"]
+    page.execute_script("arguments[0].dispatchEvent(new Event('change'))", one)
+    until(lambda: not shown(page)[-1]["draft"])
+    # the cosine of two phases closes where both ratios make 2
+    until(lambda: float(field(page, "law.ratios[0]").get_attribute("value")) == 1.57)
+    assert float(slider(page, "law.ratios[2]").get_attribute("value")) == 1.57
+    assert file.read_text() == before
+    page.find_element(By.ID, "save").click()
+    until(lambda: file.read_text() != before)
+    assert tomllib.loads(file.read_text())["law"]["ratios"] == [1.57, 0.43, 1.57]
+    assert file.read_text() == before.replace("[1.6, 0.4, 1.6]", "[1.57, 0.43, 1.57]")
+    until(lambda: not page.find_element(By.ID, "save").is_enabled())
+
+
+def test_a_field_and_the_keyboard_do_the_same(page: Chrome) -> None:
+    one = field(page, "pair.face_width_mm")
+    one.clear()
+    one.send_keys("60", Keys.ENTER)
+    until(lambda: shown(page) and not shown(page)[-1]["draft"])
+    until(lambda: page.find_element(By.ID, "save").is_enabled())
+    count = len(shown(page))
+    slider(page, "pair.center_distance_mm").send_keys(Keys.ARROW_RIGHT)
+    until(lambda: len(shown(page)) > count)
+    assert float(field(page, "pair.center_distance_mm").get_attribute("value")) > 180
+
+
+def test_what_is_refused_is_told_while_the_slider_is_dragged(page: Chrome) -> None:
+    one = field(page, "blank.bore_diameter_mm[0]")
+    one.clear()
+    one.send_keys("400", Keys.ENTER)
+    assert "the bore reaches the root of the teeth" in until(lambda: error(page))
+    assert shown(page) == []
+
+
+def test_every_slider_has_a_name_and_is_reached_by_the_keyboard(page: Chrome) -> None:
+    for one in page.find_elements(By.CSS_SELECTOR, "#numbers input"):
+        assert one.accessible_name
+        assert one.get_attribute("tabindex") is None
+    names = page.execute_script(
+        "return [...document.querySelectorAll('[id]')].map((one) => one.id)"
+    )
+    assert len(names) == len(set(names))

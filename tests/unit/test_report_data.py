@@ -1,0 +1,138 @@
+"""What a page draws, as JSON holds it: nothing lost that is seen, nothing that JSON has not."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam
+from arch import rules
+from gearcam.charts import Chart, Limit, Line, MarkedPlace
+from gearcam.designs.kind import KINDS
+from gearcam.drawings import CENTRODE, OUTLINE, Feature, Path
+from gearcam.report.data import chart_data, scene_data
+from gearcam.scenes import ContactPoints, MovingBody, Scene
+
+NAMES = ("ellipse", "ring_ellipse", "feeder", "stepped_ellipse", "groove_cam", "conjugate_cams")
+
+
+def made(name: str) -> tuple[Any, Scene]:
+    result = gearcam.build(gearcam.load(rules.ROOT / "profiles" / f"{name}.toml"))
+    return result, KINDS[result.design.kind].room("scene").scene(result, 24)
+
+
+def read(data: Any) -> Any:
+    """Return data as a page reads it; JSON knows no NaN."""
+    return json.loads(json.dumps(data, allow_nan=False))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_scene_is_read_back_to_its_decimals(name):
+    _, scene = made(name)
+    data = read(scene_data(scene))
+    assert data["places"] == pytest.approx(scene.places, abs=5.1e-5)
+    assert [one["name"] for one in data["bodies"]] == [body.name for body in scene.bodies]
+    for told, body in zip(data["bodies"], scene.bodies, strict=True):
+        for key, values, digits in (
+            ("turn", body.turn, 7),
+            ("x", body.shift.real, 4),
+            ("y", body.shift.imag, 4),
+        ):
+            # one number where nothing changes
+            assert isinstance(told[key], float) == (np.ptp(values) == 0.0)
+            assert np.asarray(told[key]) + 0.0 * values == pytest.approx(
+                values, abs=0.51 * 10.0**-digits
+            )
+        assert told["teeth"] == (None if body.teeth is None else body.teeth.tolist())
+    for key, contacts in scene.contacts.items():
+        told = data["contacts"][key]
+        assert told["start"] == contacts.start.tolist()
+        point = np.array(told["x"]) + 1j * np.array(told["y"])
+        assert np.abs(point - contacts.point).max() < 1e-4
+        force = np.array(told["fx"]) + 1j * np.array(told["fy"])
+        assert np.abs(force - contacts.force).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", ["ellipse", "ring_ellipse", "feeder"])
+def test_teeth_are_vertices_of_the_first_chain_of_metal(name):
+    result, scene = made(name)
+    data = read(scene_data(scene))
+    toothed = [one for one in data["bodies"] if one["teeth"]]
+    for told in toothed:
+        gear = next(gear for gear in result.gears if gear.name == told["name"])
+        assert told["metal"][0] == pytest.approx(gear.outline.ravel(), abs=5.1e-5)
+        assert max(map(max, told["teeth"])) < len(gear.outline)
+
+
+def test_a_groove_is_a_floor_and_centrodes_are_dashed():
+    groove = read(scene_data(made("groove_cam")[1]))["bodies"][0]
+    assert len(groove["floor"]) == 2  # its outer wall and the island within
+    assert len(groove["metal"]) == 2  # the disc and its bore
+    lines = read(scene_data(made("ellipse")[1]))["bodies"][0]["lines"]
+    (centrode,) = (one for one in lines if one["layer"] == CENTRODE)
+    assert centrode["dashed"] is True
+    assert centrode["closed"] is True
+
+
+def test_what_is_no_number_is_null_and_nothing_is_minus_zero():
+    places = np.array([0.0, 1.0])
+    square = Path(points=np.array([[-0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))
+    body = MovingBody(
+        name="a",
+        called="a",
+        features=(Feature(layer=OUTLINE, shape=square),),
+        turn=np.array([-0.0, 1e-9]),
+        shift=np.zeros(2, dtype=np.complex128),
+    )
+    contacts = ContactPoints(
+        start=np.array([0, 1, 1]),
+        point=np.array([complex(math.nan, 1.0)]),
+        force=np.array([1.0 + 0j]),
+    )
+    scene = Scene(
+        title="t",
+        driver="x, mm",
+        places=places,
+        closed=False,
+        bodies=(body,),
+        contacts={"all": contacts},
+        pitch=np.array([complex(math.inf, 0.0), 1.0]),
+    )
+    data = read(scene_data(scene))
+    assert data["pitch"] == [None, 0.0, 1.0, 0.0]
+    assert data["contacts"]["all"]["x"] == [None]
+    assert "-0.0" not in json.dumps(data)
+
+
+def test_a_chart_is_read_back_to_six_digits():
+    y = np.array([1.23456789e-5, np.nan, -9.87654321e-3, 0.0])
+    line = Line(label="values", x=np.array([0.0, 1.0, 2.0, 359.123456789]), y=y)
+    far = (Limit(label="near", value=0.0), Limit(label="far", value=1.0))
+    marks = (MarkedPlace(label="knots", value=2.0),)
+    chart = Chart(title="t", x="angle, deg", y="1/mm", lines=(line,), limits=far, marks=marks)
+    data = read(chart_data("c", chart, "angle, deg"))
+    told = data["lines"][0]
+    assert told["x"] == [0.0, 1.0, 2.0, 359.123]
+    assert told["y"] == [1.235e-5, None, -9.87654e-3, 0.0]
+    assert data["range"] == list(chart.range)
+    assert [one["seen"] for one in data["limits"]] == [True, False]
+    assert data["marks"] == [{"label": "knots", "value": 2.0}]
+    assert data["moves"] is True
+    assert chart_data("c", chart, "another, deg")["moves"] is False
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_chart_of_a_result_is_json(name):
+    result, scene = made(name)
+    for one in result.charts:
+        chart = result.chart(one)
+        data = read(chart_data(one, chart, scene.driver))
+        for told, line in zip(data["lines"], chart.lines, strict=True):
+            y = np.array([math.nan if value is None else value for value in told["y"]])
+            assert np.isnan(y).tolist() == (~np.isfinite(line.y)).tolist()
+            largest = np.nanmax(np.abs(line.y), initial=0.0)
+            assert np.nanmax(np.abs(y - line.y), initial=0.0) <= 1e-5 * largest
