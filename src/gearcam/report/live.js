@@ -4,7 +4,7 @@
 (() => {
   const read = (id) => JSON.parse(document.getElementById(id).textContent);
   const live = read("live");
-  let shown = read("document");
+  let shown = window.gearcam.document;
   let { made, number } = live;
 
   // Numbers that the page shows and the file does not hold, by key.
