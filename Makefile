@@ -43,6 +43,7 @@ lint: $(VENV)/.lint
 	$(BIN)/lint-imports
 
 slow: $(VENV)/.test
+	tools/browser
 	$(BIN)/python -m pytest -m slow
 
 bench: $(VENV)/.bench

@@ -13,6 +13,7 @@ import shapely
 from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.by import By
+from selenium.webdriver.remote.webelement import WebElement
 from shapely import affinity
 
 from gearcam.report.file import report_files
@@ -42,14 +43,23 @@ def slide(browser: Chrome, index: int) -> None:
     settle(browser)
 
 
+def number_of(name: str, charts: list[dict[str, Any]]) -> int:
+    return [chart["name"] for chart in charts].index(name)
+
+
+def drawn(browser: Chrome, figure: WebElement) -> WebElement:
+    """The plot of a chart, once it is scrolled to and drawn."""
+    browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", figure)
+    return until(lambda: figure.find_elements(By.CLASS_NAME, "u-over"))[0]
+
+
 @pytest.mark.parametrize("name", [NAIL, "groove_cam", "feeder"])
 def test_a_page_opens_without_complaint_or_network(
     name: str, browser: Chrome, page_of: Written
 ) -> None:
     open_page(browser, page_of(name))
     for figure in browser.find_elements(By.CLASS_NAME, "chart"):
-        browser.execute_script("arguments[0].scrollIntoView()", figure)
-        until(lambda: figure.find_elements(By.CLASS_NAME, "u-over"))  # noqa: B023
+        drawn(browser, figure)
     go(browser, 100.0)
     assert complaints(browser) == []
     own = page_of(name).as_uri()
@@ -237,8 +247,8 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
     browser: Chrome, page_of: Written, built: Built
 ) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
-    until(lambda: browser.find_elements(By.CLASS_NAME, "u-over"))
-    over = browser.find_element(By.CLASS_NAME, "u-over")
+    figure = browser.find_elements(By.CLASS_NAME, "chart")[number_of("ratio", charts)]
+    over = drawn(browser, figure)
     width = over.size["width"]
     right = -round(0.44 * width)  # of the middle, pixels
     ActionChains(browser).move_to_element_with_offset(over, right, 0).click().perform()
@@ -246,12 +256,11 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
     place = browser.execute_script("return gearcam.place")
     assert place == pytest.approx(180.0 + 360.0 * right / width, abs=360.0 / width)
     ratio = built(NAIL).motion(np.radians([place]))["ratio"][0]
-    told = browser.find_element(By.CSS_SELECTOR, ".chart .legend output").text
+    told = figure.find_element(By.CSS_SELECTOR, ".legend output").text
     assert float(told) == pytest.approx(ratio, abs=1e-4)  # five digits
     assert poses(browser)["gear1"]["turn"] == pytest.approx(-math.radians(place), abs=ROUNDED)
     for chart, figure in zip(charts, browser.find_elements(By.CLASS_NAME, "chart"), strict=True):
-        browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", figure)
-        until(lambda: figure.find_elements(By.CLASS_NAME, "cursor"))  # noqa: B023
+        drawn(browser, figure)
         go(browser, place)
         cursor = figure.find_element(By.CLASS_NAME, "cursor")
         assert cursor.is_displayed() is (chart["x"] == "driver angle phi1, deg")
@@ -263,11 +272,8 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
 
 def test_a_chart_that_is_not_over_the_driver_stays(browser: Chrome, page_of: Written) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
-    number = [chart["name"] for chart in charts].index("contact_ratio")
-    figure = browser.find_elements(By.CLASS_NAME, "chart")[number]
-    browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", figure)
-    until(lambda: figure.find_elements(By.CLASS_NAME, "u-over"))
-    figure.find_element(By.CLASS_NAME, "u-over").click()
+    figure = browser.find_elements(By.CLASS_NAME, "chart")[number_of("contact_ratio", charts)]
+    drawn(browser, figure).click()
     assert browser.execute_script("return gearcam.place") == 0.0
 
 

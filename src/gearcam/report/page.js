@@ -56,11 +56,12 @@ function decimals() {
   return Math.max(0, Math.ceil(-Math.log10(least)));
 }
 
-// The place in words, with what the first chart tells there.
+// The place in words, with what the chart of the ratio, or else the first, tells there.
 function told() {
   const [name, unit = ""] = page.scene.driver.split(", ");
   const words = [`${name} = ${page.place.toFixed(decimals())} ${unit}`.trim()];
-  const chart = page.shown.charts.find((one) => one.moves);
+  const moving = page.shown.charts.filter((one) => one.moves);
+  const chart = moving.find((one) => one.name === "ratio") ?? moving[0];
   const line = chart?.lines[0];
   const values = line ? valuesAt(line, page.place) : [];
   if (values.length) words.push(`${line.label} = ${values.join(" | ")}`);
@@ -273,15 +274,16 @@ function block(name, html) {
   home.querySelectorAll("details").forEach((one, k) => (one.open = open[k] ?? false));
 }
 
-// Show another document, or a draft of one without charts, contacts or some of its blocks: what it
-// does not tell stays as it was, as do place, view and choices.
+// Show another document, or a draft of one: without contacts or some of its blocks, and without
+// charts or with those that are shown. What it does not tell stays, as do place, view and choices.
 function show(next) {
   const blocks = { ...page.shown.blocks, ...next.blocks };
+  const whole = next.charts && next.charts !== page.shown.charts;
   for (const [name, html] of Object.entries(blocks)) {
     if (html !== page.shown.blocks[name]) block(name, html);
   }
   page.shown = { ...page.shown, ...next, blocks };
-  present(Boolean(next.charts));
+  present(whole);
 }
 
 function present(whole) {
@@ -300,6 +302,7 @@ window.gearcam = {
   go,
   svg,
   get place() { return page.place; },
+  get document() { return page.shown; },
   poses: () => posesOf(page.scene, page.place, page.cycles),
 };
 
