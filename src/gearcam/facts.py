@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
 
-from gearcam.display import line
+from gearcam.display import Brief, line
 from gearcam.numerals import shown
 
 _UNITS: Final = {
@@ -36,7 +36,7 @@ _LEAVES: Final = (("min", "max"), ("least", "mean"))
 
 
 @dataclass(frozen=True)
-class Fact:
+class Fact(Brief):
     """A value with what a person should know of it.
 
     Parameters
