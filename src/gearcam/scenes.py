@@ -23,12 +23,18 @@ import numpy as np
 from gearcam.display import Brief
 from gearcam.drawings import Feature, chains
 from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.bulges import as_complex
 
 PLACES: Final = 720
 """Steps of the driver in a cycle, and one more place for its end."""
 
 SAGITTA: Final = 1e-3
 """Chord error of arcs and circles in a scene, mm; outlines keep their own."""
+
+
+_DIRECTIONS: Final = 180
+"""Directions in which the outmost points of a body are sought: what lies between two of them is
+farther out by less than a six-thousandth of its size."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -136,18 +142,27 @@ def still(features: tuple[Feature, ...], places: Array) -> MovingBody:
 def extent(scene: Scene) -> tuple[float, float, float, float]:
     """Return the box of a `scene` in every place: left, bottom, right, top, mm.
 
-    It holds the circles that turning bodies sweep, so that nothing leaves it on the way.
+    It holds the circles that bodies sweep which turn all around, so that nothing leaves it on the
+    way, and of others all places.
     """
     low, high = [], []
     for body in scene.bodies:
         points = np.vstack([p for f in body.features for p, _ in chains(f.shape, SAGITTA)])
-        if np.ptp(body.turn) > 0.0:
-            size = float(np.hypot(*points.T).max()) * np.ones(2)
-            near, far = -size, size
+        places = as_complex(points)
+        if np.ptp(body.turn) < 2.0 * np.pi:
+            moved = _outmost(places) * np.exp(1j * body.turn[:, None]) + body.shift[:, None]
         else:
-            near, far = points.min(axis=0), points.max(axis=0)
-        way = body.shift.view(np.float64).reshape(-1, 2)
-        low.append(near + way.min(axis=0))
-        high.append(far + way.max(axis=0))
+            moved = np.abs(places).max() * np.array([1 + 1j, -1 - 1j]) + body.shift[:, None]
+        low.append((moved.real.min(), moved.imag.min()))
+        high.append((moved.real.max(), moved.imag.max()))
     (left, bottom), (right, top) = np.min(low, axis=0), np.max(high, axis=0)
     return float(left), float(bottom), float(right), float(top)
+
+
+def _outmost(points: Plane) -> Plane:
+    """Return those points that are farthest in some direction: the box of no others matters."""
+    if len(points) <= _DIRECTIONS:
+        return points
+    ways = 2.0 * np.pi * np.arange(_DIRECTIONS)[:, None] / _DIRECTIONS
+    along = np.cos(ways) * points.real + np.sin(ways) * points.imag
+    return points[np.unique(along.argmax(axis=1))]

@@ -150,7 +150,7 @@ def test_a_wrong_number_is_seen() -> None:
 def kind_of(file: str) -> str:
     """The word in ``output.files`` that asks for a file."""
     path = Path(file)
-    for stem in ("inspection", "tool_path", "curvature"):
+    for stem in ("inspection", "tool_path", "curvature", "report"):
         if path.stem.startswith(stem):
             return stem.replace("_", "-")
     return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]

@@ -229,6 +229,18 @@ def test_notebooks_show_a_picture_with_facts() -> None:
         assert not any("<" in text for text in page.texts)
 
 
+def test_a_notebook_does_not_wait_for_remedies(monkeypatch: pytest.MonkeyPatch) -> None:
+    def sought(*_: object) -> None:
+        raise AssertionError("remedies were sought")
+
+    monkeypatch.setattr("gearcam.report.page.remedies", sought)
+    design = build("ellipse").design.with_({"pair.teeth": [9, 9]})
+    findings = gearcam.build(design).findings
+    assert "error" in {one.severity for one in findings}
+    told = Frame(design._repr_html_()).document["blocks"]
+    assert "Do not cut this yet" in told["verdict"]
+
+
 def coordinates(path: str) -> np.ndarray:
     numbers = [float(text) for text in re.findall(r"-?[\d.]+", path)]
     return np.array(numbers).reshape(-1, 2)

@@ -202,6 +202,14 @@ def test_limits_that_differ_are_told_of_whom() -> None:
     assert len(joined("pressure_angle", variants_of([ELLIPSE], THREE)).limits) == 1
 
 
+def test_places_are_marked_where_all_variants_have_them() -> None:
+    file = str(PROFILES / "nail_machine_two_phase.toml")
+    same = variants_of([file], {"blank.bore_diameter_mm": [20, 40]})
+    assert [one.value for one in joined("ratio", same).marks] == [160.0]
+    knots = {"law.knots_deg": [[0, 150, 360], [0, 160, 360]]}
+    assert joined("ratio", variants_of([file], knots)).marks == ()
+
+
 def moved(variant: Variant, phi1: np.ndarray) -> Any:
     result: Any = variant.result
     return result.motion(phi1)

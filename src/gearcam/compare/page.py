@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam import drawings
-from gearcam.charts import Chart, Limit, Line
+from gearcam.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.compare.table import rows
 from gearcam.compare.variants import Variant
 from gearcam.report.data import chart_data, scene_data
@@ -83,11 +83,23 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
             _line(line, label if single else f"{label}: {line.label}") for line in chart.lines
         ]
         limits += [(label, limit) for limit in chart.limits]
-    return Chart(title=first.title, x=first.x, y=first.y, lines=(*lines,), limits=_limits(limits))
+    return Chart(
+        title=first.title,
+        x=first.x,
+        y=first.y,
+        lines=(*lines,),
+        limits=_limits(limits),
+        marks=_common([chart.marks for _, chart in charts]),
+    )
 
 
 def _line(line: Line, label: str) -> Line:
     return replace(line, label=label)
+
+
+def _common(marks: Sequence[tuple[MarkedPlace, ...]]) -> tuple[MarkedPlace, ...]:
+    """Return the marked places that all variants have: those of one tell nothing of others."""
+    return tuple(one for one in marks[0] if all(one in others for others in marks))
 
 
 def _limits(limits: Sequence[tuple[str, Limit]]) -> tuple[Limit, ...]:

@@ -26,7 +26,7 @@ def framed(result: Result) -> str:
     """Return the page of a `result` as HTML that a notebook shows: a frame, without solids."""
     from gearcam.report.page import document, page
 
-    shown = escape(page(document(result)).decode())
+    shown = escape(page(document(result, seek=False)).decode())
     return (
         f'<iframe title="{escape(result.design.name)}" style="{_FRAME}" srcdoc="{shown}"></iframe>'
     )

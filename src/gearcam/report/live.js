@@ -2,9 +2,7 @@
 "use strict";
 
 (() => {
-  const read = (id) => JSON.parse(document.getElementById(id).textContent);
-  const live = read("live");
-  let shown = window.gearcam.document;
+  const live = JSON.parse(document.getElementById("live").textContent);
   let { made, number } = live;
 
   // Numbers that the page shows and the file does not hold, by key.
@@ -28,12 +26,6 @@
     const place = document.getElementById("error");
     place.hidden = !error;
     place.replaceChildren(...(error ? [element("pre", { textContent: error })] : []));
-  }
-
-  // A draft holds less than a whole document: what it leaves out stays as it was.
-  function show(news) {
-    shown = { ...shown, ...news, blocks: { ...shown.blocks, ...news.blocks } };
-    window.gearcam.show(shown);
   }
 
   async function post(route, data) {
@@ -72,7 +64,7 @@
 
   function take(reply, last) {
     tell(reply.error);
-    if (reply.document) show(reply.document);
+    if (reply.document) window.gearcam.show(reply.document);
     for (const [key, value] of Object.entries(reply.changes ?? {})) {
       if (key !== last) set(key, value);
     }
@@ -101,11 +93,13 @@
   }
 
   function rowOf(key) {
-    const label = element("label", { htmlFor: `key-${key.key}`, textContent: key.key });
+    const word = key.key.replace(/^.*\./, "");
+    const label = element("label", { htmlFor: `key-${key.key}`, textContent: word });
     const range = { type: "range", min: key.low, max: key.high, step: "any", value: key.value };
     const slider = element("input", { id: label.htmlFor, ...range });
     const field = element("input", { type: "number", step: "any", value: key.value });
     const told = element("small", { id: `doc-${key.key}`, textContent: key.doc });
+    slider.setAttribute("aria-label", key.key);
     field.setAttribute("aria-label", `${key.key}, number`);
     slider.setAttribute("aria-describedby", told.id);
     const move = (exact) => {
@@ -181,7 +175,7 @@
     if (state.number <= number) return;
     number = state.number;
     tell(state.error);
-    if (state.document) show(state.document);
+    if (state.document) window.gearcam.show(state.document);
     if (state.made !== made) {
       made = state.made;
       offer(state.keys);

@@ -99,7 +99,9 @@ def page(
     )
 
 
-def document(result: Result, measured: Mapping[str, Any] = MappingProxyType({})) -> dict[str, Any]:
+def document(
+    result: Result, measured: Mapping[str, Any] = MappingProxyType({}), *, seek: bool = True
+) -> dict[str, Any]:
     """Return what a page shows of a result.
 
     Parameters
@@ -108,6 +110,8 @@ def document(result: Result, measured: Mapping[str, Any] = MappingProxyType({}))
         Of any kind.
     measured : mapping
         What was measured on its files, by group of facts.
+    seek : bool
+        Whether remedies are sought where there are errors, which takes some seconds.
 
     Returns
     -------
@@ -125,7 +129,7 @@ def document(result: Result, measured: Mapping[str, Any] = MappingProxyType({}))
         "kind": result.design.kind,
         "scene": scene_data(scene),
         "charts": [chart_data(name, result.chart(name), scene.driver) for name in result.charts],
-        "blocks": blocks(result, measured),
+        "blocks": blocks(result, measured, seek=seek),
     }
 
 

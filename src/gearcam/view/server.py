@@ -11,6 +11,7 @@ import json
 import os
 import secrets
 import socket
+import sys
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -18,6 +19,7 @@ from pathlib import Path
 from string import Template
 from typing import Any, Final
 
+from gearcam.console import complain, fault_text
 from gearcam.errors import DesignError, Problem
 from gearcam.report.page import page
 from gearcam.view.session import RequestError, Session
@@ -95,8 +97,11 @@ class Server(ThreadingHTTPServer):
         """Address of the page."""
         return f"http://{self.hosts[0]}/{self.token}/"
 
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing of a page that has been closed while it was answered (see `Server`)."""
+    def handle_error(self, request: Any, client_address: Any) -> None:  # noqa: ARG002
+        """Say what went wrong, but for a page that has gone meanwhile (see `Server`)."""
+        error = sys.exception()
+        if isinstance(error, Exception) and not isinstance(error, ConnectionError | TimeoutError):
+            complain(fault_text(error, self.session.file))
 
 
 def _taken(port: int, error: OSError) -> Problem:
