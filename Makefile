@@ -34,7 +34,7 @@ demo: $(VENV)/.run
 
 test: $(VENV)/.test
 	tools/browser
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+	$(BIN)/python -m pytest -n 2 -m "not slow"
 
 lint: $(VENV)/.lint
 	$(BIN)/ruff check .

@@ -274,16 +274,15 @@ function block(name, html) {
   home.querySelectorAll("details").forEach((one, k) => (one.open = open[k] ?? false));
 }
 
-// Show another document, or a draft of one: without contacts or some of its blocks, and without
-// charts or with those that are shown. What it does not tell stays, as do place, view and choices.
+// Show another document, or a draft of one without charts, contacts or some of its blocks: what it
+// does not tell stays as it was, as do place, view and choices.
 function show(next) {
   const blocks = { ...page.shown.blocks, ...next.blocks };
-  const whole = next.charts && next.charts !== page.shown.charts;
   for (const [name, html] of Object.entries(blocks)) {
     if (html !== page.shown.blocks[name]) block(name, html);
   }
   page.shown = { ...page.shown, ...next, blocks };
-  present(whole);
+  present(Boolean(next.charts));
 }
 
 function present(whole) {
@@ -302,7 +301,6 @@ window.gearcam = {
   go,
   svg,
   get place() { return page.place; },
-  get document() { return page.shown; },
   poses: () => posesOf(page.scene, page.place, page.cycles),
 };
 
