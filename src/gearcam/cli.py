@@ -125,10 +125,13 @@ def _dispatch(words: list[str]) -> None:
 
 
 def _commands_of_kinds() -> Iterator[Command]:
-    """Yield the commands that kinds of design add."""
+    """Yield the commands that kinds of design add, and those of studies of any kind."""
+    from gearcam.studies.commands import COMMANDS
+
     for kind in KINDS.values():
         with contextlib.suppress(ModuleNotFoundError):
             yield from kind.room("commands").COMMANDS
+    yield from COMMANDS
 
 
 def _parser(
