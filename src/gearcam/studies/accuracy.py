@@ -147,9 +147,11 @@ class Accuracy(Brief):
             ladder = self.ladders[rung.stage]
             order = "" if rung.order is None else exact(rung.order)
             writer.writerow(
-                [rung.stage, ladder.measured, ladder.refined, exact(rung.level), int(rung.own)]
-                + [exact(rung.error), ladder.unit, exact(ladder.rounding)]
-                + [order, exact(ladder.order), exact(rung.seconds), rung.points]
+                (
+                    *(rung.stage, ladder.measured, ladder.refined, exact(rung.level)),
+                    *(int(rung.own), exact(rung.error), ladder.unit, exact(ladder.rounding)),
+                    *(order, exact(ladder.order), exact(rung.seconds), rung.points),
+                )
             )
         return text.getvalue().encode()
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from gearcam.charts import Chart, Line
 from gearcam.markup import CENTRODE_INK, GROUND, TEXT_INK, svg_document
-from gearcam.numeric.arrays import Array
 from gearcam.numerals import decimal
+from gearcam.numeric.arrays import Array
 
 COLUMNS: Final = 2
 """Charts beside each other."""
@@ -35,6 +35,12 @@ _INKS: Final = ("#27598c", "#c0562b", "#3c8043", "#8c3a7a", "#9a7b16", "#3f3f3f"
 
 _MOST_TICKS: Final = 8
 """Powers of ten that an axis is labelled with."""
+
+_SHORT: Final = 2
+"""Decades up to which an axis is labelled between them too."""
+
+_LEAST: Final = 1.2
+"""Decades that an axis has at least: noise of run times is not to fill a chart."""
 
 _number: Final = partial(decimal, decimals=2)
 
@@ -75,14 +81,14 @@ def _chart(chart: Chart) -> Iterator[str]:
     yield _text(0.5 * (_LEFT + _WIDE - _RIGHT), _HIGH - 10.0, chart.x, 'text-anchor="middle"')
     turn = f'text-anchor="middle" transform="rotate(-90 14 {_number(0.5 * _HIGH)})"'
     yield _text(14.0, 0.5 * _HIGH, chart.y, turn)
-    for power in across.ticks:
-        place = across(10.0**power)
+    for tick in across.ticks:
+        place = across(tick)
         yield _grid(place, _ABOVE, place, _HIGH - _BELOW)
-        yield _text(place, _HIGH - _BELOW + 16.0, _power(power), 'text-anchor="middle"')
-    for power in up.ticks:
-        place = up(10.0**power)
+        yield _text(place, _HIGH - _BELOW + 16.0, f"{tick:.0e}", 'text-anchor="middle"')
+    for tick in up.ticks:
+        place = up(tick)
         yield _grid(_LEFT, place, _WIDE - _RIGHT, place)
-        yield _text(_LEFT - 6.0, place + 4.0, _power(power), 'text-anchor="end"')
+        yield _text(_LEFT - 6.0, place + 4.0, f"{tick:.0e}", 'text-anchor="end"')
     for number, (line, points) in enumerate(zip(chart.lines, seen, strict=True)):
         ink = _INKS[number % len(_INKS)]
         places = [(across(a), up(b)) for a, b in points.T.tolist()]
@@ -92,7 +98,9 @@ def _chart(chart: Chart) -> Iterator[str]:
         for a, b in places:
             mark = f'cx="{_number(a)}" cy="{_number(b)}"'
             hole = f'fill="none" stroke="{ink}" stroke-width="1.5" r="6"'
-            yield f"<circle {mark} {hole}/>" if line.dots else f'<circle {mark} r="3" fill="{ink}"/>'
+            yield (
+                f"<circle {mark} {hole}/>" if line.dots else f'<circle {mark} r="3" fill="{ink}"/>'
+            )
     if len(chart.lines) > 1:
         yield from _legend(chart.lines)
 
@@ -102,15 +110,19 @@ def _legend(lines: Sequence[Line]) -> Iterator[str]:
         y, ink = _ABOVE + 12.0 + _ROW * number, _INKS[number % len(_INKS)]
         x = _WIDE - _RIGHT - 8.0
         yield _text(x - 10.0, y + 4.0, line.label, f'text-anchor="end" style="fill:{ink}"')
-        hole = f'fill="none" stroke="{ink}" stroke-width="1.5"' if line.dots else f'fill="{ink}"'
-        yield f'<circle cx="{_number(x)}" cy="{_number(y)}" r="4" {hole}/>'
+        yield f'<circle cx="{_number(x)}" cy="{_number(y)}" r="4" {_fill(line, ink)}/>'
+
+
+def _fill(line: Line, ink: str) -> str:
+    """Return how marks are drawn: filled on a line, as rings around single values."""
+    return f'fill="none" stroke="{ink}" stroke-width="1.5"' if line.dots else f'fill="{ink}"'
 
 
 class _Axis:
     """A logarithmic axis from `first` to `last`, pixels, that holds the `values`."""
 
     def __init__(self, values: Array, first: float, last: float) -> None:
-        low, high = (np.log10([values.min(), values.max()]) if values.size else (0.0, 1.0))
+        low, high = np.log10([values.min(), values.max()]) if values.size else (0.0, 1.0)
         free = 0.06 * (high - low) or 0.5
         self._low, self._high = float(low) - free, float(high) + free
         self._first, self._last = first, last
@@ -120,10 +132,17 @@ class _Axis:
         return self._first + share * (self._last - self._first)
 
     @property
-    def ticks(self) -> range:
-        """Powers of ten on the axis, so few that their labels have room."""
-        low, high = math.ceil(self._low), math.floor(self._high)
-        return range(low, high + 1, max(1, math.ceil((high - low + 1) / _MOST_TICKS)))
+    def ticks(self) -> list[float]:
+        """Powers of ten, so few that their labels have room; on a short axis twice and 5 times."""
+        low, high = math.floor(self._low), math.floor(self._high)
+        if high - low <= _SHORT:
+            made = [
+                part * 10.0**power for power in range(low, high + 1) for part in (1.0, 2.0, 5.0)
+            ]
+        else:
+            step = math.ceil((high - low + 1) / _MOST_TICKS)
+            made = [10.0**power for power in range(low, high + 1, step)]
+        return [tick for tick in made if self._low <= math.log10(tick) <= self._high]
 
 
 def _seen(line: Line) -> Array:
@@ -139,7 +158,3 @@ def _grid(x1: float, y1: float, x2: float, y2: float) -> str:
 
 def _text(x: float, y: float, text: str, more: str = "") -> str:
     return f'<text x="{_number(x)}" y="{_number(y)}" {more}>{escape(text)}</text>'
-
-
-def _power(power: int) -> str:
-    return f"1e{power}"

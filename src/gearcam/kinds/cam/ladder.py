@@ -76,7 +76,7 @@ def _solid(result: CamResult) -> Ladder:
 
 
 def _contact(result: CamResult) -> Ladder:
-    """The lift that the follower gets from the first profile as it is cut: its polygon."""
+    """Follow the first profile as it is cut, its polygon: the lift that the follower gets."""
     motion, wall = result.cam.motions[0], result.cam.walls[0]
     theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
     own, outlines = _own(result), dict[float, Array]()
@@ -99,7 +99,7 @@ def _contact(result: CamResult) -> Ladder:
 
 
 def _cam(result: CamResult) -> Ladder:
-    """Curvature of the pitch curve from three neighbouring points: the root of the mean square.
+    """Tell the pitch curve's curvature from three neighbouring points: root of the mean square.
 
     Next to a knot where a derivative of the lift jumps it converges less well, or not at all.
     """
@@ -107,7 +107,7 @@ def _cam(result: CamResult) -> Ladder:
     curve, program = motion.curve, motion.program
 
     def make(count: float) -> tuple[Array, Array]:
-        theta = np.arange(int(count)) * (2.0 * math.pi / count)
+        theta = np.arange(int(count), dtype=np.float64) * (2.0 * math.pi / count)
         s, ds = program.derivatives(theta, 1)
         points: Plane = np.conj(curve.trace(theta, s, ds, 0.0)[0])  # counter-clockwise
         return theta, three_point_curvature(points, closed=program.closed)

@@ -52,7 +52,7 @@ def _centrode(result: GearPairResult) -> Ladder:
 
 
 def _flank(result: GearPairResult) -> Ladder:
-    """Chords between points on the exact flanks: how well as many points tell of a flank."""
+    """Join points on the exact flanks by chords: how well as many points tell of a flank."""
     gears = result.gears
 
     def points(count: float) -> list[Plane]:
