@@ -297,11 +297,14 @@ def accuracy(
             progress(name, next(done), total)
         _first_round(name, ladder, first, refused)
     samples: dict[tuple[str, float], list[float]] = {rung: [] for rung in first}
-    for _ in range(count):
+    for number in range(count):
         for name, ladder in ladders.items():
             if progress is not None:
                 progress(name, next(done), total)
-            for level in (level for whose, level in first if whose == name):
+            levels = [level for whose, level in first if whose == name]
+            # each time another one comes first: caches are cold then
+            cut = number % len(levels)
+            for level in levels[cut:] + levels[:cut]:
                 start = time.perf_counter()
                 ladder.make(level)
                 samples[name, level].append(time.perf_counter() - start)

@@ -84,11 +84,11 @@ def _chart(chart: Chart) -> Iterator[str]:
     for tick in across.ticks:
         place = across(tick)
         yield _grid(place, _ABOVE, place, _HIGH - _BELOW)
-        yield _text(place, _HIGH - _BELOW + 16.0, f"{tick:.0e}", 'text-anchor="middle"')
+        yield _text(place, _HIGH - _BELOW + 16.0, _label(tick), 'text-anchor="middle"')
     for tick in up.ticks:
         place = up(tick)
         yield _grid(_LEFT, place, _WIDE - _RIGHT, place)
-        yield _text(_LEFT - 6.0, place + 4.0, f"{tick:.0e}", 'text-anchor="end"')
+        yield _text(_LEFT - 6.0, place + 4.0, _label(tick), 'text-anchor="end"')
     for number, (line, points) in enumerate(zip(chart.lines, seen, strict=True)):
         ink = _INKS[number % len(_INKS)]
         places = [(across(a), up(b)) for a, b in points.T.tolist()]
@@ -122,9 +122,10 @@ class _Axis:
     """A logarithmic axis from `first` to `last`, pixels, that holds the `values`."""
 
     def __init__(self, values: Array, first: float, last: float) -> None:
-        low, high = np.log10([values.min(), values.max()]) if values.size else (0.0, 1.0)
-        free = 0.06 * (high - low) or 0.5
-        self._low, self._high = float(low) - free, float(high) + free
+        ends = np.log10([values.min(), values.max()]) if values.size else np.array([0.0, 1.0])
+        low, high = ends.tolist()
+        free = max(0.06 * (high - low), 0.5 * (_LEAST - (high - low)))
+        self._low, self._high = low - free, high + free
         self._first, self._last = first, last
 
     def __call__(self, value: float) -> float:
@@ -143,6 +144,11 @@ class _Axis:
             step = math.ceil((high - low + 1) / _MOST_TICKS)
             made = [10.0**power for power in range(low, high + 1, step)]
         return [tick for tick in made if self._low <= math.log10(tick) <= self._high]
+
+
+def _label(tick: float) -> str:
+    mantissa, power = f"{tick:.0e}".split("e")
+    return f"{mantissa}e{int(power)}"
 
 
 def _seen(line: Line) -> Array:
