@@ -1,0 +1,68 @@
+"""Compare methods and write the tables and figures of docs/accuracy.md. No number is by hand."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+HOME = Path(__file__).resolve().parent
+# how the other measurements measure, and the sweeps, which are the witnesses of the tests
+sys.path[:0] = [str(HOME.parent), str(HOME.parents[1] / "tests")]
+
+import integrals
+import wheels
+from methods import Found, climb
+
+import profiles
+from gearcam.numeric.memory import keep_freed_memory
+from gearcam.studies.svg import log_charts
+from measuring import ROOT, environment
+
+PAGE = ROOT / "docs" / "accuracy.md"
+FIGURES = ROOT / "docs" / "accuracy"
+BEGIN, END = "<!-- written by make accuracy -->", "<!-- end of what make accuracy writes -->"
+REPEATS = 5
+
+
+def section(found: Found) -> list[str]:
+    """A case as text: heading, note, figure, table, and what is on the front."""
+    case = found.case
+    on = ", then ".join(dict.fromkeys(name for name, _ in found.front))
+    return [
+        f"### {case.title}",
+        "",
+        case.note,
+        "",
+        f"![{case.title}: error against {case.cost}](accuracy/{case.name}.svg)",
+        "",
+        *found.rows(),
+        "",
+        f"On the front, from cheap to exact: {on}.",
+        "",
+    ]
+
+
+def main() -> int:
+    """Measure, draw, write."""
+    keep_freed_memory()  # as the command line does
+    FIGURES.mkdir(exist_ok=True)
+    text, behind = [*environment(), ""], []
+    for case in (*integrals.cases(), *wheels.cases(), *profiles.cases()):
+        found = climb(case, REPEATS)
+        (FIGURES / f"{case.name}.svg").write_bytes(log_charts(case.title, [found.chart]))
+        text += section(found)
+        if not found.on_front:
+            behind.append(case.title)
+        print(f"{case.title}: front {[name for name, _ in found.front]}", flush=True)
+    before, _, rest = PAGE.read_text("utf-8").partition(BEGIN)
+    after = rest.partition(END)[2]
+    PAGE.write_text("\n".join([before + BEGIN, "", *text, END + after]), encoding="utf-8")
+    print(
+        f"wrote {PAGE.relative_to(ROOT)}; the program's method is not the most exact on the front: "
+        f"{', '.join(behind) or 'nowhere'}"
+    )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
