@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import mpmath
 import numpy as np
-from methods import Case, Method
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid, quad, solve_ivp
 from scipy.interpolate import CubicSpline
@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 from gearcam.gears.track import ArcLength
 from gearcam.numeric.chebyshev import expand
+from methods import Case, Method
 
 mp: Any = mpmath.mp
 mp.dps = 50
@@ -184,7 +185,7 @@ def inverse(law: Ratio) -> Case:
     edges = [law.exact_knots()[0], *map(mp.mpf, phi)]
     inner = law.exact_knots()[1:-1]
     arcs, total = [], mp.mpf(0)
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges):
         cut = [low, *(knot for knot in inner if low < knot < high), high]
         total += mp.quadgl(lambda x: law.speed(x, mp), cut)
         arcs.append(float(total))

@@ -15,6 +15,8 @@ from gearcam.charts import Chart, Line
 SECONDS = "run time, s"
 FITTED = 4
 """Rungs to which an order is fitted: the finest that are above rounding."""
+EVEN = 0.8
+"""Part of an error below which another is better, not as good."""
 ABOVE = 300.0
 """How far above rounding an error shows its order: sums of many samples round more than one."""
 
@@ -87,7 +89,7 @@ class Found:
         every.sort(key=lambda one: (one[1].cost, one[1].error))
         front, best = [], np.inf
         for name, rung in every:
-            if max(rung.error, self.case.rounding) < best:
+            if max(rung.error, self.case.rounding) < EVEN * best:
                 best = max(rung.error, self.case.rounding)
                 front.append((name, rung))
         return front
@@ -113,8 +115,7 @@ class Found:
         bytes_ = self.case.cost != SECONDS
         cost = "size" if bytes_ else "time"
         made = [
-            f"| method | refined | levels | order (theory) | coarsest: error, {cost} "
-            f"| finest: error, {cost} |",
+            f"| method | refined | levels | order (theory) | coarsest: error, {cost} | finest |",
             "|---|---|---|---|---|---|",
         ]
         for method in self.case.methods:

@@ -5,18 +5,17 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-HOME = Path(__file__).resolve().parent
 # how the other measurements measure, and the sweeps, which are the witnesses of the tests
-sys.path[:0] = [str(HOME.parent), str(HOME.parents[1] / "tests")]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
+import cam_profiles
 import integrals
 import wheels
-from methods import Found, climb
-
-import profiles
 from gearcam.numeric.memory import keep_freed_memory
 from gearcam.studies.svg import log_charts
 from measuring import ROOT, environment
+from methods import Found, climb
 
 PAGE = ROOT / "docs" / "accuracy.md"
 FIGURES = ROOT / "docs" / "accuracy"
@@ -47,7 +46,7 @@ def main() -> int:
     keep_freed_memory()  # as the command line does
     FIGURES.mkdir(exist_ok=True)
     text, behind = [*environment(), ""], []
-    for case in (*integrals.cases(), *wheels.cases(), *profiles.cases()):
+    for case in (*integrals.cases(), *wheels.cases(), *cam_profiles.cases()):
         found = climb(case, REPEATS)
         (FIGURES / f"{case.name}.svg").write_bytes(log_charts(case.title, [found.chart]))
         text += section(found)

@@ -8,11 +8,11 @@ from typing import Any
 import mpmath
 import numpy as np
 import shapely
-from methods import Case, Method
 
 from gearcam.cams.three_points import three_point_curvature
 from helpers_cams import cam, corners_of, witness_of
 from helpers_distance import distances
+from methods import Case, Method
 from witness.cam_sweep import Exact, Motion, pairs, swept
 
 mp: Any = mpmath.mp
@@ -77,8 +77,8 @@ def profile() -> Case:
         own="closed form",
         error=lambda _: np.nan,
         rounding=1e-13,
-        note="Offset roller, 3-4-5 rises of 8 mm in 60 degrees; against the envelope by differences "
-        f"in 50 digits at {REFERENCES} cam angles. The roller of the sweep is a polygon of four "
+        note="Offset roller, 3-4-5 rises of 8 mm in 60 degrees; against the envelope by "
+        f"differences in 50 digits at {REFERENCES} cam angles. The roller of the sweep is a polygon of four "
         "corners a cam angle.",
     )  # fmt: skip
 
