@@ -78,8 +78,8 @@ def profile() -> Case:
         error=lambda _: np.nan,
         rounding=1e-13,
         note="Offset roller, 3-4-5 rises of 8 mm in 60 degrees; against the envelope by "
-        f"differences in 50 digits at {REFERENCES} cam angles. The roller of the sweep is a polygon of four "
-        "corners a cam angle.",
+        f"differences in 50 digits at {REFERENCES} cam angles. The roller of the sweep is a "
+        "polygon of four corners a cam angle.",
     )  # fmt: skip
 
 
