@@ -13,6 +13,7 @@ import cam_profiles
 import gearcam
 import integrals
 import wheels
+from gearcam.console import quieten
 from gearcam.numeric.memory import keep_freed_memory
 from gearcam.studies.accuracy import accuracy
 from gearcam.studies.svg import log_charts
@@ -24,19 +25,20 @@ FIGURES = ROOT / "docs" / "accuracy"
 BEGIN, END = "<!-- written by make accuracy -->", "<!-- end of what make accuracy writes -->"
 COMMANDED = ("ellipse", "plate_cam_offset_roller")
 """Profiles of which the command's own figures are shown."""
-REPEATS = 5
+REPEATS = 15
 
 
 def section(found: Found) -> list[str]:
     """A case as text: heading, note, figure, table, and what is on the front."""
     case = found.case
+    over = case.cost.partition(",")[0]
     on = ", then ".join(dict.fromkeys(name for name, _ in found.front))
     return [
         f"### {case.title}",
         "",
         case.note,
         "",
-        f"![{case.title}: error against {case.cost}](accuracy/{case.name}.svg)",
+        f"![{case.title}: error against {over}](accuracy/{case.name}.svg)",
         "",
         *found.rows(),
         "",
@@ -48,9 +50,12 @@ def section(found: Found) -> list[str]:
 def main() -> int:
     """Measure, draw, write."""
     keep_freed_memory()  # as the command line does
+    quieten()
     FIGURES.mkdir(exist_ok=True)
     for name in COMMANDED:
-        found = accuracy(gearcam.build(gearcam.load(ROOT / "profiles" / f"{name}.toml")))
+        found = accuracy(
+            gearcam.build(gearcam.load(ROOT / "profiles" / f"{name}.toml")), repeat=REPEATS
+        )
         picture = log_charts(f"{name}: error against run time", found.charts)
         (FIGURES / f"{name}.svg").write_bytes(picture)
         print(f"{name}: {', '.join(found.ladders)}", flush=True)

@@ -166,7 +166,7 @@ def _formats() -> tuple[str, ...]:
 
 
 def _command_help(docs: Mapping[str, str]) -> str:
-    rows = (f"  {name:<8}{doc}\n" for name, doc in docs.items())
+    rows = (f"  {name:<10}{doc}\n" for name, doc in docs.items())
     return "commands:\n" + "".join(rows) + "\n"
 
 
