@@ -145,3 +145,12 @@ def test_the_error_of_the_own_outline_is_what_the_result_says_of_it() -> None:
     told = max(gear.profile.chord_error for gear in result.gears)
     assert own.error == pytest.approx(told, rel=0.03)
     assert own.points == sum(len(gear.outline) for gear in result.gears)
+
+
+def test_an_oscillating_follower_is_told_in_degrees() -> None:
+    """Its lever makes of them what the chords of the profile are off."""
+    result = gearcam.build(gearcam.load("profiles/plate_cam_oscillating.toml"))
+    ladder = cam_ladders.LADDERS["contact"](result)
+    assert ladder.unit == "deg"
+    error, _ = ladder.measure(ladder.make(0.016))
+    assert 0.1 * 0.016 < math.radians(error) * result.design.follower.arm < 2.0 * 0.016

@@ -97,10 +97,7 @@ def _chart(chart: Chart) -> Iterator[str]:
             yield f'<path fill="none" stroke="{ink}" stroke-width="1.5" d="M{path}"/>'
         for a, b in places:
             mark = f'cx="{_number(a)}" cy="{_number(b)}"'
-            hole = f'fill="none" stroke="{ink}" stroke-width="1.5" r="6"'
-            yield (
-                f"<circle {mark} {hole}/>" if line.dots else f'<circle {mark} r="3" fill="{ink}"/>'
-            )
+            yield f'<circle {mark} r="{6 if line.dots else 3}" {_fill(line, ink)}/>'
     if len(chart.lines) > 1:
         yield from _legend(chart.lines)
 
