@@ -176,6 +176,7 @@ def limit_ladder(
     levels: Sequence[float],
     measured: str,
     unit: str,
+    beyond: float = BEYOND,
 ) -> Ladder:
     """Return the ladder of numbers that depend on a chord tolerance, against their limit.
 
@@ -191,13 +192,15 @@ def limit_ladder(
         Chord tolerances, mm, from coarse to fine.
     measured, unit : str
         Those of the ladder.
+    beyond : float
+        Chord tolerance of the limit, in the finest.
 
     Returns
     -------
     Ladder
         The error is the largest of the numbers.
     """
-    limit = told(make(BEYOND * levels[-1]))[0]
+    limit = told(make(beyond * levels[-1]))[0]
 
     def measure(made: Any) -> tuple[float, int]:
         values, points = told(made)

@@ -84,9 +84,10 @@ def test_the_size_scales_the_error_of_an_integral() -> None:
     assert at(7.0) == pytest.approx(7.0 * at(1.0))
 
 
-def test_flanks_outlines_and_solids_have_order_two() -> None:
-    found = climbed(PAIR, "flank", "outline", "solid")
-    for stage in ("flank", "outline", "solid"):
+def test_stages_of_a_pair_have_order_two() -> None:
+    stages = ("flank", "outline", "solid", "contact")
+    found = climbed(PAIR, *stages)
+    for stage in stages:
         assert found.order(stage) == pytest.approx(2.0, abs=0.1)
 
 

@@ -207,6 +207,19 @@ def test_a_level_that_cannot_be_made_is_left_out_by_name(planted: dict[str, Any]
         accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
 
 
+def test_a_stage_that_cannot_be_made_is_left_out_by_name(planted: dict[str, Any]) -> None:
+    def fall(_: object) -> Ladder:
+        raise GearcamError("it falls apart")
+
+    planted |= {"one": lambda _: ladder(), "two": fall}
+    result = gearcam.build(gearcam.loads(TEXT))
+    found = accuracy(result, repeat=1)
+    assert {rung.stage for rung in found.rungs} == {"one"}
+    assert list(found.lines())[-1] == "two: left out: it falls apart"
+    with pytest.raises(GearcamError, match="falls apart"):
+        accuracy(result, ["two"], repeat=1)
+
+
 def test_rounding_has_no_order(planted: dict[str, Any]) -> None:
     planted["one"] = lambda _: ladder(rounding=1e-3)
     found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)

@@ -90,7 +90,8 @@ class Accuracy(Brief):
     rungs : tuple of Rung
         By stage, from coarse to fine.
     refused : mapping of (str, float) to str
-        Levels at which nothing could be made, with the reason.
+        Levels at which nothing could be made, with the reason; of a stage of which nothing could,
+        not-a-number.
     repeat : int
         How often each was made.
     """
@@ -136,6 +137,9 @@ class Accuracy(Brief):
             for (whose, level), why in self.refused.items():
                 if whose == stage:
                     yield f"  {shown(level)}: left out: {why}"
+        for (whose, _), why in self.refused.items():
+            if whose not in self.ladders:
+                yield f"{whose}: left out: {why}"
 
     @cached_property
     def table(self) -> bytes:
@@ -276,7 +280,7 @@ def accuracy(
     DesignError
         If there is no such stage, or `repeat` is less than 1.
     InfeasibleError
-        If the design cannot be made, or a stage at none of its levels.
+        If the design cannot be made, or its first stage, or a stage at none of its levels.
 
     Examples
     --------
@@ -288,9 +292,16 @@ def accuracy(
     """
     count, names = whole("repeat", repeat, 1), stages_of(result.design, stages)
     made = _ladders(result.design.kind)
-    ladders = {name: made[name](result) for name in names}
     first: dict[tuple[str, float], tuple[float, int]] = {}
     refused: dict[tuple[str, float], str] = {}
+    ladders: dict[str, Ladder] = {}
+    for name in names:
+        try:
+            ladders[name] = made[name](result)
+        except GearcamError as error:
+            if len(names) == 1 or not ladders:
+                raise
+            refused[name, math.nan] = str(error)
     total, done = (count + 1) * len(ladders), itertools.count()
     for name, ladder in ladders.items():
         if progress is not None:

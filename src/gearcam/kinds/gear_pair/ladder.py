@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, Gear, make_gear
 from gearcam.ladders import (
     CHORD_ORDER,
+    COARSER,
     Ladder,
     Ladders,
     chord_distance,
@@ -25,6 +27,9 @@ if TYPE_CHECKING:
 
 _FLANKS: Final = (2, 3, 5, 9, FLANK_POINTS, 33, 65, 129)
 """Points on a flank: each row holds those before it."""
+
+_PHASES: Final = 24
+"""Phases at which outlines are overlapped."""
 
 
 def _law(result: GearPairResult) -> Ladder:
@@ -127,6 +132,36 @@ def _solid(result: GearPairResult) -> Ladder:
     )
 
 
+def _contact(result: GearPairResult) -> Ladder:
+    """Overlap the outlines pressed together, as the meshing study does: areas, phase by phase."""
+    from gearcam.meshing.half_teeth import half_teeth
+    from gearcam.meshing.study import SHARE, mount, run
+
+    gears, chords = result.gears, result.pair.chord_tolerance(None)
+    setup = mount(gears, replace(result.design.meshing, steps=_PHASES))
+    own = min(SHARE * setup.penetration, chords)
+
+    def make(tolerance: float) -> tuple[Array, int]:
+        profiles = [replace(gear.profile, tolerance=tolerance) for gear in gears]
+        driver, driven = map(half_teeth, profiles)
+        turning = replace(setup.turning, driver=driver, driven=driven)
+        found = run(replace(setup, turning=turning))
+        rows = found.columns
+        phase = np.asarray(rows["step"], dtype=np.int64)
+        areas = np.bincount(phase, np.ma.filled(rows["area_mm2"], 0.0), len(found.phi1))
+        return areas.astype(np.float64), sum(len(profile.points) for profile in profiles)
+
+    return limit_ladder(
+        own,
+        make,
+        lambda made: made,
+        levels=[part * own for part in COARSER[:4]],
+        measured="overlap of a phase",
+        unit="mm2",
+        beyond=1.0 / 16.0,
+    )
+
+
 def _cut(result: GearPairResult) -> Callable[[float], tuple[Gear, Gear]]:
     """Return what makes both outlines to a chord tolerance, mm."""
 
@@ -156,4 +191,5 @@ LADDERS: Final[Ladders] = {
     "flank": _flank,
     "outline": _outline,
     "solid": _solid,
+    "contact": _contact,
 }
