@@ -108,6 +108,25 @@ def two_phases() -> Ratio:
     )
 
 
+def _stepped(rate: Any, places: Array, end: float, tolerance: float) -> Array:
+    """An initial value problem from 0, at places."""
+    relative = max(tolerance, 3e-14)  # finer ones it refuses
+    asked = {"rtol": relative, "atol": tolerance, "t_eval": places}
+    return solve_ivp(rate, (0.0, float(end)), [0.0], method="DOP853", **asked).y[0]
+
+
+def _arc_lengths(law: Ratio, phi: list[float]) -> Array:
+    """Arc lengths at driver angles, by Gauss quadrature between knots in 50 digits."""
+    edges = [law.exact_knots()[0], *map(mp.mpf, phi)]
+    inner = law.exact_knots()[1:-1]
+    arcs, total = [], mp.mpf(0)
+    for low, high in pairwise(edges):
+        ends = [low, *(knot for knot in inner if low < knot < high), high]
+        total += mp.quadgl(lambda x: law.speed(x, mp), ends)
+        arcs.append(float(total))
+    return np.array(arcs)
+
+
 def integral(law: Ratio) -> Case:
     """The driven angle at every degree."""
     exact = np.array([float(law.driven(mp.mpf(phi))) for phi in PLACES.tolist()])
@@ -140,18 +159,9 @@ def integral(law: Ratio) -> Case:
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     def ode(tolerance: float) -> Array:
-        found = solve_ivp(
-            lambda phi, _: [float(law.of(phi))],
-            (0.0, TURN),
-            [0.0],
-            method="DOP853",
-            rtol=max(tolerance, 3e-14),
-            atol=tolerance,
-            t_eval=PLACES,
-        )
-        return found.y[0]
+        return _stepped(lambda phi, _: [float(law.of(phi))], PLACES, TURN, tolerance)
 
-    smooth = len(law.knots) == 2
+    smooth, note = len(law.knots) == 2, "At every degree of a turn (quadrature at every tenth)"
     return Case(
         name=f"integral_{law.name.replace(' ', '_').replace('.', '')}",
         title=f"Integral of the ratio: {law.name}",
@@ -174,22 +184,14 @@ def integral(law: Ratio) -> Case:
         own=OWN,
         error=lambda made: float(np.abs(made - exact).max()),
         rounding=1e-14,
-        note="At every degree of a turn (quadrature at every tenth), against the closed form in 50 "
-        "digits.",
+        note=f"{note}, against the closed form in 50 digits.",
     )
 
 
 def inverse(law: Ratio) -> Case:
     """The driver angles at given arc lengths, rad: where teeth stand."""
-    phi = [TURN * (k + 0.37) / ARCS for k in range(ARCS)]
-    edges = [law.exact_knots()[0], *map(mp.mpf, phi)]
-    inner = law.exact_knots()[1:-1]
-    arcs, total = [], mp.mpf(0)
-    for low, high in pairwise(edges):
-        cut = [low, *(knot for knot in inner if low < knot < high), high]
-        total += mp.quadgl(lambda x: law.speed(x, mp), cut)
-        arcs.append(float(total))
-    s, exact = np.array(arcs), np.array(phi)
+    exact = TURN * (np.arange(ARCS) + 0.37) / ARCS
+    s, inner = _arc_lengths(law, exact.tolist()), law.knots[1:-1]
 
     def length(tolerance: float, cuts: int) -> Array:
         unit = expand(law.speed, law.knots, tolerance, cuts=cuts).antiderivative()
@@ -211,16 +213,7 @@ def inverse(law: Ratio) -> Case:
         return np.array([brentq(miss, 0.0, TURN, (one,), xtol=max(tolerance, 1e-14)) for one in s])
 
     def ode(tolerance: float) -> Array:
-        found = solve_ivp(
-            lambda _, x: [1.0 / float(law.speed(x[0]))],
-            (0.0, float(s[-1])),
-            [0.0],
-            method="DOP853",
-            rtol=max(tolerance, 3e-14),
-            atol=tolerance,
-            t_eval=s,
-        )
-        return found.y[0]
+        return _stepped(lambda _, x: [1.0 / float(law.speed(x[0]))], s, s[-1], tolerance)
 
     return Case(
         name=f"inverse_{law.name.replace(' ', '_').replace('.', '')}",

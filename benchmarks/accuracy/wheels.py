@@ -98,12 +98,14 @@ def flanks() -> Case:
     )  # fmt: skip
 
 
-def outlines() -> list[Case]:
-    """The outline of an ellipse's driver: as a file, by size; and its area, by time."""
+def built(tolerance: float, curves: str = "lines") -> Any:
+    """The ellipses at a chord tolerance, mm."""
+    text = ELLIPSE.format(tolerance=f"{tolerance:.9f}", curves=curves)
+    return gearcam.build(gearcam.loads(text))
 
-    def built(tolerance: float, curves: str = "lines") -> Any:
-        text = ELLIPSE.format(tolerance=f"{tolerance:.9f}", curves=curves)
-        return gearcam.build(gearcam.loads(text))
+
+def outlines() -> Case:
+    """The outlines of a pair as files."""
 
     def dxf(curves: str) -> Any:
         def make(tolerance: float) -> tuple[int, float]:
@@ -112,6 +114,31 @@ def outlines() -> list[Case]:
             return sum(map(len, files.values())), max(measured["dxf"]["error_mm"].values())
 
         return make
+
+    files = [
+        Method(
+            f"DXF of {curves}", "chord tolerance, mm", TOLERANCES, dxf(curves), -1.0,
+            size=lambda made: float(made[0]),
+        )
+        for curves in ("lines", "arcs", "splines")
+    ]  # fmt: skip
+    return Case(
+        name="outline_size",
+        title="Outlines as files",
+        what="the curve, both ways",
+        unit="mm",
+        methods=files,
+        own="DXF of arcs",
+        error=lambda made: made[1],
+        rounding=1e-9,
+        note="Both wheels of an ellipse of eccentricity 0.3, module 2 mm, 41 teeth: the files "
+        "are read back and held against the curve. The orders are in the tolerance.",
+        cost="bytes",
+    )
+
+
+def areas() -> Case:
+    """The area inside the driver's outline."""
 
     def area(tolerance: float) -> float:
         return float(polygon_area(built(tolerance).gear1.outline))
@@ -122,46 +149,24 @@ def outlines() -> list[Case]:
     # the finest two, and the limit that order 1 in the tolerance leads to
     coarse, fine = area(4e-6), area(1e-6)
     limit = fine + (fine - coarse) / 3.0
-    files = [
-        Method(
-            f"DXF of {curves}", "chord tolerance, mm", TOLERANCES, dxf(curves), -1.0,
-            size=lambda made: float(made[0]),
-        )
-        for curves in ("lines", "arcs", "splines")
-    ]  # fmt: skip
-    return [
-        Case(
-            name="outline_size",
-            title="Outlines as files",
-            what="the curve, both ways",
-            unit="mm",
-            methods=files,
-            own="DXF of arcs",
-            error=lambda made: made[1],
-            rounding=1e-9,
-            note="Both wheels of an ellipse of eccentricity 0.3, module 2 mm, 41 teeth: the files "
-            "are read back and held against the curve. The orders are in the tolerance.",
-            cost="bytes",
-        ),
-        Case(
-            name="outline_area",
-            title="Area inside an outline",
-            what="the area",
-            unit="mm2",
-            methods=[
-                Method("polygon", "chord tolerance, mm", TOLERANCES, area, -1.0),
-                Method("cubics", "chord tolerance, mm", TOLERANCES, cubics),
-            ],
-            own="cubics",
-            error=lambda made: abs(made - limit),
-            rounding=3e-6,
-            note="The driver of the same pair, everything from the law on, against the limit of "
-            "polygons by Richardson, from tolerances of 4 and 1 nm, which is good to 3e-6 mm2. "
-            "The cubics have the points and tangents of dense runs.",
-        ),
-    ]
+    return Case(
+        name="outline_area",
+        title="Area inside an outline",
+        what="the area",
+        unit="mm2",
+        methods=[
+            Method("polygon", "chord tolerance, mm", TOLERANCES, area, -1.0),
+            Method("cubics", "chord tolerance, mm", TOLERANCES, cubics),
+        ],
+        own="cubics",
+        error=lambda made: abs(made - limit),
+        rounding=3e-6,
+        note="The driver of the same pair, everything from the law on, against the limit of "
+        "polygons by Richardson, from tolerances of 4 and 1 nm, which is good to 3e-6 mm2. "
+        "The cubics have the points and tangents of dense runs.",
+    )
 
 
 def cases() -> list[Case]:
     """All of them."""
-    return [flanks(), *outlines()]
+    return [flanks(), outlines(), areas()]
