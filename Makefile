@@ -4,6 +4,7 @@
 # make lint    style, types, import contracts
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
 # make peers   compare flanks with those of another package
+# make accuracy  compare methods, error against run time, and write docs/accuracy.md
 # make compare BASE=COMMIT [N=50] [SEED=1] [MORE=...]   what both make of N random designs of each
 #              kind and of the gallery; MORE goes to tools/compare.py, which tells of its options
 # make matrix  the tests with every supported Python found, and with the lowest and the newest versions
@@ -24,7 +25,7 @@ RUN    := run install
 TEST   := $(RUN) step plot test
 
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench peers compare matrix notebooks lock clean help
+.PHONY: demo test lint slow bench peers accuracy compare matrix notebooks lock clean help
 
 help:
 	@sed -n '/^$$/q; s/^# \{0,1\}//p' Makefile
@@ -51,6 +52,9 @@ bench: $(VENV)/.bench
 
 peers: $(VENV)/.bench
 	$(BIN)/python benchmarks/agreement.py
+
+accuracy: $(VENV)/.bench
+	$(BIN)/python benchmarks/accuracy/run.py
 
 compare: $(VENV)/.test
 	$(BIN)/python tools/compare.py $(BASE) --count $(or $(N),50) --seed $(or $(SEED),1) $(MORE)

@@ -129,10 +129,13 @@ def _dispatch(words: list[str]) -> None:
 
 
 def _commands_of_kinds() -> Iterator[Command]:
-    """Yield the commands that kinds of design add."""
+    """Yield the commands that kinds of design add, and those of studies of any kind."""
+    from gearcam.studies.commands import COMMANDS
+
     for kind in KINDS.values():
         with contextlib.suppress(ModuleNotFoundError):
             yield from kind.room("commands").COMMANDS
+    yield from COMMANDS
 
 
 def _parser(
@@ -164,7 +167,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 
 
 def _command_help(docs: Mapping[str, str]) -> str:
-    rows = (f"  {name:<8}{doc}\n" for name, doc in docs.items())
+    rows = (f"  {name:<10}{doc}\n" for name, doc in docs.items())
     return "commands:\n" + "".join(rows) + "\n"
 
 

@@ -16,7 +16,8 @@ names it, and only that of a file is loaded. Its modules:
   package `gearcam.kinds` tells type checkers of them);
 - `describe`: what schema, template and list of laws say of its main part, and the table of each
   of its items;
-- `commands`, where it has any: ``COMMANDS`` of the command line.
+- `commands`, where it has any: ``COMMANDS`` of the command line;
+- `ladder`, where it has any: ``LADDERS``, stages at rising resolution (see `gearcam.ladders`).
 """
 
 from __future__ import annotations

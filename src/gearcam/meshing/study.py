@@ -33,7 +33,7 @@ from gearcam.numeric.arrays import Array, Mask
 
 Progress = Callable[[str, int, int], None]
 
-_SHARE = 1.0 / 200.0
+SHARE = 1.0 / 200.0
 """Chord error of each outline over the penetration: both together are a hundredth."""
 
 BLOCK = 120
@@ -199,7 +199,7 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
     if not levers.size:
         levers = np.abs(pair.rolling.tracks[0].frames(np.zeros(1)).p.real)
     penetration = abs(spec.overclosure) * float(levers.min())
-    tolerance = min(_SHARE * penetration, pair.chord_tolerance(None))
+    tolerance = min(SHARE * penetration, pair.chord_tolerance(None))
     if tolerance < FINEST * pair.module:
         least = spec.overclosure * FINEST * pair.module / tolerance
         raise InfeasibleError(

@@ -21,7 +21,7 @@ from gearcam.numeric.arrays import Array
 
 _DEGREE = 8
 
-_FIRST_CUTS = 128
+FIRST_CUTS = 128
 """Intervals to begin with, so that a bump of a degree cannot slip between the samples."""
 
 _NOISE = 1e-11
@@ -142,7 +142,7 @@ def expand(
     tolerance: float,
     *,
     degree: int = _DEGREE,
-    cuts: int = _FIRST_CUTS,
+    cuts: int = FIRST_CUTS,
 ) -> Expansion:
     """Expand a piecewise smooth function to a tolerance.
 

@@ -1,0 +1,79 @@
+"""Compare methods and write the tables and figures of docs/accuracy.md. No number is by hand."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+# how the other measurements measure, and the sweeps, which are the witnesses of the tests
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+
+import cam_profiles
+import gearcam
+import integrals
+import wheels
+from gearcam.console import quieten
+from gearcam.numeric.memory import keep_freed_memory
+from gearcam.studies.accuracy import accuracy
+from gearcam.studies.svg import log_charts
+from measuring import ROOT, environment
+from methods import Found, climb
+
+PAGE = ROOT / "docs" / "accuracy.md"
+FIGURES = ROOT / "docs" / "accuracy"
+BEGIN, END = "<!-- written by make accuracy -->", "<!-- end of what make accuracy writes -->"
+COMMANDED = ("ellipse", "plate_cam_offset_roller")
+"""Profiles of which the command's own figures are shown."""
+REPEATS = 15
+
+
+def section(found: Found) -> list[str]:
+    """A case as text: heading, note, figure, table, and what is on the front."""
+    case = found.case
+    over = case.cost.partition(",")[0]
+    on = ", then ".join(dict.fromkeys(name for name, _ in found.front))
+    return [
+        f"### {case.title}",
+        "",
+        case.note,
+        "",
+        f"![{case.title}: error against {over}](accuracy/{case.name}.svg)",
+        "",
+        *found.rows(),
+        "",
+        f"On the front, from cheap to exact: {on}.",
+        "",
+    ]
+
+
+def main() -> int:
+    """Measure, draw, write."""
+    keep_freed_memory()  # as the command line does
+    quieten()
+    FIGURES.mkdir(exist_ok=True)
+    for name in COMMANDED:
+        found = accuracy(
+            gearcam.build(gearcam.load(ROOT / "profiles" / f"{name}.toml")), repeat=REPEATS
+        )
+        picture = log_charts(f"{name}: error against run time", found.charts)
+        (FIGURES / f"{name}.svg").write_bytes(picture)
+        print(f"{name}: {', '.join(found.ladders)}", flush=True)
+    text, behind = [*environment(), ""], []
+    for case in (*integrals.cases(), *wheels.cases(), *cam_profiles.cases()):
+        found = climb(case, REPEATS)
+        (FIGURES / f"{case.name}.svg").write_bytes(log_charts(case.title, [found.chart]))
+        text += section(found)
+        if not found.on_front:
+            behind.append(case.title)
+        print(f"{case.title}: front {[name for name, _ in found.front]}", flush=True)
+    before, _, rest = PAGE.read_text("utf-8").partition(BEGIN)
+    after = rest.partition(END)[2]
+    PAGE.write_text("\n".join([before + BEGIN, "", *text, END + after]), encoding="utf-8")
+    print(f"wrote {PAGE.relative_to(ROOT)}")
+    print(f"the front does not end with the program's method: {', '.join(behind) or 'nowhere'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

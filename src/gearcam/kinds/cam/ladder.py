@@ -1,0 +1,147 @@
+"""The stages of a cam at rising resolution (see `gearcam.ladders`)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.cams.three_points import three_point_curvature
+from gearcam.cams.wall import CHORD_TOLERANCE, Wall
+from gearcam.kinds.cam.follow import followed
+from gearcam.ladders import (
+    CHORD_ORDER,
+    Ladder,
+    Ladders,
+    chord_distance,
+    limit_ladder,
+    tolerances_around,
+)
+from gearcam.numeric.arrays import Array, Plane
+
+if TYPE_CHECKING:
+    from gearcam.kinds.cam.build import CamResult
+
+_COUNTS: Final = (45, 90, 180, 360, 720, 1440, 2880, 5760)
+"""Points of a turn from which curvature is told."""
+
+_ANGLES: Final = 120
+"""Cam angles at which the lift that a profile gives is compared."""
+
+
+def _outline(result: CamResult) -> Ladder:
+    def make(tolerance: float) -> list[Wall]:
+        made = [replace(wall, tolerance=tolerance) for wall in result.cam.walls]
+        for wall in made:
+            _ = wall.contour  # made when it is asked for
+        return made
+
+    def measure(made: list[Wall]) -> tuple[float, int]:
+        found = [chord_distance(wall.sampler) for wall in made]
+        return max(off for off, _ in found), sum(count for _, count in found)
+
+    own = _own(result)
+    reach = max(float(np.abs(wall.outline).max()) for wall in result.cam.walls)
+    return Ladder(
+        refined="chord tolerance, mm",
+        measured="chords of walls" if len(result.cam.walls) > 1 else "chords of the profile",
+        unit="mm",
+        levels=tolerances_around(own),
+        own=own,
+        order=CHORD_ORDER,
+        rounding=64.0 * np.finfo(float).eps * reach,
+        make=make,
+        measure=measure,
+    )
+
+
+def _solid(result: CamResult) -> Ladder:
+    from gearcam.solids import Mesh, solid
+
+    own, parts = _own(result), dict[float, Any]()
+
+    def make(tolerance: float) -> list[Mesh]:
+        if tolerance not in parts:
+            design = result.design.with_({"output.chord_tolerance_mm": tolerance})
+            parts[tolerance] = type(result)(design, result.tolerances).parts
+        return [solid(part) for part in parts[tolerance]]
+
+    def told(made: list[Mesh]) -> tuple[Array, int]:
+        return np.array([mesh.volume for mesh in made]), sum(len(mesh.triangles) for mesh in made)
+
+    levels = tolerances_around(own)[:-1]
+    return limit_ladder(own, make, told, levels=levels, measured="volume of solids", unit="mm3")
+
+
+def _contact(result: CamResult) -> Ladder:
+    """Follow the first profile as it is cut, its polygon: the lift that the follower gets."""
+    wall = result.cam.walls[0]
+    theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
+    own, outlines = _own(result), dict[float, Array]()
+
+    def make(tolerance: float) -> tuple[Array, int]:
+        if tolerance not in outlines:
+            outlines[tolerance] = replace(wall, tolerance=tolerance).outline
+        outline = outlines[tolerance]
+        bulges = np.zeros(len(outline))
+        found, _, _ = followed(wall, outline, bulges, theta, result.design.limits)
+        return found["s"], len(outline)
+
+    return limit_ladder(
+        own,
+        make,
+        lambda made: made,
+        levels=tolerances_around(own)[:-1],
+        measured="lift from the profile",
+        unit="deg" if result.design.follower.oscillating else "mm",
+    )
+
+
+def _cam(result: CamResult) -> Ladder:
+    """Tell the pitch curve's curvature from three neighbouring points: root of the mean square.
+
+    Next to a knot where a derivative of the lift jumps it converges less well, or not at all.
+    """
+    motion = result.cam.motions[0]
+    curve, program = motion.curve, motion.program
+
+    def make(count: float) -> tuple[Array, Array]:
+        theta = np.arange(int(count), dtype=np.float64) * (2.0 * math.pi / count)
+        s, ds = program.derivatives(theta, 1)
+        points: Plane = np.conj(curve.trace(theta, s, ds, 0.0)[0])  # counter-clockwise
+        return theta, three_point_curvature(points, closed=program.closed)
+
+    def measure(made: tuple[Array, Array]) -> tuple[float, int]:
+        theta, found = made
+        contact = curve.contact(theta, 0)
+        exact = np.asarray(contact.turning.c[0] / contact.pitch_speed.c[0]) + np.zeros_like(theta)
+        missed = found - (exact if program.closed else exact[1:-1])
+        return math.sqrt(np.mean(missed**2)), len(theta)
+
+    rough = min((jump.order for jump in program.jumps), default=4)
+    return Ladder(
+        refined="points of a turn",
+        measured="curvature from three points",
+        unit="1/mm",
+        levels=_COUNTS,
+        own=None,
+        order=min(CHORD_ORDER, rough - 1.5),
+        rounding=0.0,
+        make=make,
+        measure=measure,
+    )
+
+
+def _own(result: CamResult) -> float:
+    """Return the chord tolerance of the design, mm."""
+    return result.design.output.chord_tolerance or CHORD_TOLERANCE
+
+
+LADDERS: Final[Ladders] = {
+    "outline": _outline,
+    "solid": _solid,
+    "contact": _contact,
+    "cam": _cam,
+}

@@ -1,0 +1,195 @@
+"""The stages of a gear pair at rising resolution (see `gearcam.ladders`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, Gear, make_gear
+from gearcam.ladders import (
+    CHORD_ORDER,
+    COARSER,
+    Ladder,
+    Ladders,
+    chord_distance,
+    integral_ladder,
+    limit_ladder,
+    tolerances_around,
+)
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.piecewise import Piecewise
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.build import GearPairResult
+
+_FLANKS: Final = (2, 3, 5, 9, FLANK_POINTS, 33, 65, 129)
+"""Points on a flank: each row holds those before it."""
+
+_PHASES: Final = 24
+"""Phases at which outlines are overlapped."""
+
+
+def _law(result: GearPairResult) -> Ladder:
+    law = result.law
+    return integral_ladder(
+        law.ratio,
+        law.ratio.knots,
+        law.driven if isinstance(law.driven, Piecewise) else None,
+        size=1.0,
+        measured="rack travel" if result.pair.on_rack else "driven angle",
+        unit="" if result.pair.on_rack else "rad",
+    )
+
+
+def _centrode(result: GearPairResult) -> Ladder:
+    arc = result.pair.rolling.arc
+    return integral_ladder(
+        arc.speed,
+        result.law.ratio.knots,
+        None,
+        size=arc.size,
+        measured="arc length",
+        unit="mm",
+    )
+
+
+def _flank(result: GearPairResult) -> Ladder:
+    """Join points on the exact flanks by chords: how well as many points tell of a flank."""
+    gears = result.gears
+
+    def points(count: float) -> list[Plane]:
+        made = []
+        for gear in gears:
+            found = gear.flank_points(int(count))
+            made.append((found["x_mm"] + 1j * found["y_mm"]).reshape(-1, int(count)))
+        return made
+
+    fine = points(2 * _FLANKS[-1] - 1)
+
+    def measure(made: list[Plane]) -> tuple[float, int]:
+        off = 0.0
+        for rough, exact in zip(made, fine, strict=True):
+            skip = (exact.shape[1] - 1) // (rough.shape[1] - 1)
+            middles = exact[:, skip // 2 :: skip]
+            chord = np.diff(rough, axis=1)
+            away = (middles - rough[:, :-1]) * np.conj(chord)
+            off = max(off, float((np.abs(away.imag) / np.abs(chord)).max()))
+        return off, sum(one.size for one in made)
+
+    return Ladder(
+        refined="points on a flank",
+        measured="chords of flanks",
+        unit="mm",
+        levels=_FLANKS,
+        own=FLANK_POINTS,
+        order=CHORD_ORDER,
+        rounding=64.0 * np.finfo(float).eps * max(gear.largest_radius for gear in gears),
+        make=points,
+        measure=measure,
+    )
+
+
+def _outline(result: GearPairResult) -> Ladder:
+    own, levels = _tolerances(result)
+
+    def measure(made: tuple[Gear, Gear]) -> tuple[float, int]:
+        found = [chord_distance(gear.profile.sampler) for gear in made]
+        return max(off for off, _ in found), sum(count for _, count in found)
+
+    return Ladder(
+        refined="chord tolerance, mm",
+        measured="chords of outlines",
+        unit="mm",
+        levels=levels,
+        own=own,
+        order=CHORD_ORDER,
+        rounding=64.0 * np.finfo(float).eps * max(gear.largest_radius for gear in result.gears),
+        make=_cut(result),
+        measure=measure,
+    )
+
+
+def _solid(result: GearPairResult) -> Ladder:
+    from gearcam.solids import Mesh, solid
+
+    own, levels = _tolerances(result)
+    parts: dict[float, Any] = {}
+
+    def make(tolerance: float) -> list[Mesh]:
+        if tolerance not in parts:
+            design = result.design.with_({"output.chord_tolerance_mm": tolerance})
+            parts[tolerance] = type(result)(design, result.tolerances).parts
+        return [solid(part) for part in parts[tolerance]]
+
+    def told(made: list[Mesh]) -> tuple[Array, int]:
+        return np.array([mesh.volume for mesh in made]), sum(len(mesh.triangles) for mesh in made)
+
+    return limit_ladder(
+        own, make, told, levels=levels[:-1], measured="volume of solids", unit="mm3"
+    )
+
+
+def _contact(result: GearPairResult) -> Ladder:
+    """Overlap the outlines pressed together, as the meshing study does: areas, phase by phase."""
+    from gearcam.meshing.half_teeth import half_teeth
+    from gearcam.meshing.study import SHARE, mount, run
+
+    gears, chords = result.gears, result.pair.chord_tolerance(None)
+    setup = mount(gears, replace(result.design.meshing, steps=_PHASES))
+    own = min(SHARE * setup.penetration, chords)
+
+    def make(tolerance: float) -> tuple[Array, int]:
+        profiles = [replace(gear.profile, tolerance=tolerance) for gear in gears]
+        driver, driven = map(half_teeth, profiles)
+        turning = replace(setup.turning, driver=driver, driven=driven)
+        found = run(replace(setup, turning=turning))
+        rows = found.columns
+        phase = np.asarray(rows["step"], dtype=np.int64)
+        areas = np.bincount(phase, np.ma.filled(rows["area_mm2"], 0.0), len(found.phi1))
+        return areas.astype(np.float64), sum(len(profile.points) for profile in profiles)
+
+    return limit_ladder(
+        own,
+        make,
+        lambda made: made,
+        levels=[part * own for part in COARSER[:4]],
+        measured="overlap of a phase",
+        unit="mm2",
+        beyond=1.0 / 16.0,
+    )
+
+
+def _cut(result: GearPairResult) -> Callable[[float], tuple[Gear, Gear]]:
+    """Return what makes both outlines to a chord tolerance, mm."""
+
+    def make(tolerance: float) -> tuple[Gear, Gear]:
+        pair, ring, inner = result.pair, result.design.ring, result.tolerances
+        made = (
+            make_gear(pair, 1, tolerance, inner, ring),
+            make_gear(pair, 2, tolerance, inner, ring),
+        )
+        for gear in made:
+            _ = gear.outline  # made when it is asked for
+        return made
+
+    return make
+
+
+def _tolerances(result: GearPairResult) -> tuple[float, list[float]]:
+    """Return the chord tolerance of the design, mm, and those of a ladder around it."""
+    pair = result.pair
+    own = pair.chord_tolerance(result.design.output.chord_tolerance)
+    return own, tolerances_around(own, FINEST * pair.module / 64.0, COARSEST * pair.module)
+
+
+LADDERS: Final[Ladders] = {
+    "law": _law,
+    "centrode": _centrode,
+    "flank": _flank,
+    "outline": _outline,
+    "solid": _solid,
+    "contact": _contact,
+}

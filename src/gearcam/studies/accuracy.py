@@ -1,0 +1,385 @@
+"""Error against run time: the stages of a design at rising resolution, measured in turns."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import math
+import statistics
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam.charts import Chart, Line
+from gearcam.designs.design import Design
+from gearcam.designs.faults import did_you_mean, show
+from gearcam.designs.kind import KINDS
+from gearcam.display import Brief
+from gearcam.errors import DesignError, GearcamError, Problem
+from gearcam.facts import Facts, lined_up
+from gearcam.ladders import Ladder, Ladders
+from gearcam.numerals import exact, shown
+from gearcam.numeric.arguments import whole
+from gearcam.result import Progress, Result
+from gearcam.written import Written
+
+REPEATS: Final = 5
+"""How often each level is made where nobody says how often."""
+
+TABLE: Final = "accuracy.csv"
+PICTURE: Final = "accuracy.svg"
+
+COLUMNS: Final = (
+    "stage", "measured", "refined", "level", "own", "error", "unit", "rounding",
+    "order", "order_expected", "time_s", "points",
+)  # fmt: skip
+"""Of ``accuracy.csv``."""
+
+_FITTED: Final = 3
+"""Rungs to which the order of a ladder is fitted: the finest that are above rounding."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rung(Brief):
+    """One level of a stage, measured.
+
+    Parameters
+    ----------
+    stage : str
+        Whose.
+    level : float
+        What was asked for: intervals, points on a flank, a chord tolerance in mm.
+    own : bool
+        Whether the program itself takes this level.
+    error : float
+        In the unit of the ladder.
+    order : float or None
+        With which power of the points the error fell since the rung before; None for the first,
+        where points did not rise, and where rounding is what is left.
+    seconds : float
+        Median run time.
+    points : int
+        What it was made from.
+    """
+
+    stage: str
+    level: float
+    own: bool
+    error: float
+    order: float | None
+    seconds: float
+    points: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Accuracy(Brief):
+    """What has been measured on a result.
+
+    Parameters
+    ----------
+    result : Result
+        Of which.
+    ladders : mapping of str to Ladder
+        By stage.
+    rungs : tuple of Rung
+        By stage, from coarse to fine.
+    refused : mapping of (str, float) to str
+        Levels at which nothing could be made, with the reason; of a stage of which nothing could,
+        not-a-number.
+    repeat : int
+        How often each was made.
+    """
+
+    result: Result
+    ladders: Mapping[str, Ladder]
+    rungs: tuple[Rung, ...]
+    refused: Mapping[tuple[str, float], str]
+    repeat: int
+
+    def of(self, stage: str) -> tuple[Rung, ...]:
+        """Return the rungs of a `stage`, from coarse to fine."""
+        return tuple(rung for rung in self.rungs if rung.stage == stage)
+
+    def order(self, stage: str) -> float | None:
+        """Return the order of a `stage`: the slope through its finest rungs above rounding.
+
+        None where fewer than two are above rounding, or take the same points.
+        """
+        found = [rung for rung in self.of(stage) if rung.error > self.ladders[stage].rounding]
+        points, errors = np.log(
+            [(float(rung.points), rung.error) for rung in found[-_FITTED:]] or [(1.0, 1.0)]
+        ).T
+        if np.ptp(points) == 0.0:
+            return None
+        return -float(np.polyfit(points, errors, 1)[0])
+
+    def lines(self) -> Iterator[str]:
+        """Yield the table for people: a heading for each stage, its rungs lined up below."""
+        yield f"error against run time, median of {self.repeat} in turns; * as the program does it"
+        for stage, ladder in self.ladders.items():
+            order = self.order(stage)
+            told = "rounding" if order is None else f"order {order:.2f}"
+            yield f"{stage}: error of {ladder.measured}; {told}, {shown(ladder.order)} expected"
+            rows = [(ladder.refined, "", "error", "order", "time", "points")]
+            for rung in self.of(stage):
+                error = f"{rung.error:.2e} {ladder.unit}".rstrip()
+                fell = "" if rung.order is None else f"{rung.order:.2f}"
+                times = f"{1e3 * rung.seconds:.3f} ms"
+                mark = "*" if rung.own else ""
+                rows.append((shown(rung.level), mark, error, fell, times, str(rung.points)))
+            yield from (f"  {row}" for row in lined_up(_right(rows)))
+            for (whose, level), why in self.refused.items():
+                if whose == stage:
+                    yield f"  {shown(level)}: left out: {why}"
+        for (whose, _), why in self.refused.items():
+            if whose not in self.ladders:
+                yield f"{whose}: left out: {why}"
+
+    @cached_property
+    def table(self) -> bytes:
+        """``accuracy.csv``: a row for each rung, empty where there is nothing to tell."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        for rung in self.rungs:
+            ladder = self.ladders[rung.stage]
+            order = "" if rung.order is None else exact(rung.order)
+            writer.writerow(
+                (
+                    *(rung.stage, ladder.measured, ladder.refined, exact(rung.level)),
+                    *(int(rung.own), exact(rung.error), ladder.unit, exact(ladder.rounding)),
+                    *(order, exact(ladder.order), exact(rung.seconds), rung.points),
+                )
+            )
+        return text.getvalue().encode()
+
+    @cached_property
+    def charts(self) -> tuple[Chart, ...]:
+        """A chart for each stage: errors over run times, and a ring around the program's own."""
+        return tuple(self._chart(stage) for stage in self.ladders)
+
+    def _chart(self, stage: str) -> Chart:
+        ladder, rungs = self.ladders[stage], self.of(stage)
+
+        def line(label: str, some: Sequence[Rung], dots: bool) -> Line:
+            x = np.array([rung.seconds for rung in some])
+            return Line(label=label, x=x, y=np.array([rung.error for rung in some]), dots=dots)
+
+        own = [rung for rung in rungs if rung.own]
+        lines = (line(f"by {ladder.refined}", rungs, False),)
+        if own:
+            lines += (line("as the program does it", own, True),)
+        what = f"{ladder.measured}, {ladder.unit}" if ladder.unit else ladder.measured
+        return Chart(title=stage, x="run time, s", y=f"error of {what}", lines=lines)
+
+    def write(self, directory: str | Path = "output") -> Written:
+        """Write table and figure beside the files of a build, which stay.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+
+        Returns
+        -------
+        Written
+            Whose facts tell the table.
+
+        Raises
+        ------
+        WriteError
+            If the disk refuses.
+        """
+        from gearcam.studies.svg import log_charts
+
+        picture = log_charts(f"{self.result.design.name}: error against run time", self.charts)
+        written = self.result.keep({TABLE: self.table, PICTURE: picture}, directory, {})
+        return replace(written, facts=_Told(self))
+
+
+class _Told(Facts):
+    """The facts of a result that are told as the table of what was measured on it."""
+
+    def __init__(self, made: Accuracy) -> None:
+        super().__init__(made.result.facts.document)
+        self._made = made
+
+    def lines(self) -> Iterator[str]:
+        """Yield the table."""
+        return self._made.lines()
+
+
+def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Return the stages of a design that can be measured, or those `asked` for.
+
+    Parameters
+    ----------
+    design : Design
+        Of any kind.
+    asked : sequence of str, optional
+        Names of stages; all that its kind has where left out.
+
+    Returns
+    -------
+    tuple of str
+
+    Raises
+    ------
+    DesignError
+        If its kind has no such stage, with those that it has.
+    """
+    known = tuple(_ladders(design.kind))
+    if asked is None and known:
+        return known
+    problems = []
+    every = {name for kind in KINDS for name in _ladders(kind)}
+    for name in dict.fromkeys(asked or ("",)):
+        if name not in known:
+            what = f"is no stage of designs of kind {design.kind}" if name in every else ""
+            message = f"{show(name)} {what or 'is no stage'}" if name else "no stage is listed"
+            hint = "" if name in every else did_you_mean(name, known)
+            allowed = ", ".join(known) or f"none of designs of kind {design.kind}"
+            problems.append(Problem(message, key="--stage", allowed=allowed, hint=hint))
+    if problems:
+        raise DesignError(problems)
+    return tuple(name for name in known if name in (asked or ()))
+
+
+def accuracy(
+    result: Result,
+    stages: Sequence[str] | None = None,
+    repeat: int = REPEATS,
+    progress: Progress | None = None,
+) -> Accuracy:
+    """Measure the stages of a result at rising resolution.
+
+    Parameters
+    ----------
+    result : Result
+        Of a design of any kind that has ladders.
+    stages : sequence of str, optional
+        Which; all where left out.
+    repeat : int
+        How often each level is made, 1 or more: all levels in turns, so that a busy moment hits
+        them alike, after one round that does not count.
+    progress : callable, optional
+        Called with a stage's name, the rounds done and their number.
+
+    Returns
+    -------
+    Accuracy
+
+    Raises
+    ------
+    DesignError
+        If there is no such stage, or `repeat` is less than 1.
+    InfeasibleError
+        If the design cannot be made, or its first stage, or a stage at none of its levels.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> from gearcam.studies.accuracy import accuracy
+    >>> found = accuracy(gc.build(gc.load("profiles/ellipse.toml")), ["flank"], repeat=1)
+    >>> round(found.order("flank"), 1)
+    2.0
+    """
+    count, names = whole("repeat", repeat, 1), stages_of(result.design, stages)
+    made = _ladders(result.design.kind)
+    first: dict[tuple[str, float], tuple[float, int]] = {}
+    refused: dict[tuple[str, float], str] = {}
+    ladders: dict[str, Ladder] = {}
+    for name in names:
+        try:
+            ladders[name] = made[name](result)
+        except GearcamError as error:
+            if len(names) == 1 or not ladders:
+                raise
+            refused[name, math.nan] = str(error)
+    total, done = (count + 1) * len(ladders), itertools.count()
+    for name, ladder in ladders.items():
+        if progress is not None:
+            progress(name, next(done), total)
+        _first_round(name, ladder, first, refused)
+    samples: dict[tuple[str, float], list[float]] = {rung: [] for rung in first}
+    for number in range(count):
+        for name, ladder in ladders.items():
+            if progress is not None:
+                progress(name, next(done), total)
+            levels = [level for whose, level in first if whose == name]
+            # each time another one comes first: caches are cold then
+            cut = number % len(levels)
+            for level in levels[cut:] + levels[:cut]:
+                start = time.perf_counter()
+                ladder.make(level)
+                samples[name, level].append(time.perf_counter() - start)
+    return Accuracy(
+        result=result,
+        ladders=ladders,
+        rungs=tuple(_rungs(ladders, first, samples)),
+        refused=refused,
+        repeat=count,
+    )
+
+
+def _first_round(
+    name: str,
+    ladder: Ladder,
+    first: dict[tuple[str, float], tuple[float, int]],
+    refused: dict[tuple[str, float], str],
+) -> None:
+    """Make every level of a ladder once and measure it; what cannot be made is refused."""
+    reason: GearcamError | None = None
+    for level in ladder.levels:
+        try:
+            first[name, level] = ladder.measure(ladder.make(level))
+        except GearcamError as error:
+            refused[name, level], reason = str(error), error
+    if reason is not None and not any(whose == name for whose, _ in first):
+        raise reason
+
+
+def _rungs(
+    ladders: Mapping[str, Ladder],
+    first: Mapping[tuple[str, float], tuple[float, int]],
+    samples: Mapping[tuple[str, float], Sequence[float]],
+) -> Iterator[Rung]:
+    before: dict[str, tuple[float, int]] = {}
+    for (name, level), (error, points) in first.items():
+        ladder = ladders[name]
+        last, order = before.get(name), None
+        if last and points > last[1] and min(error, last[0]) > ladder.rounding:
+            order = math.log(last[0] / error) / math.log(points / last[1])
+        before[name] = error, points
+        yield Rung(
+            stage=name,
+            level=level,
+            own=level == ladder.own,
+            error=error,
+            order=order,
+            seconds=statistics.median(samples[name, level]),
+            points=points,
+        )
+
+
+def _ladders(kind: str) -> Ladders:
+    """Return the ladders of a kind of design; none where it has no room for them."""
+    try:
+        room: Any = KINDS[kind].room("ladder")
+    except ModuleNotFoundError:
+        return {}
+    return room.LADDERS
+
+
+def _right(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Return rows whose cells are filled up from the left, so that digits stand in columns."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        tuple(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows
+    ]

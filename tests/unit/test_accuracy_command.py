@@ -1,0 +1,292 @@
+"""The command accuracy: table, files, figure, refusals; and how it takes times."""
+
+from __future__ import annotations
+
+import json
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import polars as pl
+import pytest
+
+import gearcam
+from gearcam.charts import Chart, Line
+from gearcam.cli import main
+from gearcam.errors import DesignError, GearcamError
+from gearcam.kinds.cam import ladder as room
+from gearcam.ladders import Ladder
+from gearcam.studies.accuracy import COLUMNS, accuracy, stages_of
+from gearcam.studies.svg import log_charts
+
+TEXT = """
+kind = "cam"
+name = "cam"
+motion = [
+  { type = "rise", law = "4-5-6-7", angle_deg = 120, lift_mm = 10 },
+  { type = "return", law = "4-5-6-7", angle_deg = 240 },
+]
+follower = { type = "roller", roller_radius_mm = 8 }
+cam = { base_radius_mm = 40, thickness_mm = 10 }
+output = { files = ["csv"] }
+"""
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture
+def design(tmp_path: Path) -> str:
+    path = tmp_path / "cam.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return str(path)
+
+
+def run(design: str, *options: str) -> tuple[int, Path]:
+    folder = Path(design).parent / "out"
+    return main(["accuracy", design, "-o", str(folder), *options]), folder / "cam"
+
+
+def ladder(make: Any = float, **more: Any) -> Ladder:
+    """A ladder whose error is 1/level^2 at so many points."""
+    given = {"levels": (10.0, 20.0, 40.0), "own": 20.0, "order": 2.0, "rounding": 0.0, **more}
+    return Ladder(
+        refined="steps",
+        measured="nothing",
+        unit="mm",
+        make=make,
+        measure=lambda made: (made**-2.0, int(made)),
+        **given,
+    )
+
+
+@pytest.fixture
+def planted(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Ladders that stand for those of cams."""
+    made: dict[str, Any] = {}
+    monkeypatch.setattr(room, "LADDERS", made)
+    return made
+
+
+# --- what is told -------------------------------------------------------------------------------
+
+
+def test_table_and_file_tell_the_same(design: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, folder = run(design, "--stage", "cam,outline", "--repeat", "2")
+    assert code == 0
+    told = capsys.readouterr().out
+    rows = pl.read_csv(folder / "accuracy.csv")
+    assert tuple(rows.columns) == COLUMNS
+    assert rows["stage"].unique(maintain_order=True).to_list() == ["outline", "cam"]
+    lines = iter(told.splitlines())
+    for row in rows.iter_rows(named=True):
+        cells = next(line.split() for line in lines if f"{row['error']:.2e} {row['unit']}" in line)
+        assert float(cells[0]) == pytest.approx(row["level"], rel=1e-5)
+        assert ("*" in cells) == (row["own"] == 1)
+        assert int(cells[-1]) == row["points"]
+        assert float(cells[-3]) == pytest.approx(1e3 * row["time_s"], abs=1e-3)
+    assert "order 2.00, 2 expected" in told
+    assert "median of 2 in turns" in told
+
+
+def test_orders_in_the_file_are_slopes_of_its_errors(design: str) -> None:
+    _, folder = run(design, "--stage", "cam", "--repeat", "1")
+    rows = pl.read_csv(folder / "accuracy.csv").to_dicts()
+    assert rows[0]["order"] is None
+    for before, row in pairwise(rows):
+        slope = math.log(before["error"] / row["error"], row["points"] / before["points"])
+        assert row["order"] == pytest.approx(slope)
+
+
+def test_the_files_of_a_build_stay(design: str) -> None:
+    folder = Path(design).parent / "out"
+    assert main(["build", design, "-o", str(folder)]) == 0
+    before = set(json.loads((folder / "cam/summary.json").read_text("utf-8"))["files"])
+    run(design, "--stage", "cam", "--repeat", "1")
+    after = set(json.loads((folder / "cam/summary.json").read_text("utf-8"))["files"])
+    assert after == before | {"accuracy.csv", "accuracy.svg"}
+    assert all((folder / "cam" / name).exists() for name in after)
+
+
+# --- refusals -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--stage", "outlin"), ('"outlin" is no stage', "did you mean outline?")),
+        (("--stage", "centrode"), ('"centrode" is no stage of designs of kind cam',)),
+        (("--stage", "cam,law"), ('"law" is no stage of designs of kind cam',)),
+        (("--stage", ","), ("no stage is listed",)),
+    ],
+)
+def test_other_stages_are_refused(
+    design: str, capsys: pytest.CaptureFixture[str], options: tuple[str, ...], said: tuple[str, ...]
+) -> None:
+    code, folder = run(design, *options)
+    assert code == 2
+    told = capsys.readouterr().err
+    assert all(words in told for words in said)
+    assert "allowed: outline, solid, contact, cam" in told
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("count", ["0", "-3"])
+def test_no_repeats_are_refused(
+    design: str, capsys: pytest.CaptureFixture[str], count: str
+) -> None:
+    code, folder = run(design, "--repeat", count)
+    assert code == 2
+    told = capsys.readouterr().err
+    assert "--repeat" in told
+    assert "1 or more" in told
+    assert not folder.exists()
+
+
+def test_python_is_refused_the_same() -> None:
+    result = gearcam.build(gearcam.loads(TEXT))
+    with pytest.raises(DesignError, match="1 or more"):
+        accuracy(result, repeat=0)
+    with pytest.raises(DesignError, match="is no stage"):
+        accuracy(result, ["centrode"])
+
+
+def test_a_kind_without_ladders_has_no_stages(planted: dict[str, Any]) -> None:
+    assert planted == {}
+    with pytest.raises(DesignError, match="none of designs of kind cam"):
+        stages_of(gearcam.loads(TEXT))
+
+
+# --- how it is measured -------------------------------------------------------------------------
+
+
+def test_levels_take_turns(planted: dict[str, Any]) -> None:
+    calls: list[float] = []
+
+    def make(level: float) -> float:
+        calls.append(level)
+        return level
+
+    planted["one"] = lambda _: ladder(make)
+    planted["two"] = lambda _: ladder(lambda level: make(-level) and level)
+    found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=4)
+    assert len(calls) == 6 * 5
+    rounds = [calls[k : k + 6] for k in range(0, 30, 6)]
+    for number, one in enumerate(rounds):
+        assert {abs(level) for level in one[:3]} == {10.0, 20.0, 40.0}
+        assert min(one[:3]) > 0.0 > max(one[3:])
+        assert number == 0 or one[0] == (10.0, 20.0, 40.0)[(number - 1) % 3]
+    assert [rung.stage for rung in found.rungs] == ["one"] * 3 + ["two"] * 3
+    assert found.order("one") == pytest.approx(2.0)
+    assert [rung.own for rung in found.of("one")] == [False, True, False]
+
+
+def test_the_median_counts(planted: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    planted["one"] = lambda _: ladder(levels=(10.0,))
+    clock = iter([0.0, 5.0, 10.0, 11.0, 20.0, 22.0])
+    result = gearcam.build(gearcam.loads(TEXT))
+    with monkeypatch.context() as patched:
+        patched.setattr("gearcam.studies.accuracy.time.perf_counter", lambda: next(clock))
+        found = accuracy(result, repeat=3)
+    assert found.rungs[0].seconds == 2.0
+
+
+def test_a_level_that_cannot_be_made_is_left_out_by_name(planted: dict[str, Any]) -> None:
+    def make(level: float) -> float:
+        if level < 15.0:
+            raise GearcamError("it falls apart")
+        return level
+
+    planted["one"] = lambda _: ladder(make)
+    found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
+    assert [rung.level for rung in found.rungs] == [20.0, 40.0]
+    assert "  10: left out: it falls apart" in list(found.lines())
+    planted["one"] = lambda _: ladder(make, levels=(10.0, 12.0))
+    with pytest.raises(GearcamError, match="falls apart"):
+        accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
+
+
+def test_a_stage_that_cannot_be_made_is_left_out_by_name(planted: dict[str, Any]) -> None:
+    def fall(_: object) -> Ladder:
+        raise GearcamError("it falls apart")
+
+    planted |= {"one": lambda _: ladder(), "two": fall}
+    result = gearcam.build(gearcam.loads(TEXT))
+    found = accuracy(result, repeat=1)
+    assert {rung.stage for rung in found.rungs} == {"one"}
+    assert list(found.lines())[-1] == "two: left out: it falls apart"
+    with pytest.raises(GearcamError, match="falls apart"):
+        accuracy(result, ["two"], repeat=1)
+
+
+def test_rounding_has_no_order(planted: dict[str, Any]) -> None:
+    planted["one"] = lambda _: ladder(rounding=1e-3)
+    found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
+    assert [rung.order for rung in found.rungs] == [None, pytest.approx(2.0), None]
+    assert any("order 2.00, 2 expected" in line for line in found.lines())
+    planted["one"] = lambda _: ladder(rounding=1.0)
+    found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
+    assert found.order("one") is None
+    assert any("rounding, 2 expected" in line for line in found.lines())
+
+
+# --- the figure ---------------------------------------------------------------------------------
+
+
+def circles(data: bytes) -> list[tuple[float, float]]:
+    root = ET.fromstring(data)
+    marks = [one for one in root.iter(f"{SVG}circle") if one.get("r") == "3"]
+    return [(float(one.attrib["cx"]), float(one.attrib["cy"])) for one in marks]
+
+
+def test_axes_are_logarithmic() -> None:
+    x, y = np.array([1e-4, 1e-3, 1e-1]), np.array([1e-2, 1e-6, 1e-14])
+    data = log_charts("a & b", [Chart(title="<t>", x="s", y="mm", lines=(_line(x, y),))])
+    places = np.array(circles(data))
+    for values, seen in ((x, places[:, 0]), (y, places[:, 1])):
+        slopes = np.diff(seen) / np.diff(np.log10(values))
+        assert slopes == pytest.approx([slopes[0]] * 2, rel=1e-3)
+    assert places[2, 0] > places[0, 0]
+    assert places[2, 1] > places[0, 1]  # downwards in a picture
+    root = ET.fromstring(data)
+    words = {one.text for one in root.iter(f"{SVG}text")}
+    assert {"<t>", "s", "mm", "1e-3", "1e-2"} <= words
+    assert root.findtext(f"{SVG}title") == "a & b"
+
+
+def test_ticks_stand_where_their_values_do() -> None:
+    x = np.array([1e-3, 1e-2])
+    data = log_charts("", [Chart(title="", x="", y="", lines=(_line(x, x),))])
+    places = circles(data)
+    ticks = {
+        one.text: float(one.attrib["x"])
+        for one in ET.fromstring(data).iter(f"{SVG}text")
+        if one.get("text-anchor") == "middle" and one.text
+    }
+    assert ticks["1e-3"] == pytest.approx(places[0][0], abs=0.02)
+    assert ticks["1e-2"] == pytest.approx(places[1][0], abs=0.02)
+    share = (ticks["2e-3"] - places[0][0]) / (places[1][0] - places[0][0])
+    assert share == pytest.approx(math.log10(2.0), abs=1e-3)
+
+
+def test_what_has_no_logarithm_is_left_out() -> None:
+    x, y = np.array([1.0, 2.0, np.nan]), np.array([0.0, 1.0, 1.0])
+    for values in (y, 0.0 * y):
+        chart = Chart(title="", x="", y="", lines=(_line(x, values),))
+        assert len(circles(log_charts("", [chart]))) == np.count_nonzero(values[:2])
+
+
+def test_every_rung_is_drawn_and_the_own_has_a_ring(planted: dict[str, Any]) -> None:
+    planted["one"] = lambda _: ladder()
+    planted["two"] = lambda _: ladder(own=None)
+    found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
+    data = log_charts("", found.charts)
+    assert len(circles(data)) == 6
+    root = ET.fromstring(data)
+    rings = [one for one in root.iter(f"{SVG}circle") if one.get("r") == "6"]
+    assert [one.get("fill") for one in rings] == ["none"]
+
+
+def _line(x: Any, y: Any) -> Line:
+    return Line(label="", x=x, y=y)
