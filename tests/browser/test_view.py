@@ -127,6 +127,12 @@ def test_a_slider_is_followed_coarsely_and_then_exactly(page: Chrome, file: Path
     assert tomllib.loads(file.read_text())["law"]["ratios"] == [1.57, 0.43, 1.57]
     assert file.read_text() == before.replace("[1.6, 0.4, 1.6]", "[1.57, 0.43, 1.57]")
     until(lambda: not page.find_element(By.ID, "save").is_enabled())
+    width = field(page, "pair.face_width_mm")  # and once more, on what is there now
+    width.clear()
+    width.send_keys("60", Keys.ENTER)
+    until(lambda: page.find_element(By.ID, "save").is_enabled())
+    page.find_element(By.ID, "save").click()
+    until(lambda: "face_width_mm = 60" in file.read_text())
 
 
 def test_a_field_and_the_keyboard_do_the_same(page: Chrome) -> None:
