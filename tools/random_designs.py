@@ -27,12 +27,12 @@ ANYWHERE: Final = 0.06
 _SHARES: Final = {
     "gear-pair": {
         "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
-        "drawing-dxf": 0.02, "stl": 0.05, "3mf": 0.02, "glb": 0.03, "step": 0.01,
+        "drawing-dxf": 0.02, "stl": 0.05, "3mf": 0.02, "glb": 0.03, "step": 0.01, "report": 0.04,
     },
     "cam": {
         "svg": 0.8, "dxf": 0.3, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
         "drawing-dxf": 0.05, "stl": 0.1, "3mf": 0.05, "glb": 0.05, "step": 0.01,
-        "tool-path": 0.2, "curvature": 0.3,
+        "tool-path": 0.2, "curvature": 0.3, "report": 0.06,
     },
 }  # fmt: skip
 """Share of designs that have each file beside their tables, by what it costs."""

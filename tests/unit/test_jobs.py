@@ -45,9 +45,13 @@ def small(**given: Any) -> GearPairResult:
     return job(law, given.pop("teeth", (22, 22)), **{"tolerance": 0.01, **sizes, **given})
 
 
+GIVEN = ("design", "tolerances", "timings", "sizes")
+"""What a job has from the beginning."""
+
+
 def computed(made: GearPairResult) -> set[str]:
     """What a job has computed so far."""
-    return {name for name in vars(made) if name not in ("design", "tolerances", "timings")}
+    return {name for name in vars(made) if name not in GIVEN}
 
 
 def contents(folder: Path) -> dict[str, bytes]:

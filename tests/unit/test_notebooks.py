@@ -17,8 +17,11 @@ LARGEST = 300_000
 
 
 def printed(notebook: Any) -> list[str]:
-    outputs = [one for cell in notebook.cells for one in cell.get("outputs", ())]
-    return [one.text for one in outputs if one.output_type == "stream"]
+    texts = [
+        "".join(one.text for one in cell.get("outputs", ()) if one.output_type == "stream")
+        for cell in notebook.cells
+    ]
+    return [text for text in texts if text]  # of a cell, however many pieces it came in
 
 
 def shown(notebook: Any) -> list[list[str]]:
