@@ -290,3 +290,21 @@ def test_where_motion_is_to_be_reduced_it_steps(browser: Chrome, page_of: Writte
     button.click()
     until(lambda: browser.execute_script("return gearcam.place > 11"))
     button.click()
+
+
+def test_knots_are_drawn_and_told(browser: Chrome, page_of: Written) -> None:
+    charts = open_page(browser, page_of(NAIL))["charts"]
+    figure = browser.find_elements(By.CLASS_NAME, "chart")[0]
+    drawn(browser, figure)
+    assert "knot" in figure.find_element(By.CLASS_NAME, "legend").text
+    ink = """
+        const canvas = arguments[0].querySelector("canvas");
+        return canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data
+            .reduce((sum, one) => sum + one, 0);
+    """
+    marked = browser.execute_script(ink, figure)
+    plain = [chart | {"marks": []} for chart in charts]
+    browser.execute_script("gearcam.show({ charts: arguments[0] })", plain)
+    settle(browser)
+    assert browser.execute_script(ink, figure) < marked
+    assert "knot" not in figure.find_element(By.CLASS_NAME, "legend").text

@@ -88,7 +88,7 @@ class ChartView {
   }
 
   describe() {
-    const { title, x, y, lines, limits, range } = this.chart;
+    const { title, x, y, lines, limits, marks, range } = this.chart;
     this.title.textContent = title;
     this.unit.textContent = y;
     const names = lines.map((line) => line.label).join(", ");
@@ -106,6 +106,9 @@ class ChartView {
       const beyond = limit.seen ? "" : ", beyond this chart";
       const row = add(this.legend, "li", { class: "limit" });
       row.textContent = `${limit.label}: ${brief(limit.value)}${beyond}`;
+    }
+    for (const label of new Set(marks.map((one) => one.label))) {
+      add(this.legend, "li", { class: "mark" }, label);
     }
   }
 
@@ -151,7 +154,7 @@ class ChartView {
       },
       axes: [{ ...axis, label: this.chart.x, labelSize: 18, size: 30 }, { ...axis, size: wide }],
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
-      hooks: { draw: [() => this.limits(), () => this.follow()] },
+      hooks: { draw: [() => this.marks(), () => this.limits(), () => this.follow()] },
     }, this.data(), this.home);
     this.plot.over.append(this.cursor);
     if (this.chart.moves) this.plot.over.classList.add("moves");
@@ -197,6 +200,24 @@ class ChartView {
     pen.stroke();
     pen.restore();
     return null; // drawn already
+  }
+
+  // Marked places, dotted from bottom to top.
+  marks() {
+    const { ctx: pen, bbox } = this.plot;
+    const ratio = uPlot.pxRatio;
+    pen.save();
+    pen.strokeStyle = this.page.colours.muted;
+    pen.lineWidth = ratio;
+    pen.setLineDash([ratio, 3 * ratio]);
+    for (const { value } of this.chart.marks) {
+      const x = this.plot.valToPos(value, "x", true);
+      pen.beginPath();
+      pen.moveTo(x, bbox.top);
+      pen.lineTo(x, bbox.top + bbox.height);
+      pen.stroke();
+    }
+    pen.restore();
   }
 
   limits() {
