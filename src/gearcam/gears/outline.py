@@ -333,13 +333,22 @@ def _demand_simple(outline: Outline) -> None:
     largest = np.sin(toothing.cutter.alpha) ** 2 * radius if np.isfinite(radius) else 0.0
     raise InfeasibleError(
         f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
-        where=is_valid_reason(Polygon(outline.points)),
+        where=_crossing(is_valid_reason(Polygon(outline.points)), float(np.ptp(outline.points))),
         value=toothing.pitch / np.pi,
         limit=largest,
         unit="mm",
         nearest="this is the module, and the largest that is free of undercut at this size",
         more_teeth=toothing.pitch / (np.pi * largest) if largest else 2.0,
     )
+
+
+def _crossing(reason: str, size: float) -> str:
+    """Return where an outline of a `size`, mm, crosses itself; shapely tells it in brackets."""
+    kind, _, place = reason.rstrip("]").partition("[")
+    if not place:
+        return "its outline touches itself"
+    x, y = (shown(float(word), 4, size) for word in place.split())
+    return f"{kind.lower()} at x = {x}, y = {y} mm"
 
 
 def _demand_shaft(outline: Outline) -> None:
