@@ -118,8 +118,11 @@ def against_before(fewer: int = 1) -> list[Result]:
     """(i) to (o) What a stage takes over what it took before, each in the same run."""
     with ExitStack() as stack:
         before = stack.enter_context(tree_of(BEFORE))
+        nail = Path(stack.enter_context(tempfile.TemporaryDirectory())) / NAIL.name
+        # the commit before knows no report
+        nail.write_text(NAIL.read_text(encoding="utf-8").replace(', "report"', ""), "utf-8")
         trees = {"before": before, "now": ROOT}
-        sides = {name: stack.enter_context(_side(tree)) for name, tree in trees.items()}
+        sides = {name: stack.enter_context(_side(tree, nail)) for name, tree in trees.items()}
         results = []
         for case, (title, asked, tries) in CASES.items():
             timings = _in_turns(sides, case, max(tries // fewer, 1))
@@ -130,11 +133,11 @@ def against_before(fewer: int = 1) -> list[Result]:
                 alone = [_in_turns(now, part, max(tries // fewer, 1))[0] for part in parts]
                 given_up = text.format(*(one.over(timings[0]) for one in alone))
             results.append(_ratio(title, asked, timings, NOTE, given_up))
-        return [*results, _cold(trees, max(9 // fewer, 1))]
+        return [*results, _cold(trees, nail, max(9 // fewer, 1))]
 
 
-def _side(tree: Path) -> subprocess.Popen[str]:
-    return _python(CHILD, str(NAIL), str(CAM), PYTHONPATH=str(tree / "src"))
+def _side(tree: Path, nail: Path) -> subprocess.Popen[str]:
+    return _python(CHILD, str(nail), str(CAM), PYTHONPATH=str(tree / "src"))
 
 
 def _python(program: str, *words: str, **variables: str) -> subprocess.Popen[str]:
@@ -159,10 +162,10 @@ def _in_turns(sides: dict[str, subprocess.Popen[str]], case: str, count: int) ->
     return [Timing(name, tuple(values[1:])) for name, values in samples.items()]
 
 
-def _cold(trees: dict[str, Path], tries: int) -> Result:
+def _cold(trees: dict[str, Path], nail: Path, tries: int) -> Result:
     """The whole command in a process of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        words = ["build", str(NAIL), "--only", "dxf,stl,csv", "-o", folder]
+        words = ["build", str(nail), "--only", "dxf,stl,csv", "-o", folder]
         timings = commands(
             {
                 name: [sys.executable, "-c", CALL, str(tree / "src"), *words]
