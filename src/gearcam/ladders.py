@@ -6,20 +6,24 @@ form where there is one, else against a level beyond the finest, which is made o
 The folder of a kind makes its ladders (see `gearcam.designs.kind`); what climbs them is
 `gearcam.studies.accuracy`.
 
-Depends on numeric.
+Depends on results, solids and numeric.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.sampling import Sampler
+
+if TYPE_CHECKING:
+    from gearcam.result import Result
+    from gearcam.solids import Mesh
 
 INTERVALS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, float(FIRST_CUTS), 2.0 * FIRST_CUTS)
 """Numbers of intervals of expansions; the program begins with the last but one."""
@@ -217,3 +221,36 @@ def limit_ladder(
         make=make,
         measure=measure,
     )
+
+
+def solid_ladder(result: Result, own: float, levels: Sequence[float]) -> Ladder:
+    """Return the ladder of the volumes of a design's solids.
+
+    Parameters
+    ----------
+    result : Result
+        Of a design whose chord tolerance is a key of its output.
+    own : float, mm
+        The program's own chord tolerance.
+    levels : sequence of float
+        Chord tolerances, mm, from coarse to fine.
+
+    Returns
+    -------
+    Ladder
+        Parts are made once a level, and are not timed again.
+    """
+    from gearcam.solids import solid
+
+    parts: dict[float, Any] = {}
+
+    def make(tolerance: float) -> list[Mesh]:
+        if tolerance not in parts:
+            design = result.design.with_({"output.chord_tolerance_mm": tolerance})
+            parts[tolerance] = type(result)(design, result.tolerances).parts
+        return [solid(part) for part in parts[tolerance]]
+
+    def told(made: list[Mesh]) -> tuple[Array, int]:
+        return np.array([mesh.volume for mesh in made]), sum(len(mesh.triangles) for mesh in made)
+
+    return limit_ladder(own, make, told, levels=levels, measured="volume of solids", unit="mm3")

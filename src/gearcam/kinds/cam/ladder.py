@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from gearcam.ladders import (
     Ladders,
     chord_distance,
     limit_ladder,
+    solid_ladder,
     tolerances_around,
 )
 from gearcam.numeric.arrays import Array, Plane
@@ -58,21 +59,8 @@ def _outline(result: CamResult) -> Ladder:
 
 
 def _solid(result: CamResult) -> Ladder:
-    from gearcam.solids import Mesh, solid
-
-    own, parts = _own(result), dict[float, Any]()
-
-    def make(tolerance: float) -> list[Mesh]:
-        if tolerance not in parts:
-            design = result.design.with_({"output.chord_tolerance_mm": tolerance})
-            parts[tolerance] = type(result)(design, result.tolerances).parts
-        return [solid(part) for part in parts[tolerance]]
-
-    def told(made: list[Mesh]) -> tuple[Array, int]:
-        return np.array([mesh.volume for mesh in made]), sum(len(mesh.triangles) for mesh in made)
-
-    levels = tolerances_around(own)[:-1]
-    return limit_ladder(own, make, told, levels=levels, measured="volume of solids", unit="mm3")
+    own = _own(result)
+    return solid_ladder(result, own, tolerances_around(own)[:-1])
 
 
 def _contact(result: CamResult) -> Ladder:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from gearcam.ladders import (
     chord_distance,
     integral_ladder,
     limit_ladder,
+    solid_ladder,
     tolerances_around,
 )
 from gearcam.numeric.arrays import Array, Plane
@@ -113,23 +114,8 @@ def _outline(result: GearPairResult) -> Ladder:
 
 
 def _solid(result: GearPairResult) -> Ladder:
-    from gearcam.solids import Mesh, solid
-
     own, levels = _tolerances(result)
-    parts: dict[float, Any] = {}
-
-    def make(tolerance: float) -> list[Mesh]:
-        if tolerance not in parts:
-            design = result.design.with_({"output.chord_tolerance_mm": tolerance})
-            parts[tolerance] = type(result)(design, result.tolerances).parts
-        return [solid(part) for part in parts[tolerance]]
-
-    def told(made: list[Mesh]) -> tuple[Array, int]:
-        return np.array([mesh.volume for mesh in made]), sum(len(mesh.triangles) for mesh in made)
-
-    return limit_ladder(
-        own, make, told, levels=levels[:-1], measured="volume of solids", unit="mm3"
-    )
+    return solid_ladder(result, own, levels[:-1])
 
 
 def _contact(result: GearPairResult) -> Ladder:
