@@ -25,7 +25,6 @@ from typing import Any, Final
 
 from compare_files import MORE, Difference, called, folders, told
 from compare_sides import GALLERY, ROOT, Side, tree_of
-
 from gearcam.draws.designs import design, drawn_kinds
 from gearcam.draws.toml import toml
 

@@ -10,7 +10,7 @@ import csv
 import io
 import json
 import math
-import xml.etree.ElementTree as Tree
+import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final
@@ -75,7 +75,7 @@ def _unread(path: Path) -> Iterator[str]:
     """Yield why another reader finds a file at fault."""
     try:
         words = _READERS.get(path.suffix, _nothing)(path)
-    except (GearcamError, ValueError, Tree.ParseError) as error:
+    except (GearcamError, ValueError, ET.ParseError) as error:
         words = f"{type(error).__name__}: {error}"
     if words:
         yield words
@@ -108,7 +108,7 @@ def _drawing(path: Path) -> str:
 
 
 def _markup(path: Path) -> str:
-    Tree.fromstring(path.read_bytes())
+    ET.fromstring(path.read_bytes())
     return ""
 
 

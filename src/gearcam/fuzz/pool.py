@@ -7,16 +7,18 @@ makes no hangs; by the clock a process has a few times more, and elsewhere just 
 from __future__ import annotations
 
 import contextlib
+import itertools
+import math
 import multiprocessing
+import shutil
 import signal
-import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from multiprocessing import connection
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Final, Self
 
 from gearcam.console import quieten
 from gearcam.fuzz.outcome import FAILED, Failure, Outcome
@@ -51,32 +53,24 @@ class Task:
     follow: bool = False
 
 
-def _serve(channel: connection.Connection, seconds: float) -> None:
-    """Answer tasks until there are no more."""
+def _serve(channel: connection.Connection, seconds: float, folder: Path) -> None:
+    """Answer tasks until there are no more; each has a folder within the given one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     quieten()
     _limit_memory()
     from gearcam.fuzz.trial import Trial
 
-    with contextlib.suppress(EOFError, OSError), tempfile.TemporaryDirectory() as folder:
-        channel.send(None)
-        for number in range(sys.maxsize):
+    with contextlib.suppress(EOFError, OSError):
+        while True:
             task = channel.recv()
-            own = Path(folder) / str(number)
-            own.mkdir()
+            own = Path(tempfile.mkdtemp(dir=folder))
             if _COUNTED:
                 signal.setitimer(signal.ITIMER_PROF, seconds)  # whose signal ends a process
             outcome = Trial(task.files, own, doubt=task.doubt, follow=task.follow).run()
             if _COUNTED:
                 signal.setitimer(signal.ITIMER_PROF, 0.0)
             channel.send(outcome)
-            _empty(own)
-
-
-def _empty(folder: Path) -> None:
-    import shutil
-
-    shutil.rmtree(folder, ignore_errors=True)
+            shutil.rmtree(own, ignore_errors=True)
 
 
 def _limit_memory() -> None:
@@ -87,32 +81,32 @@ def _limit_memory() -> None:
 
 
 class _Worker:
-    """A process, and the task that it has."""
+    """A process, and the number of the task that it has."""
 
-    def __init__(self, seconds: float) -> None:
+    def __init__(self, seconds: float, folder: Path) -> None:
         context = multiprocessing.get_context("spawn")
         self.channel, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs, seconds), daemon=True)
+        self.process = context.Process(target=_serve, args=(theirs, seconds, folder), daemon=True)
         self.process.start()
-        theirs.close()
-        self.ready = False
+        theirs.close()  # so that its death is heard
         self.number: int | None = None
-        self.until = float("inf")
+        self.until = math.inf
 
     def give(self, number: int, task: Task, seconds: float) -> None:
         self.number, self.until = number, time.monotonic() + _CLOCK * seconds
-        with contextlib.suppress(OSError):  # told when its answer is taken
+        with contextlib.suppress(OSError):  # its death is told when it is asked
             self.channel.send(task)
 
-    def taken(self) -> Outcome | None:
-        """Return its answer, or how it died; None where it has only said that it is ready."""
+    def answer(self) -> tuple[Outcome, bool]:
+        """Return how its task ended, and whether it can have another one."""
+        self.number, self.until = None, math.inf
+        if not self.channel.poll():
+            return _HANG, False
         try:
-            outcome = self.channel.recv()
+            return self.channel.recv(), True
         except (EOFError, OSError):
             self.process.join()
-            outcome = _death(self.process.exitcode)
-        self.ready = True
-        return outcome
+            return _death(self.process.exitcode), False
 
     def end(self) -> None:
         self.process.kill()
@@ -120,15 +114,14 @@ class _Worker:
         self.channel.close()
 
 
+_HANG: Final = Outcome(end=FAILED, failure=Failure(kind="hang", words="it took too long"))
+
+
 def _death(code: int | None) -> Outcome:
     if _COUNTED and code == -signal.SIGPROF:
-        return _hang()
+        return _HANG
     words = f"the process ended with {code}"
     return Outcome(end=FAILED, failure=Failure(kind="crash", words=words, place=str(code)))
-
-
-def _hang() -> Outcome:
-    return Outcome(end=FAILED, failure=Failure(kind="hang", words="it took too long"))
 
 
 class Pool:
@@ -145,6 +138,8 @@ class Pool:
     def __init__(self, jobs: int, seconds: float = SECONDS) -> None:
         self.jobs, self.seconds = jobs, seconds
         self._workers: list[_Worker] = []
+        # not within a process: one that is ended leaves its folder behind
+        self._folder = tempfile.TemporaryDirectory(prefix="fuzz-", ignore_cleanup_errors=True)
 
     def __enter__(self) -> Self:
         return self
@@ -153,6 +148,7 @@ class Pool:
         for worker in self._workers:
             worker.end()
         self._workers.clear()
+        self._folder.cleanup()
 
     def one(self, task: Task) -> Outcome:
         """Return how the trial of one `task` ended."""
@@ -172,36 +168,30 @@ class Pool:
             The task's number, how it ended.
         """
         waiting = iter(tasks)
-        following: Any = next(waiting, None)
-        while following is not None or any(one.number is not None for one in self._workers):
-            while len(self._workers) < self.jobs and following is not None:
-                self._workers.append(_Worker(self.seconds))
-            for worker in self._workers:
-                if worker.ready and worker.number is None and following is not None:
-                    worker.give(*following, self.seconds)
-                    following = next(waiting, None)
+        while self._give(waiting):
             for worker in self._heard():
-                number, outcome = worker.number, worker.taken()
-                if outcome is not None:
-                    if not worker.process.is_alive():
-                        self._end(worker)
-                    if number is None:
-                        raise RuntimeError("a process that tries designs does not start")
-                    worker.number, worker.until = None, float("inf")
-                    yield number, outcome
-            for worker in [one for one in self._workers if time.monotonic() > one.until]:
                 number = worker.number
-                self._end(worker)
+                outcome, alive = worker.answer()
+                if not alive:
+                    worker.end()
+                    self._workers.remove(worker)
                 if number is not None:
-                    yield number, _hang()
+                    yield number, outcome
+
+    def _give(self, waiting: Iterator[tuple[int, Task]]) -> bool:
+        """Give tasks to processes that have none; whether any has one then."""
+        idle = [one for one in self._workers if one.number is None]
+        for number, task in itertools.islice(waiting, self.jobs - len(self._workers) + len(idle)):
+            if not idle:
+                idle.append(_Worker(self.seconds, Path(self._folder.name)))
+                self._workers.append(idle[-1])
+            idle.pop().give(number, task, self.seconds)
+        return any(one.number is not None for one in self._workers)
 
     def _heard(self) -> list[_Worker]:
-        """Return the processes that have said something or died, after a while at most."""
-        soonest = min((one.until for one in self._workers), default=float("inf"))
-        wait = max(0.0, min(1.0, soonest - time.monotonic()))
-        found = connection.wait([one.channel for one in self._workers], wait)
-        return [one for one in self._workers if one.channel in found]
-
-    def _end(self, worker: _Worker) -> None:
-        worker.end()
-        self._workers.remove(worker)
+        """Wait until a process says something, dies, or has had its time, and return all such."""
+        soonest = min(one.until for one in self._workers)
+        channels = [one.channel for one in self._workers if one.number is not None]
+        heard = connection.wait(channels, max(0.0, soonest - time.monotonic()))
+        now = time.monotonic()
+        return [one for one in self._workers if one.channel in heard or now > one.until]

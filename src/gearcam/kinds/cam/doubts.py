@@ -57,4 +57,4 @@ def _room(wall: Wall, theta: Array) -> Array:
     if mechanism.flat:  # perpendicular to the face
         lever = np.abs(contact.place.c[0]) if mechanism.oscillating else 1.0
     normal = _ROOM * wall.tolerance + _ROUNDING * np.abs(wall.outline).max()
-    return mechanism.outward[0] * (normal / lever + wall.shortfall)
+    return mechanism.outward[0] * (normal / lever + wall.shortfall + np.zeros_like(theta))
