@@ -57,7 +57,7 @@ class Range(Brief):
 
     @property
     def least_radius(self) -> float:
-        """Of a range of curvature: the smallest radius of any sign, infinite where all is straight."""
+        """Of a range of curvature: the smallest radius, infinite where all is straight."""
         return 1.0 / self.largest if self.largest else math.inf
 
 

@@ -12,12 +12,15 @@ from typing import Final
 from gearcam.draws.designs import Drawn, design
 from gearcam.draws.draw import Draw
 from gearcam.facts import lined_up
-from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome
-from gearcam.fuzz.pool import Pool, Task
+from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
+from gearcam.fuzz.pool import Pool
 from gearcam.fuzz.shrink import Files, shrunk
 
 DOUBTED: Final = 0.1
 """Share of designs that a study by other means is held against."""
+
+FOLLOWED: Final = 0.3
+"""Share of designs whose remedies are searched and built, where they are refused or have errors."""
 
 MOST_REFUSED: Final = 0.2
 """Share of the designs drawn to be built that may be refused."""
@@ -54,8 +57,12 @@ class Case:
 
     def task(self, files: Files | None = None) -> Task:
         """Return what is to be tried: the design, or other `files` in the same way."""
-        doubt = Draw(f"doubt {self.name}").chance(DOUBTED)
-        return Task(files=self.drawn.files if files is None else files, doubt=doubt, follow=True)
+        d = Draw(f"trial of {self.name}")
+        return Task(
+            files=self.drawn.files if files is None else files,
+            doubt=d.chance(DOUBTED),
+            follow=d.chance(FOLLOWED),
+        )
 
 
 @dataclass(kw_only=True)

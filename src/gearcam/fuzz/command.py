@@ -13,6 +13,7 @@ from gearcam.draws.designs import drawn_kinds
 from gearcam.errors import DesignError
 from gearcam.fuzz.campaign import Campaign, Case, Found
 from gearcam.fuzz.pool import Pool
+from gearcam.fuzz.trial import tried
 from gearcam.numeric.arguments import whole
 
 QUICK: Final = 60
@@ -90,7 +91,7 @@ def fuzz(
         for index in only or range(-(-number // len(kinds)))
         for one in kinds
     ][: None if only else number]
-    with Pool(min(whole("--jobs", jobs, 1), len(cases))) as pool:
+    with Pool(tried, min(whole("--jobs", jobs, 1), len(cases))) as pool:
         campaign = Campaign(cases=cases, pool=pool)
         with progress_bar("fuzz") as progress:
             for found in campaign.run(progress):

@@ -1,7 +1,8 @@
-"""How the trial of a design ended."""
+"""What is tried of a design, and how that ended."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -9,6 +10,24 @@ BUILT: Final = "built"
 REFUSED: Final = "refused"
 WRONG: Final = "refused by reading"
 FAILED: Final = "failed"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """A design that is to be tried: its `files`, and what is done beside building it.
+
+    Parameters
+    ----------
+    files : mapping of str to str
+        Texts by file name: the design file first.
+    doubt, follow : bool
+        Whether a study by other means is held against it; whether remedies are searched and
+        built.
+    """
+
+    files: Mapping[str, str]
+    doubt: bool = False
+    follow: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,14 +14,13 @@ import shutil
 import signal
 import tempfile
 import time
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
 from multiprocessing import connection
 from pathlib import Path
 from typing import Final, Self
 
 from gearcam.console import quieten
-from gearcam.fuzz.outcome import FAILED, Failure, Outcome
+from gearcam.fuzz.outcome import FAILED, Failure, Outcome, Task
 
 SECONDS: Final = 30.0
 """Processor time of a trial."""
@@ -36,37 +35,22 @@ _CLOCK: Final = 5.0 if _COUNTED else 1.0
 """Time by the clock after which a process is ended, in processor times."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Task:
-    """A design that is to be tried: its `files`, and what is done beside building it.
-
-    Parameters
-    ----------
-    files : mapping of str to str
-        Texts by file name: the design file first.
-    doubt, follow : bool
-        See `gearcam.fuzz.trial.Trial`.
-    """
-
-    files: Mapping[str, str]
-    doubt: bool = False
-    follow: bool = False
+Work = Callable[[Task, Path], Outcome]
+"""What processes do: try a design in an empty folder."""
 
 
-def _serve(channel: connection.Connection, seconds: float, folder: Path) -> None:
+def _serve(channel: connection.Connection, work: Work, seconds: float, folder: Path) -> None:
     """Answer tasks until there are no more; each has a folder within the given one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     quieten()
     _limit_memory()
-    from gearcam.fuzz.trial import Trial
-
     with contextlib.suppress(EOFError, OSError):
         while True:
             task = channel.recv()
             own = Path(tempfile.mkdtemp(dir=folder))
             if _COUNTED:
                 signal.setitimer(signal.ITIMER_PROF, seconds)  # whose signal ends a process
-            outcome = Trial(task.files, own, doubt=task.doubt, follow=task.follow).run()
+            outcome = work(task, own)
             if _COUNTED:
                 signal.setitimer(signal.ITIMER_PROF, 0.0)
             channel.send(outcome)
@@ -83,10 +67,12 @@ def _limit_memory() -> None:
 class _Worker:
     """A process, and the number of the task that it has."""
 
-    def __init__(self, seconds: float, folder: Path) -> None:
+    def __init__(self, work: Work, seconds: float, folder: Path) -> None:
         context = multiprocessing.get_context("spawn")
         self.channel, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs, seconds, folder), daemon=True)
+        self.process = context.Process(
+            target=_serve, args=(theirs, work, seconds, folder), daemon=True
+        )
         self.process.start()
         theirs.close()  # so that its death is heard
         self.number: int | None = None
@@ -129,14 +115,16 @@ class Pool:
 
     Parameters
     ----------
+    work : callable
+        What they do; it pickles.
     jobs : int
         How many.
     seconds : float, s
         Processor time that a trial may take.
     """
 
-    def __init__(self, jobs: int, seconds: float = SECONDS) -> None:
-        self.jobs, self.seconds = jobs, seconds
+    def __init__(self, work: Work, jobs: int, seconds: float = SECONDS) -> None:
+        self.work, self.jobs, self.seconds = work, jobs, seconds
         self._workers: list[_Worker] = []
         # not within a process: one that is ended leaves its folder behind
         self._folder = tempfile.TemporaryDirectory(prefix="fuzz-", ignore_cleanup_errors=True)
@@ -183,7 +171,7 @@ class Pool:
         idle = [one for one in self._workers if one.number is None]
         for number, task in itertools.islice(waiting, self.jobs - len(self._workers) + len(idle)):
             if not idle:
-                idle.append(_Worker(self.seconds, Path(self._folder.name)))
+                idle.append(_Worker(self.work, self.seconds, Path(self._folder.name)))
                 self._workers.append(idle[-1])
             idle.pop().give(number, task, self.seconds)
         return any(one.number is not None for one in self._workers)

@@ -6,7 +6,6 @@ import re
 import shutil
 import time
 import traceback
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,7 @@ from gearcam.console import all_lines, refusal_text, remedy_lines
 from gearcam.designs.kind import KINDS
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.fuzz.oracles import look_at
-from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome
+from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 
 SEARCH: Final = 1.0
 """Patience of a search for remedies, s: a few designs."""
@@ -33,26 +32,29 @@ class FaultError(Exception):
         super().__init__(failure.words)
 
 
+def tried(task: Task, folder: Path) -> Outcome:
+    """Return how the trial of a design in an empty `folder` ended."""
+    return Trial(task, folder).run()
+
+
 @dataclass
 class Trial:
     """A design that is tried.
 
     Parameters
     ----------
-    files : mapping of str to str
-        Its texts by file name: the design file first.
+    task : Task
+        It, and what is done beside building it.
     folder : Path
         An empty one.
-    doubt : bool
-        Whether a study by other means is held against it.
-    follow : bool
-        Whether remedies are searched, and followed.
+    doubted : bool
+        Whether a study was held against it.
+    followed : int
+        Remedies that were built.
     """
 
-    files: Mapping[str, str]
+    task: Task
     folder: Path
-    doubt: bool = False
-    follow: bool = False
     doubted: bool = False
     followed: int = 0
 
@@ -83,22 +85,23 @@ class Trial:
 
     def _end(self) -> tuple[str, str]:
         """Return how it ended and why; raise what is a fault."""
-        for name, text in self.files.items():
+        for name, text in self.task.files.items():
             (self.folder / name).write_text(text, encoding="utf-8")
-        file = str(self.folder / next(iter(self.files)))
+        file = str(self.folder / next(iter(self.task.files)))
         try:
             result: Any = build(load(file))
-            written = result.write(self.folder / "out")
         except DesignError as error:
-            refusal_text(error, file, BUILT)
-            return WRONG, _without_numbers(error.problems[0].message)
+            return WRONG, _told(error, file, error.problems[0].message)
+        try:
+            written = result.write(self.folder / "out")
         except InfeasibleError as error:
-            refusal_text(error, file, BUILT)
             self._follow(result, error)
-            return REFUSED, _without_numbers(error.what)
+            return REFUSED, _told(error, file, error.what)
+        except DesignError as error:
+            return WRONG, _told(error, file, error.problems[0].message)
         list(all_lines(written))
         self._hold(look_at(result, written))
-        if self.doubt:
+        if self.task.doubt:
             self._doubt(result)
         if any(one.severity == "error" for one in written.findings):
             self._follow(result, None)
@@ -119,7 +122,7 @@ class Trial:
 
     def _follow(self, result: Any, refusal: InfeasibleError | None) -> None:
         """Build what is suggested, with all its files."""
-        if not self.follow:
+        if not self.task.follow:
             return
         found = remedies(result, refusal, patience=SEARCH)
         list(remedy_lines(found))
@@ -138,8 +141,9 @@ class Trial:
             self.followed += 1
 
 
-def _without_numbers(words: str) -> str:
-    """Return what is the same in messages that differ by numbers and by words in quotes."""
+def _told(error: DesignError | InfeasibleError, file: str, words: str) -> str:
+    """Tell a refusal, and return what is the same in those that differ by numbers and names."""
+    refusal_text(error, file, BUILT)
     told = re.sub(r"\"[^\"]*\"|'[^']*'", "...", words.splitlines()[0])
     return re.sub(r"[-+]?\d[\d.e+-]*", "#", told)[:80]
 
