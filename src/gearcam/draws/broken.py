@@ -1,4 +1,4 @@
-"""Designs with something broken: values anywhere, wrong types, keys, tables, formulas, texts."""
+"""Designs with something broken: wrong values and types, keys, tables, formulas, texts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from gearcam.draws.documented import places, value
 from gearcam.draws.draw import Draw, short
 from gearcam.draws.toml import toml
 
@@ -94,11 +93,6 @@ def _is_number(item: Any) -> bool:
     return isinstance(item, int | float) and not isinstance(item, bool)
 
 
-def _value_in_range(d: Draw, document: Document) -> None:
-    table, key, node = d.pick([*places(document)])
-    table[key] = value(d, key, node)
-
-
 def _number_scaled(d: Draw, document: Document) -> None:
     table, key = _chosen(d, document, _is_number)
     if _is_number(table[key]):
@@ -170,7 +164,6 @@ def _lines_changed(d: Draw, text: str) -> str:
 
 
 _WAYS: Final[dict[Callable[[Draw, Document], None], int]] = {
-    _value_in_range: 8,
     _number_scaled: 3,
     _strange_value: 3,
     _missing_key: 1,

@@ -14,12 +14,16 @@ from typing import Final
 
 from gearcam.designs.kind import KINDS
 from gearcam.draws.broken import broken
+from gearcam.draws.documented import places, value
 from gearcam.draws.draw import Draw
 from gearcam.draws.output import limits, tables_as_files
 from gearcam.draws.toml import toml
 
 BROKEN: Final = 0.1
 """Share of designs with something in them that may be refused as often as not."""
+
+_ANYWHERE: Final = 0.15
+"""Share of the others with one value anywhere in its documented range."""
 
 _LIMITED: Final = 0.15
 """Share of designs that set limits of checks."""
@@ -76,4 +80,7 @@ def design(kind: str, seed: int, index: int) -> Drawn:
     tables = tables_as_files(d, document, name)
     if d.chance(BROKEN):
         return Drawn(**broken(d, document, tables))
+    if d.chance(_ANYWHERE):
+        table, key, node = d.pick([*places(document)])
+        table[key] = value(d, key, node)
     return Drawn(files={f"{name}.toml": toml(document), **tables})

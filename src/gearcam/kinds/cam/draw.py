@@ -159,7 +159,7 @@ def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str,
     follower: dict[str, Any] = {"type": kind}
     radius = 0.0
     if kind == "roller":
-        radius = follower["roller_radius_mm"] = short(size * d.log(0.05, 0.4))
+        radius = follower["roller_radius_mm"] = short(size * d.log(0.02, 1))
     elif kind == "domed":
         radius = follower["dome_radius_mm"] = short(size * d.log(0.2, 3))
     prime = short(size + radius)
@@ -296,7 +296,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     swings = d.chance(0.4)
     size = d.pick([d.log(0.1, 1e5), d.log(10, 100)])
     follower, wheel = _mechanism(d, kind, swings, size)
-    share = d.log(0.005, 0.15 if kind == "flat" else 0.4)
+    share = d.log(0.002, 0.15 if kind == "flat" else 0.7)
     lift = short(share * 40) if swings else short(share * size)
     if d.chance(0.5):
         wheel["rotation"] = d.pick(["ccw", "cw"])

@@ -17,7 +17,7 @@ from gearcam.draws.output import asked
 Law = dict[str, Any]
 Counts = tuple[int, int]
 
-MOST_TEETH: Final = 60
+MOST_TEETH: Final = 120
 """Of a wheel: time goes with them."""
 
 
@@ -228,9 +228,9 @@ LAWS: Final[dict[str, Callable[[Draw], tuple[Law, Counts]]]] = {
     "multispeed": _multispeed,
     "fourier": _fourier,
     "constant": _constant,
-    "ellipse": _with_lobes(0.6),
-    "eccentric-circle": _excentric(0.5),
-    "limacon": _excentric(0.4),
+    "ellipse": _with_lobes(0.9),
+    "eccentric-circle": _excentric(0.7),
+    "limacon": _excentric(0.6),
     "lobed": _with_lobes(0.15),
     "bspline": _bspline,
     "rounded-polygon": _polygon,
@@ -354,7 +354,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if 0.5 < module < 10 and d.chance(0.1):
         del made["output"]["chord_tolerance_mm"]
     if d.chance(0.2):
-        made["output"]["phi1_deg"] = d.even(-400, 400)
+        made["output"]["phi1_deg"] = d.even(0, 50) if opened else d.even(-400, 400)
     if closed and not opened and z[1] > z[0] and d.chance(0.3):
         _ring(d, made, module)
     made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
