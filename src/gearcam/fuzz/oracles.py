@@ -61,9 +61,9 @@ def _rings(layer: Layer, tolerance: float) -> tuple[Any, list[Any]]:
 def _drawing_errors(parts: Iterable[Part], written: Written) -> Iterator[Failure]:
     """Yield files of curves that, read back, are farther from the true ones than allowed."""
     read = written.summary.get("accuracy", {}).get("dxf_mm")
-    if read is None:
+    if not read:
         return
-    worst = max(read.values(), default=0.0)
+    worst = max(read.values())
     reach = max(abs(part.outline).max() for part in parts)
     allowed = max(part.tolerance for part in parts) + _ROUNDING * float(reach)
     if not worst <= allowed:
@@ -92,7 +92,7 @@ def _solids(path: Path) -> str:
     found = load(io.BytesIO(path.read_bytes()), file_type=path.suffix[1:])
     bodies = found.geometry.values() if isinstance(found, Scene) else [found]
     if path.suffix == ".stl":  # which holds triangles of all bodies in one heap
-        bodies = [one for body in bodies for one in body.split(only_watertight=False)]
+        bodies = [one for body in bodies for one in body.split(only_watertight=False, repair=False)]
     open_ones = sum(not body.is_watertight for body in bodies)
     if not bodies or open_ones:
         return f"{open_ones} of {len(bodies)} solids are not watertight"

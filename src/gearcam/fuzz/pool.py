@@ -47,6 +47,7 @@ def _serve(channel: connection.Connection, work: Work, seconds: float, folder: P
     with contextlib.suppress(EOFError, OSError):
         while True:
             task = channel.recv()
+            channel.send(None)  # its time begins
             own = Path(tempfile.mkdtemp(dir=folder))
             if _COUNTED:
                 signal.setitimer(signal.ITIMER_PROF, seconds)  # whose signal ends a process
@@ -75,24 +76,26 @@ class _Worker:
         )
         self.process.start()
         theirs.close()  # so that its death is heard
+        self.seconds = seconds
         self.number: int | None = None
         self.until = math.inf
 
-    def give(self, number: int, task: Task, seconds: float) -> None:
-        self.number, self.until = number, time.monotonic() + _CLOCK * seconds
+    def give(self, number: int, task: Task) -> None:
+        self.number = number
         with contextlib.suppress(OSError):  # its death is told when it is asked
             self.channel.send(task)
 
-    def answer(self) -> tuple[Outcome, bool]:
-        """Return how its task ended, and whether it can have another one."""
-        self.number, self.until = None, math.inf
-        if not self.channel.poll():
-            return _HANG, False
-        try:
-            return self.channel.recv(), True
-        except (EOFError, OSError):
-            self.process.join()
-            return _death(self.process.exitcode), False
+    def answer(self) -> Outcome | None:
+        """Return how its task ended, by its death too; None where it has only begun."""
+        outcome: Outcome | None = _HANG
+        if self.channel.poll():
+            try:
+                outcome = self.channel.recv()
+            except (EOFError, OSError):
+                self.process.join()
+                outcome = _death(self.process.exitcode)
+        self.until = time.monotonic() + _CLOCK * self.seconds if outcome is None else math.inf
+        return outcome
 
     def end(self) -> None:
         self.process.kill()
@@ -158,13 +161,14 @@ class Pool:
         waiting = iter(tasks)
         while self._give(waiting):
             for worker in self._heard():
-                number = worker.number
-                outcome, alive = worker.answer()
-                if not alive:
+                number, outcome = worker.number, worker.answer()
+                if outcome is None or number is None:
+                    continue
+                worker.number = None
+                if outcome is _HANG or worker.process.exitcode is not None:
                     worker.end()
                     self._workers.remove(worker)
-                if number is not None:
-                    yield number, outcome
+                yield number, outcome
 
     def _give(self, waiting: Iterator[tuple[int, Task]]) -> bool:
         """Give tasks to processes that have none; whether any has one then."""
@@ -173,13 +177,14 @@ class Pool:
             if not idle:
                 idle.append(_Worker(self.work, self.seconds, Path(self._folder.name)))
                 self._workers.append(idle[-1])
-            idle.pop().give(number, task, self.seconds)
+            idle.pop().give(number, task)
         return any(one.number is not None for one in self._workers)
 
     def _heard(self) -> list[_Worker]:
         """Wait until a process says something, dies, or has had its time, and return all such."""
         soonest = min(one.until for one in self._workers)
         channels = [one.channel for one in self._workers if one.number is not None]
-        heard = connection.wait(channels, max(0.0, soonest - time.monotonic()))
+        wait = max(0.0, soonest - time.monotonic())
+        heard = connection.wait(channels, None if math.isinf(wait) else wait)
         now = time.monotonic()
         return [one for one in self._workers if one.channel in heard or now > one.until]
