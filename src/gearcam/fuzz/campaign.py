@@ -19,7 +19,7 @@ from gearcam.fuzz.shrink import Files, shrunk
 DOUBTED: Final = 0.1
 """Share of designs that a study by other means is held against."""
 
-FOLLOWED: Final = 0.3
+FOLLOWED: Final = 0.2
 """Share of designs whose remedies are searched and built, where they are refused or have errors."""
 
 MOST_REFUSED: Final = 0.2

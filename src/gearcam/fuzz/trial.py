@@ -18,7 +18,7 @@ from gearcam.errors import DesignError, InfeasibleError
 from gearcam.fuzz.oracles import look_at
 from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 
-SEARCH: Final = 1.0
+SEARCH: Final = 0.6
 """Patience of a search for remedies, s: a few designs."""
 
 _PACKAGE: Final = f"{Path(__file__).parents[1].name}/"
