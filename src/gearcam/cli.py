@@ -94,7 +94,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema)
+    functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema, _fuzz)
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
     if word in own:
@@ -145,9 +145,9 @@ def _parser(
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
     if command in (_build, _check, _migrate):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
-    if command in (_build, _check, _compare):
+    if command in (_build, _check, _compare, _fuzz):
         _add_common(parser)
-    if command in (_compare, _view):
+    if command in (_compare, _view, _fuzz):
         import_module(f"gearcam.{name}.command").arguments(parser)
     if command is _build:
         words = f"write only these: {','.join(formats)}"
@@ -205,6 +205,13 @@ def _compare(files: list[str], debug: bool, **options: Any) -> None:
         return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(compare(files, **options), GOOD)
 
     _each([" ".join(files)], "compared", work, debug=debug)
+
+
+def _fuzz(debug: bool, **options: Any) -> None:
+    """Try random designs, in processes of their own; those at which it fails go into DIR."""
+    from gearcam.fuzz.command import fuzz
+
+    _each(["fuzz"], "tried", lambda _: GOOD if fuzz(**options) else FINDINGS, debug=debug)
 
 
 def _of_kind(command: Command, words: list[str]) -> None:

@@ -55,6 +55,11 @@ class Range(Brief):
         """The largest absolute value."""
         return max(abs(self.low.value), abs(self.high.value))
 
+    @property
+    def least_radius(self) -> float:
+        """Of a range of curvature: the smallest radius, infinite where all is straight."""
+        return 1.0 / self.largest if self.largest else math.inf
+
 
 def range_of(
     curve: CamCurve, pick: Callable[[Contact], Jet], stretches: list[tuple[float, float]]

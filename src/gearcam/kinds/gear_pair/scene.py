@@ -35,8 +35,8 @@ def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     Scene
         As designed: teeth touch as made, where the driven element lags by what `contact` tells.
     """
-    guide, lobes = result.pair.rolling.guide, result.law.lobes
-    phi1 = np.linspace(0.0, _end(result), places + 1)
+    guide, end, pose = result.pair.rolling.guide, _end(result), result.design.output.pose
+    phi1 = np.linspace(0.0, end, places + 1)
     moved = guide.nominal(phi1)
     way = np.zeros_like(moved) if guide.turns else moved
     shift = np.asarray(guide.place - 1j * way, dtype=np.complex128)
@@ -52,13 +52,12 @@ def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     lowest = [steps[0] for steps in bodies]
     behind = [step for steps in bodies for step in steps[:0:-1]]
     radius = result.pair.rolling.tracks[0].frames(phi1).p
-    turn = lobes.n1 * lobes.period if result.pair.closed else np.inf
     return Scene(
         title=result.design.name,
         driver=DRIVER,
         places=np.degrees(phi1),
         closed=result.pair.closed,
-        start=float(np.degrees(result.design.output.pose % turn)),
+        start=float(np.degrees(pose % end if result.pair.closed else min(max(pose, 0.0), end))),
         bodies=(*behind, *(lowest[::-1] if result.pair.internal else lowest), still(crosses, phi1)),
         contacts={side: _contacts(result, phi1, side) for side in get_args(Side)},
         pitch=radius * np.exp(-1j * phi1),

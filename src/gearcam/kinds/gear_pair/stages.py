@@ -21,6 +21,7 @@ from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
@@ -36,7 +37,7 @@ _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-colli
 """Checks that can find something else in each step of stepped wheels."""
 
 _WHOLE = 1e-9
-"""Part of a lobe by which an end may lie beyond it: rounding."""
+"""Part of a lobe or travel by which an end may lie beyond it: rounding."""
 
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
@@ -71,7 +72,9 @@ class PairStages(Result):
         with self.stage("law"):
             if getattr(law, "driven_travel", None) is None:  # closed
                 demand_ring(pair)
-            return law.build(lobes_of(pair), self.tolerances)
+            made = law.build(lobes_of(pair), self.tolerances)
+            _demand_reached(self.design.output.pose, made)
+        return made
 
     @cached_property
     def pair(self) -> GearPair:
@@ -251,3 +254,19 @@ class PairStages(Result):
         period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
         lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
         return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])
+
+
+def _demand_reached(pose: float, law: RatioLaw) -> None:
+    """Refuse to draw an open pair at a driver angle, rad, that it never reaches."""
+    if law.lobes.closed or 0.0 <= pose <= (1.0 + _WHOLE) * law.period:
+        return
+    key, limit = "output.phi1_deg", math.degrees(min(max(pose, 0.0), law.period))
+    raise InfeasibleError(
+        "the pair never stands as it is to be drawn",
+        where=key,
+        value=math.degrees(pose),
+        limit=limit,
+        unit="deg",
+        nearest=f"the driver turns from 0 to {shown(math.degrees(law.period))} deg",
+        ways=(Way(near={key: limit}, far={key: 0.5 * math.degrees(law.period)}),),
+    )

@@ -10,14 +10,25 @@ import math
 from collections.abc import Callable
 from typing import Any, Final
 
-from random_draw import Draw, short
+from gearcam.draws.blank import blank
+from gearcam.draws.draw import Draw, short
+from gearcam.draws.output import asked
 
 Law = dict[str, Any]
 Counts = tuple[int, int]
 
-MOST_TEETH: Final = 60
+MOST_TEETH: Final = 120
 """Of a wheel: time goes with them."""
 
+
+_SHARES: Final = {
+    "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
+    "drawing-dxf": 0.02, "stl": 0.05, "3mf": 0.02, "glb": 0.03, "step": 0.01, "report": 0.04,
+}  # fmt: skip
+"""Share of pairs that have each file beside their tables, by what it costs."""
+
+_AFFORDABLE: Final = 1200.0
+"""Vertices of a pair above which the other files are drawn less often."""
 
 # --- tooth counts -----------------------------------------------------------------------------
 
@@ -217,9 +228,9 @@ LAWS: Final[dict[str, Callable[[Draw], tuple[Law, Counts]]]] = {
     "multispeed": _multispeed,
     "fourier": _fourier,
     "constant": _constant,
-    "ellipse": _with_lobes(0.6),
-    "eccentric-circle": _excentric(0.5),
-    "limacon": _excentric(0.4),
+    "ellipse": _with_lobes(0.9),
+    "eccentric-circle": _excentric(0.7),
+    "limacon": _excentric(0.6),
     "lobed": _with_lobes(0.15),
     "bspline": _bspline,
     "rounded-polygon": _polygon,
@@ -303,7 +314,15 @@ def _study(d: Draw, design: dict[str, Any]) -> dict[str, Any]:
     return study
 
 
-def gear_pair(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
+def _vertices(document: dict[str, Any]) -> float:
+    """Return about how many vertices the outlines of a pair have; time goes with them."""
+    pair, steps = document["pair"], document.get("steps", {}).get("count", 1)
+    module = pair.get("module_mm") or 2.0 * pair["center_distance_mm"] / sum(pair["teeth"])
+    tolerance = document["output"].get("chord_tolerance_mm", min(1e-3, 1e-3 * module))
+    return 1.7 * sum(pair["teeth"]) * steps * math.sqrt(module / tolerance)
+
+
+def design(d: Draw, index: int) -> dict[str, Any]:
     """Return a gear pair; the laws take turns.
 
     Parameters
@@ -312,32 +331,31 @@ def gear_pair(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict
         Draws of this design.
     index : int
         Its number.
-    blank : callable
-        ``blank(d, radius, unit, both)``: a blank for a least radius and the unit of edges, mm.
     """
     law = [*LAWS][index % len(LAWS)]
     given, z = LAWS[law](d)
     module = d.pick([d.log(0.05, 10000), d.log(0.5, 10)])
     opened, closed = "driven_travel_deg" in given, law != "rack"
-    design: dict[str, Any] = {
+    made: dict[str, Any] = {
         "law": {"type": law, **given},
         "pair": _pair(d, z, module, not closed),
     }
     if d.chance(0.4):
-        design["rack"] = _cutter(d)
+        made["rack"] = _cutter(d)
     if d.chance(0.5):
-        design["blank"] = blank(d, 0.3 * module * min(z), module, closed)
+        made["blank"] = blank(d, 0.3 * module * min(z), module, closed)
         if opened and d.chance(0.3):
-            design["blank"]["stop_pin_mm"] = short(module * d.log(0.5, 2))
+            made["blank"]["stop_pin_mm"] = short(module * d.log(0.5, 2))
     if closed and not opened and d.chance(0.12):
-        design["steps"] = _steps(d, module)
+        made["steps"] = _steps(d, module)
     if d.chance(0.15):
-        design["meshing"] = _study(d, design)
-    design["output"] = {"chord_tolerance_mm": short(module * d.log(1e-3, 2e-2))}
+        made["meshing"] = _study(d, made)
+    made["output"] = {"chord_tolerance_mm": short(module * d.log(1e-3, 2e-2))}
     if 0.5 < module < 10 and d.chance(0.1):
-        del design["output"]["chord_tolerance_mm"]
+        del made["output"]["chord_tolerance_mm"]
     if d.chance(0.2):
-        design["output"]["phi1_deg"] = d.even(-400, 400)
+        made["output"]["phi1_deg"] = d.even(0, 50) if opened else d.even(-400, 400)
     if closed and not opened and z[1] > z[0] and d.chance(0.3):
-        _ring(d, design, module)
-    return design
+        _ring(d, made, module)
+    made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
+    return made
