@@ -64,6 +64,7 @@ def misses(path: Path, *, searched: bool = False) -> list[str]:
     command searches and tells after it: looked at only if they are to be `searched`.
     """
     must = must_of(path.read_text())
+    result: Any = None
     try:
         result = gearcam.build(gearcam.load(path))
         codes = whole(result)
