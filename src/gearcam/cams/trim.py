@@ -4,7 +4,7 @@ An undercut profile crosses itself: between two crossings it lies where the foll
 another angle. What is left is the region of positive winding number that holds the axis (see
 `gearcam.numeric.crossings`), and its corners are crossings of the curve with itself.
 
-Refused: crossings that cannot be told apart.
+Refused: crossings that cannot be told apart, and hundreds of undercut stretches.
 
 Depends on curve and numeric.
 """
@@ -40,6 +40,9 @@ _RUNS = 8.0
 
 _ROUNDS = 8
 """Times that chords are made four times finer where crossings are not told apart."""
+
+_MOST = 500
+"""Undercut stretches that are trimmed: of more, each crosses hundreds of others."""
 
 _OVERLAP = 1e-12
 """Angle, rad, by which an undercut stretch may reach into what is left: rounding."""
@@ -105,8 +108,16 @@ def trimmed(
     Raises
     ------
     InfeasibleError
-        If the crossings cannot be told apart.
+        If the crossings cannot be told apart, or are too many.
     """
+    if len(undercut) > _MOST:
+        raise InfeasibleError(
+            "the profile is undercut in so many places that what is left of it is not sought",
+            where="[cam]",
+            value=len(undercut),
+            limit=_MOST,
+            nearest="a lift with fewer waves, or less noise, has fewer of them",
+        )
     for number in range(_ROUNDS):
         chain = _chain(segments, undercut, tolerance * 0.25**number)
         rings = [
@@ -154,6 +165,7 @@ def _chain(
 ) -> Chain:
     """Cut every segment into chords, finely around undercut stretches; counter-clockwise."""
     number, low, high = [], [], []
+    beside = _beside(undercut)
     for k in range(len(segments.start)):
         start, end = float(segments.start[k]), float(segments.end[k])
         probes = np.linspace(start, end, _PROBES)
@@ -168,8 +180,8 @@ def _chain(
         places = np.interp(np.linspace(0.0, float(total[-1]), count + 1), total, probes)
         places[-1] = end
         if not segments.jump[k]:
-            extra = [_beside(pair, start, end) for pair in undercut]
-            places = np.unique(np.concatenate([places, *extra]))
+            inside = slice(*np.searchsorted(beside, [np.nextafter(start, np.inf), end]).tolist())
+            places = np.unique(np.concatenate([places, beside[inside]]))
         number.append(np.full(len(places) - 1, k))
         low.append(places[:-1])
         high.append(places[1:])
@@ -182,14 +194,13 @@ def _chain(
     return Chain(curve=curve, low=lows, high=highs, points=points)
 
 
-def _beside(stretch: tuple[float, float], start: float, end: float) -> Array:
-    """Return places in and beside an undercut stretch that lie within a sweep."""
-    low, high = stretch
+def _beside(stretches: Sequence[tuple[float, float]]) -> Array:
+    """Return places in and beside undercut stretches, also a turn on and back, in rising order."""
+    low, high = np.reshape(stretches, (-1, 2)).T
     more = _BESIDE * (high - low)
     places = np.linspace(low - more, high + more, _AROUND)
     turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])  # of an open curve nothing lies there
-    shifted = (places + turns[:, None]).ravel()
-    return shifted[(shifted > start) & (shifted < end)]
+    return np.sort((places + turns[:, None, None]).ravel())
 
 
 def cut_out(

@@ -17,7 +17,7 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import NARROWEST_STEP, ColumnsError, FromFile, close_angles, degrees
 from gearcam.laws.entry import TYPED
-from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.phases_of_lift import LONGEST, TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import program_of_rows
 from gearcam.numerals import shown
@@ -37,9 +37,6 @@ leaves smoothing too few digits (see `gearcam.numeric.least_jerk.smoothed_ring`)
 _OPEN: Final = 1.5
 """Gap over the end of the turn, in widest steps, above which rows are missing: a last row that is
 left out leaves a step."""
-
-_LONGEST: Final = 1e6
-"""Largest lift, mm, as of phases."""
 
 _DEG: Final = math.radians(1.0)
 
@@ -69,8 +66,8 @@ class MotionTable(FromFile):
     lift: Row | None = param(
         LENGTH,
         default=None,
-        ge=-_LONGEST,
-        le=_LONGEST,
+        ge=-LONGEST,
+        le=LONGEST,
         min_length=_FEWEST,
         doc="lifts at theta (translating follower)",
         angular=Param(
@@ -142,7 +139,7 @@ class MotionTable(FromFile):
         def told(value: float) -> str:
             return f"{shown(value / scale, 10)} {unit}"
 
-        largest = math.pi if oscillating else _LONGEST
+        largest = math.pi if oscillating else LONGEST
         for row in np.flatnonzero(np.abs(lift) > largest).tolist():
             yield "lift", row, f"the lift is {told(lift[row])}", f"at most {told(largest)}"
         extent, tolerance = float(np.ptp(lift)), self.smoothing_tolerance or 0.0
