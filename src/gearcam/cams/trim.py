@@ -12,7 +12,7 @@ Depends on curve and numeric.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,9 @@ from gearcam.cams.curve import ProfileSegments
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.contour import Contour
 from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
+from gearcam.numeric.sampling import Sampler
 
 _PROBES = 33
 """Places on each segment at which its chords are counted."""
@@ -48,7 +50,10 @@ _OVERLAP = 1e-12
 """Angle, rad, by which an undercut stretch may reach into what is left: rounding."""
 
 _MISS = 1e-12
-"""Distance of two curves at their crossing, in sizes of the cam: rounding of points and angles."""
+"""Distance of two curves at their crossing, in sizes of the cam: rounding of points."""
+
+_ROUNDING = 16.0 * np.finfo(float).eps
+"""Part of an angle by which it is rounded where two curves cross: a steep curve moves far by it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,7 +129,7 @@ def trimmed(
             ring for ring in remaining(segments, [chain])[0] if chain.open or _about_axis(ring)
         ]
         # chords that are too long may have missed a loop
-        if len(rings) == 1 and rings[0].gap <= _MISS * np.abs(chain.points).max():
+        if len(rings) == 1 and _meets(segments, rings[0], float(np.abs(chain.points).max())):
             made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
             if not _backwards(made[0], undercut):
                 return made
@@ -152,6 +157,14 @@ def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]
         bool(np.any(np.minimum(end, high) - np.maximum(start, low) > _OVERLAP))
         for low, high in undercut
     )
+
+
+def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
+    """Return whether curves meet at the crossings of a ring, as near as rounding allows."""
+    places = [place for branch in ring.branches for place in branch]
+    index, parameter = (np.array(values) for values in zip(*places, strict=True))
+    way = np.abs(parameter * segments.moving(index, parameter)[1])
+    return ring.gap <= _MISS * size + _ROUNDING * float(way.max())
 
 
 def _about_axis(ring: Ring) -> bool:
@@ -201,6 +214,40 @@ def _beside(stretches: Sequence[tuple[float, float]]) -> Array:
     places = np.linspace(low - more, high + more, _AROUND)
     turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])  # of an open curve nothing lies there
     return np.sort((places + turns[:, None, None]).ravel())
+
+
+def crossing_chords(
+    called: str, sampler: Sampler, contour: Callable[[Sampler], Contour]
+) -> InfeasibleError:
+    """Return the refusal of chords that cross: finer ones may not, where a profile is narrow.
+
+    Parameters
+    ----------
+    called : str
+        What people call the profile.
+    sampler : Sampler
+        With the tolerance of the chords.
+    contour : callable
+        ``contour(sampler) -> Contour``.
+    """
+    for number in range(1, _ROUNDS):
+        finer = replace(sampler, tolerance=sampler.tolerance * 0.25**number)
+        if contour(finer).polygon.is_valid:
+            key = "output.chord_tolerance_mm"
+            return InfeasibleError(
+                f"the {called} is so narrow somewhere that its chords cross",
+                where=key,
+                value=sampler.tolerance,
+                limit=finer.tolerance,
+                unit="mm",
+                nearest="with the limit they do not",
+                ways=(Way(near={key: finer.tolerance}),),
+            )
+    return InfeasibleError(
+        f"the {called} crosses itself, and what is left of it cannot be told",
+        where="[cam]",
+        nearest="no piece of it has a place in the order of the others",
+    )
 
 
 def cut_out(
