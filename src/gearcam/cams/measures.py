@@ -124,23 +124,25 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         return found
     places, values = extremes_among(speed, survey.places, *seen)
     sweep = np.searchsorted(cuts, places, side="right")
-    for k in np.flatnonzero(sweep[:-1] == sweep[1:]).tolist():  # not across a knot
-        pair, sign = places[k : k + 2], values[k : k + 2] < 0.0
-        if not sign.any():
-            continue
-        low, high = (_at_knot(float(place), knots) for place in pair)
-        if not sign.all():
-            root = float(bracketed_root(lambda t: speed(t)[0], pair[:1], pair[1:], _ROOT)[0])
-            low, high = (low, root) if sign[0] else (root, high)
-        if low < high:
-            found.append((low, high))
+    cells = places[:-1], places[1:]
+    before, after = values[:-1] < 0.0, values[1:] < 0.0
+    whole = sweep[:-1] == sweep[1:]  # not across a knot
+    low, high = (_at_knots(ends, knots) for ends in cells)
+    turns = whole & (before != after)
+    roots = bracketed_root(lambda t: speed(t)[0], *(ends[turns] for ends in cells), _ROOT)
+    low[turns & after] = roots[after[turns]]
+    high[turns & before] = roots[before[turns]]
+    kept = whole & (before | after) & (low < high)
+    found += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
     return _joined(sorted(found))
 
 
-def _at_knot(theta: float, knots: Array) -> float:
-    """Return the knot that an angle means if it is as near as extremes keep from knots."""
-    nearest = float(knots[np.abs(knots - theta).argmin()])
-    return nearest if abs(nearest - theta) <= _INSET else theta
+def _at_knots(theta: Array, knots: Array) -> Array:
+    """Return angles, each the knot that it means where it is as near as extremes keep to it."""
+    after = np.searchsorted(knots, theta).clip(1, len(knots) - 1)
+    before, behind = knots[after - 1], knots[after]
+    nearest = np.where(theta - before < behind - theta, before, behind)
+    return np.where(np.abs(nearest - theta) <= _INSET, nearest, theta)
 
 
 def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:

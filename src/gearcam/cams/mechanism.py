@@ -317,7 +317,7 @@ def _out_of_reach(
         value=size,
         limit=limit,
         unit="mm",
-        nearest=f"{parts} allow {shown(low)} to {shown(high)} mm, both excluded",
+        nearest=f"{parts} allow {shown(least)} to {shown(high)} mm, both excluded",
         ways=ways,
     )
 

@@ -24,9 +24,8 @@ from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.trim import Corner, star_shaped, trimmed
+from gearcam.cams.trim import Corner, crossing_chords, star_shaped, trimmed
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
 from gearcam.facts import Fact
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
@@ -315,11 +314,7 @@ class Wall(PitchMotion):
         points = as_complex(made.vertices)
         seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
         if not seen_whole and not made.polygon.is_valid:
-            raise InfeasibleError(
-                f"the {self.called} crosses itself, and what is left of it cannot be told",
-                where="[cam]",
-                nearest="no piece of it has a place in the order of the others",
-            )
+            raise crossing_chords(self.called, self.sampler, self._contour)
         return made
 
     @property

@@ -13,11 +13,18 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.display import Brief
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _POINT_NUMBER: Final = re.compile(r"[+-]?\d*\.\d*([eE][+-]?\d+)?")
+_NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(inf|infinity|nan)", re.A | re.I)
 _HINT: Final = "; use a decimal point"
+
+
+NARROWEST_STEP: Final = 2e-6 * math.pi
+"""Least step of the angle in rows, rad: a second of arc; the place of a row in it is known to
+1e-10."""
 
 
 class ColumnsError(ValueError):
@@ -149,6 +156,32 @@ def read_rows(file: str) -> CsvRows:
     return _with_points(made) if semicolons else made
 
 
+def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
+    """Yield the rows whose angle does not rise above the one before, by a second of arc.
+
+    Parameters
+    ----------
+    angles : (n,) array, rad
+        Of the rows.
+
+    Yields
+    ------
+    tuple
+        Number of the row, what is wrong, what is allowed.
+    """
+    steps = np.diff(angles)
+    rule = f"each angle at least {degrees(NARROWEST_STEP)} above the one before"
+    for row in np.flatnonzero(~(steps >= NARROWEST_STEP)).tolist():
+        before, here = degrees(float(angles[row])), degrees(float(angles[row + 1]))
+        state = f"{here} stands twice" if steps[row] == 0.0 else f"{here} follows {before}"
+        yield row + 1, state, rule
+
+
+def degrees(angle: float) -> str:
+    """Return an angle, rad, as people are told."""
+    return f"{shown(math.degrees(angle), 10)} deg"
+
+
 def _with_points(rows: CsvRows) -> CsvRows:
     """Return the rows of a file with semicolons, decimal commas turned where they are that."""
     cells = [cell for row in rows.cells[1:] for cell in row]
@@ -166,11 +199,10 @@ def _numbers(cells: Sequence[str], places: Sequence[int], line: int) -> list[flo
     found = []
     for place in places:
         text = cells[place] if place < len(cells) else ""
-        try:
-            found.append(float(text))
-        except ValueError:
+        if not _NUMBER.fullmatch(text):
             hint = _HINT if _COMMA_NUMBER.fullmatch(text) else ""
-            raise ColumnsError(f"line {line}: {text!r} is not a number{hint}") from None
+            raise ColumnsError(f"line {line}: {text!r} is not a number{hint}")
+        found.append(float(text))
         if not math.isfinite(found[-1]):
             raise ColumnsError(f"line {line}: {text!r} is not finite")
     return found
