@@ -20,7 +20,7 @@ import numpy as np
 
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
-from gearcam.laws.displacement import JUMP, Displacement, Jump
+from gearcam.laws.displacement import EXACT, JUMP, Deviation, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
     TURN,
     DwellPhase,
@@ -55,22 +55,6 @@ class PlacedPhase:
     end: float
 
 
-@dataclass(frozen=True, kw_only=True)
-class Deviation:
-    """The largest distance of a lift from the rows that it was made from.
-
-    Parameters
-    ----------
-    theta : float, rad
-        Where.
-    value : float, mm or rad
-        How far, positive where the lift is above the row.
-    """
-
-    theta: float
-    value: float
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Survey(Brief):
     """A lift and its derivatives to the fourth, all at once: most questions need no more.
@@ -103,8 +87,8 @@ class Program(Brief, Displacement):
         Its phases; a segment counts as a rise or return by its direction.
     cuts : (m,) array, rad
         The knots, and more places where a law bends sharply: between them extremes are sought.
-    error : float, mm or rad
-        Estimated error of the lift beyond rounding.
+    errors : (float, float, float, float)
+        Estimated errors of the lift, mm or rad, and of its first three derivatives beyond rounding.
     deviation : Deviation, optional
         What smoothing took off rows.
     open : bool
@@ -114,9 +98,14 @@ class Program(Brief, Displacement):
     lift: Piecewise
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
-    error: float = 0.0
+    errors: tuple[float, ...] = EXACT
     deviation: Deviation | None = None
     open: bool = False
+
+    @property
+    def error(self) -> float:
+        """Estimated error of the lift beyond rounding, mm or rad."""
+        return self.errors[0]
 
     @property
     def closed(self) -> bool:
@@ -276,7 +265,7 @@ def make_program(
 
     pieces: list[tuple[float, Piece]] = []
     stretches: list[PlacedPhase] = []
-    cuts = np.array([])
+    cuts, errors = np.array([]), np.array(EXACT)
     for number, (phase, place) in enumerate(zip(phases, places, strict=True)):
         match phase:
             case DwellPhase():
@@ -291,15 +280,15 @@ def make_program(
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 pieces += place.pieces(rises[phase.law])
                 cuts = np.append(cuts, place.cuts(rises[phase.law]))
+                errors = np.maximum(errors, place.errors(rises[phase.law]))
         stretches.append(PlacedPhase(kind=kind, start=place.start, end=place.end))
     knots, parts = zip(*pieces, strict=True)
     lift = piecewise([0.0, *knots], list(parts))
-    swing = max(heights) - min(heights)
     return Program(
         lift=lift,
         stretches=tuple(stretches),
         cuts=np.union1d(lift.knots, cuts),
-        error=swing * max((rise.error for rise in rises.values()), default=0.0),
+        errors=tuple(errors.tolist()),
         open=not closed,
     )
 
@@ -375,6 +364,11 @@ class _Place:
         """Return where a law bends sharply."""
         origin, width, *_ = self.law(rise)
         return origin + width * np.array(rise.cuts)
+
+    def errors(self, rise: Rise) -> Array:
+        """Return the errors of a law and of its first three derivatives."""
+        width = self.end - self.start
+        return abs(self.rise) * np.array(rise.errors) / width ** np.arange(4)
 
     def end_state(self, rise: Rise) -> tuple[float, float]:
         """Return velocity and acceleration of a law at the end."""
