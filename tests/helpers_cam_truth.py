@@ -6,6 +6,7 @@ import math
 import random
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import mpmath
@@ -20,8 +21,11 @@ Number = Any
 Row = tuple[str, float, Number, Number]
 """Name of an estimate, what is told, the truth, and what the size of the quantity is measured by."""
 
+_NOTHING = 1e-20
+"""Part of the largest slope that is rounding."""
+
 _PER_PIECE = 3
-_MOST = 60
+_MOST = 80
 """Places at which a design is looked at."""
 
 
@@ -33,10 +37,14 @@ def extremes(pieces: list[Piece]) -> tuple[Number, Number]:
         places = [one.low + (one.high - one.low) * k / 16 for k in range(17)]
         slopes = [one.shape(t)[1] for t in places]
         for a, b, low, high in zip(places, places[1:], slopes, slopes[1:], strict=False):
-            if low * high < 0:
-                root = mp.findroot(lambda t, one=one: one.shape(t)[1], (a, b), solver="anderson")
+            if low * high < 0 and min(abs(low), abs(high)) > _NOTHING * max(map(abs, slopes)):
+                root = mp.findroot(partial(_slope, one), (a + b) / 2)
                 found.append(one.shape(root)[0])
     return min(found), max(found)
+
+
+def _slope(piece: Piece, theta: Number) -> Number:
+    return piece.shape(theta)[1]
 
 
 def touches(design: Mapping[str, Any], pieces: list[Piece]) -> tuple[list[Touch], list[Touch]]:
@@ -107,7 +115,7 @@ def _second(design: Mapping[str, Any], own: Touch, highest: Number) -> Touch:
 def places(pieces: list[Piece], seed: int) -> list[float]:
     """Cam angles inside pieces, away from knots, where derivatives belong to another piece."""
     draw = random.Random(seed)
-    shares = [0.003, 0.997, *(draw.uniform(0.02, 0.98) for _ in range(_PER_PIECE))]
+    shares = [0.003, 0.49, 0.51, 0.997, *(draw.uniform(0.02, 0.98) for _ in range(_PER_PIECE))]
     found = [
         float(one.low + (one.high - one.low) * share)
         for one in pieces

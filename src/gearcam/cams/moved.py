@@ -28,8 +28,9 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet
 
-_STEP: Final = 4.0 * float(np.finfo(float).eps)
-"""By what part of itself a number is moved: its own rounding, and that of what it is made of."""
+_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 8, 2))
+"""By what part of themselves numbers are moved, as many roundings as they may be the work of: sizes
+of the follower; cam angles, which knots are sums of; coefficients of the lift."""
 
 _TRIES: Final = 4
 
@@ -91,17 +92,17 @@ class Moved(Brief):
         def signs(shape: tuple[int, ...]) -> Array:
             return draw.choice([-1.0, 1.0], shape)
 
-        def moved(values: Array) -> Array:
-            return values * (1.0 + _STEP * signs(values.shape))
+        def moved(values: Array, step: float = _COEFFICIENTS) -> Array:
+            return values * (1.0 + step * signs(values.shape))
 
         count = len(fields(Mechanism))
         made = [_State(theta, lift.on_pieces(index, theta, 3), np.ones(count))]
         off = np.array(self.program.errors)[:, None]
         for _ in range(_TRIES):
-            places = moved(theta)
+            places = moved(theta, _ANGLES)
             found = lift.on_pieces(index, places, 3, moved)
             found += off * signs(found.shape)
-            made.append(_State(places, found, moved(np.ones(count))))
+            made.append(_State(places, found, moved(np.ones(count), _SIZES)))
         return made
 
     @cached_property
@@ -197,7 +198,7 @@ def undercut_error(moved: Moved, wall: Wall) -> float:
     slopes = wall.curve.contact(ends).speed.derivatives()[1]
     inside = ~np.isin(ends, wall.program.knots)
     off = moved.errors_at(ends, wall.curve, _speed)[inside] / np.abs(slopes[inside])
-    return float(max(off.max(initial=0.0), _STEP * ends.max(initial=0.0)))
+    return float(max(off.max(initial=0.0), _ANGLES * ends.max(initial=0.0)))
 
 
 def lost_lift_error(moved: Moved, wall: Wall) -> float:
