@@ -28,7 +28,7 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet
 
-_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 8, 2))
+_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2))
 """By what part of themselves numbers are moved, as many roundings as they may be the work of: sizes
 of the follower; cam angles, which knots are sums of; coefficients of the lift."""
 
@@ -90,7 +90,7 @@ class Moved(Brief):
         lift, draw = self.program.lift, np.random.default_rng(0)
 
         def signs(shape: tuple[int, ...]) -> Array:
-            return draw.choice([-1.0, 1.0], shape)
+            return draw.uniform(-1.0, 1.0, shape)
 
         def moved(values: Array, step: float = _COEFFICIENTS) -> Array:
             return values * (1.0 + step * signs(values.shape))

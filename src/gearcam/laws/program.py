@@ -33,6 +33,7 @@ from gearcam.laws.phases_of_lift import (
     program_problems,
 )
 from gearcam.laws.rises.base import Rise
+from gearcam.laws.rises.pieces import from_both_ends
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
@@ -382,12 +383,14 @@ class _Place:
     ) -> Piece:
         """Return the quintic with given velocities and accelerations at both ends.
 
-        `opposite` changes the signs of those at its start.
+        `opposite` changes the signs of those at its start. It is computed from the nearer end.
         """
         width = self.end - self.start
-        rates = np.array([start, end]) * [width, width**2]
-        rates[0] *= -1.0 if opposite else 1.0
-        ends = np.array([(0.0, 0.0, *rates[0]), (1.0, self.rise, *rates[1])])
-        powers = hermite_quintics(*ends.T)[0].tolist()
-        parameters = (self.start, 1.0 / width, self.base, 1.0, 0.0, *powers)
-        return Piece(_Placed(polynomial), parameters=parameters)
+        first, last = np.array([start, end]) * [width, width**2]
+        first *= -1.0 if opposite else 1.0
+        ends = np.array([(0.0, 0.0, *first), (1.0, self.rise, *last)])
+        seen = np.array([(0.0, self.rise, *last), (1.0, 0.0, *first)]) * [1, 1, -1, 1]  # from there
+        left, right = (hermite_quintics(*rows.T)[0] for rows in (ends, seen))
+        both = from_both_ends(left.tolist(), (right * (-1.0) ** np.arange(6)).tolist(), 0.0, 1.0)
+        parameters = (self.start, 1.0 / width, self.base, 1.0, *both.parameters)
+        return Piece(_Placed(both.function), parameters=parameters)
