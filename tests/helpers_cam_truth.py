@@ -12,6 +12,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
+from helpers_cam_trimmed import play, trimming
 from witness import cam_numbers as exact
 from witness.cam_numbers import Touch
 from witness.lifts import Piece, lift
@@ -29,22 +30,22 @@ _MOST = 80
 """Places at which a design is looked at."""
 
 
-def extremes(pieces: list[Piece]) -> tuple[Number, Number]:
-    """Smallest and largest lift."""
+def extremes(pieces: list[Piece], order: int = 0) -> tuple[Number, Number]:
+    """Smallest and largest lift, or derivative of an order up to 2."""
     found = []
     for one in pieces:
-        found += [one.shape(one.low)[0], one.shape(one.high)[0]]
-        places = [one.low + (one.high - one.low) * k / 16 for k in range(17)]
-        slopes = [one.shape(t)[1] for t in places]
+        found += [one.shape(one.low)[order], one.shape(one.high)[order]]
+        places = [one.low + (one.high - one.low) * k / 17 for k in range(18)]
+        slopes = [one.shape(t)[order + 1] for t in places]
         for a, b, low, high in zip(places, places[1:], slopes, slopes[1:], strict=False):
             if low * high < 0 and min(abs(low), abs(high)) > _NOTHING * max(map(abs, slopes)):
-                root = mp.findroot(partial(_slope, one), (a + b) / 2)
-                found.append(one.shape(root)[0])
+                root = mp.findroot(partial(_slope, one, order + 1), (a, b), solver="illinois", verify=False)
+                found.append(one.shape(root)[order])
     return min(found), max(found)
 
 
-def _slope(piece: Piece, theta: Number) -> Number:
-    return piece.shape(theta)[1]
+def _slope(piece: Piece, order: int, theta: Number) -> Number:
+    return piece.shape(theta)[order]
 
 
 def touches(design: Mapping[str, Any], pieces: list[Piece]) -> tuple[list[Touch], list[Touch]]:
@@ -141,12 +142,55 @@ def rows(result: Any, design: Mapping[str, Any], seed: int = 0) -> Iterator[Row]
         size = max(abs(state[order]) for state in states) * factor / rate**order
         for value, state in zip(told[name].tolist(), states, strict=True):
             yield name, value, state[order] * factor / rate**order, size
+        if order < 3:
+            ends = [factor / rate**order * end for end in extremes(pieces, order)]
+            yield from zip([name] * 2, _ends(result, order), ends, [size] * 2, strict=True)
     for own, touch in zip(result.cam.motions, motions, strict=True):
         yield from _of_motion(own, touch, (theta, states), told)
+        yield from _extremes_of(own, touch, pieces)
     for own, touch in zip(result.cam.walls, walls, strict=True):
         yield from _of_wall(result, own, touch, (theta, states))
+        yield from trimming(result, own, touch, pieces)
         if not own.corners and not own.undercut:
-            yield from _sizes(result, own, touch, pieces)
+            yield from _sizes(own, touch, pieces)
+    yield from play(result, motions[0], walls, pieces)
+
+
+def _ends(result: Any, order: int) -> list[float]:
+    """Both ends of a derivative of the lift, as people are told them."""
+    scale = result.mechanism.outward[0] / result.mechanism.driver.rate**order
+    return [scale * end for end in result.program.range_of(order)]
+
+
+def _extremes_of(own: Any, touch: Touch, pieces: list[Piece]) -> Iterator[Row]:
+    """Pressure angles and curvatures that are told as the smallest and the largest."""
+
+    def found(name: str, told: Any, function: Any, size: Number) -> Iterator[Row]:
+        for end in (told.low, told.high):
+            near = [one for one in pieces if one.low - 1e-9 < end.theta < one.high + 1e-9]
+            true = [
+                exact.best(partial(function, one), end.theta, (one.low, one.high)) for one in near
+            ]
+            yield name, end.value, min(true, key=lambda value: abs(value - end.value)), size
+
+    for kind in ("rise", "return"):
+        if (told := own.pressure(kind)) is not None:
+            degrees = replace_values(told)
+            yield from found("pressure_angle_deg", degrees, lambda one, t: mp.degrees(touch.pressure(one.shape(t))), mp.mpf(90))
+    if touch.flat:
+        told = own.face_radius
+        size = max(abs(told.low.value), abs(told.high.value))
+        yield from found("radius_mm", told, lambda one, t: touch.room(t, one.shape(t)), size)
+    else:
+        told = own.pitch_curvature()
+        size = max(abs(told.low.value), abs(told.high.value))
+        yield from found("curvature_per_mm", told, lambda one, t: touch.curvature(t, one.shape(t)), size)
+
+
+def replace_values(told: Any) -> Any:
+    """A range of angles in degrees."""
+    low, high = (replace(end, value=math.degrees(end.value)) for end in (told.low, told.high))
+    return replace(told, low=low, high=high)
 
 
 def _ending(one: Any) -> str:
@@ -180,9 +224,13 @@ def _of_wall(result: Any, own: Any, touch: Touch, at: Any) -> Iterator[Row]:
         true = [touch.room(mp.mpf(t), state) for t, state in zip(*at, strict=True)]
         for value, one in zip(radii, true, strict=True):
             yield "radius_mm", value, one, max(map(abs, true))
+        contacts = [touch.place(state) for state in at[1]]
+        told = own.curve.contact(np.array(theta), 0).place.c[0]
+        for value, one in zip(np.broadcast_to(told, len(theta)).tolist(), contacts, strict=True):
+            yield "contact_mm", value, one, max(map(abs, contacts))
 
 
-def _sizes(result: Any, own: Any, touch: Touch, pieces: list[Piece]) -> Iterator[Row]:
+def _sizes(own: Any, touch: Touch, pieces: list[Piece]) -> Iterator[Row]:
     prefix, (length, area) = f"{own.key}_" if own.key else "", exact.sizes(touch, pieces)
     yield f"{prefix}perimeter_mm", own.size.perimeter, length, length
     if own.program.closed:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import mpmath
@@ -88,6 +89,12 @@ class Touch:
             spin,
         ]
 
+    def place(self, found: Sequence[Number]) -> Number:
+        """Where a face is touched: along it from the axis, or from the pivot."""
+        if not self.swings:
+            return found[1]
+        return self.pivot * mp.cos(self.start + found[0]) / (1 + found[1])
+
     # --- both ---------------------------------------------------------------------------------
 
     def contact(self, theta: Number, found: Sequence[Number]) -> Number:
@@ -104,8 +111,7 @@ class Touch:
         if self.flat:
             if not self.swings:
                 return mp.mpf(0)
-            along = self.pivot * mp.cos(self.start + found[0]) / (1 + found[1])
-            return mp.atan(-self.face / along)
+            return mp.atan(-self.face / self.place(found))
         z, dz, _ = self.centre(found)
         normal = 1j * (dz + (self.slide or -1j * z))
         place = self.start + found[0]
@@ -123,22 +129,41 @@ class Touch:
             return h + bend
         return 1 - self.radius * self.curvature(theta, found)
 
+    @property
+    def away(self) -> int:
+        """Whether a rise moves the follower away from the metal, or to it (-1)."""
+        below = not self.flat and not self.slide and self.start < 0
+        return -1 if below != (self.radius < 0) else 1
+
     def rested(self, theta: Number, point: Number) -> Number:
-        """The lift at which a round follower rests on a point of the cam's frame."""
-        z, side = point * mp.expj(theta), mp.sign(self.radius)
+        """The lift at which the follower rests on a point of the cam's frame."""
+        z = point - self.slide * theta if self.slide else point * mp.expj(theta)
+        r, side = abs(self.radius), self.away
+        if self.swings and self.flat:
+            reach = self.pivot - z
+            return -mp.arg(reach) + mp.asin(self.face / abs(reach)) - self.start
         if self.swings:
-            from_pivot = self.pivot - z
-            reach = abs(from_pivot)
-            cosine = (reach**2 + self.arm**2 - self.radius**2) / (2 * reach * self.arm)
-            return -mp.arg(from_pivot) + side * mp.acos(cosine) - self.start
+            arm = z - mp.mpc(-self.pivot, self.height) if self.slide else mp.conj(self.pivot - z)
+            cosine = (abs(arm) ** 2 + self.arm**2 - r**2) / (2 * abs(arm) * self.arm)
+            return mp.arg(arm) + side * mp.acos(cosine) - self.start
+        z *= mp.expj(-self.tilt)
         if self.flat:
             return z.imag - self.start
-        return z.imag + side * mp.sqrt(self.radius**2 - (z.real - self.offset) ** 2) - self.start
+        return z.imag + side * mp.sqrt(r**2 - (z.real - self.offset) ** 2) - self.start
+
+    def standing(self, theta: Number, centre: Number) -> tuple[Number, Number]:
+        """How far a centre of the cam's frame is off the follower's way, and the lift there."""
+        z = centre - self.slide * theta if self.slide else centre * mp.expj(theta)
+        if self.swings:
+            arm = z - mp.mpc(-self.pivot, self.height) if self.slide else mp.conj(self.pivot - z)
+            return abs(arm) - self.arm, mp.arg(arm) - self.start
+        z *= mp.expj(-self.tilt)
+        return z.real - self.offset, z.imag - self.start
 
 
 def at(lift: Sequence[Piece], theta: Number) -> list[Number]:
     """Lift and derivatives; at a knot those after it."""
-    return next(one for one in reversed(lift) if one.low <= theta).shape(theta)
+    return piece_at(lift, theta).shape(theta)
 
 
 def integral(lift: Sequence[Piece], function: Callable[[Number, list[Number]], Number]) -> Number:
@@ -177,13 +202,58 @@ def sizes(touch: Touch, lift: Sequence[Piece]) -> tuple[Number, Number]:
     return length - 2 * mp.pi * r, area - r * length + mp.pi * r * r
 
 
-def best(function: Callable[[Number], Number], place: float, low: float, high: float) -> Number:
-    """The extreme of a smooth function next to a place, or its value at an end of a stretch."""
-    slope = lambda t: mp.diff(function, t)  # noqa: E731
-    for end in (low, high):
+def trimmed_sizes(
+    touch: Touch, lift: Sequence[Piece], corners: Sequence[tuple[Number, Number]]
+) -> tuple[Number, Number]:
+    """Perimeter and area of a round follower's profile that corners (before, after) have cut."""
+
+    def drawn(theta: Number, found: list[Number]) -> Number:
+        _, first, _ = touch.pitch(theta, found)
+        run = first * touch.room(theta, found)
+        swept = -(mp.conj(touch.contact(theta, found)) * run).imag / 2
+        return mp.mpc(abs(run), swept)
+
+    total, turn = mp.mpf(0), 2 * mp.pi
+    for (_, begin), (end, _) in zip(corners, [*corners[1:], corners[0]], strict=True):
+        stop = end if end > begin else end + turn
+        for shift in (0, turn):
+            for one in lift:
+                low, high = max(one.low + shift, begin), min(one.high + shift, stop)
+                if low < high:
+                    part = Piece(low - shift, high - shift, one.shape)
+                    total += integral([part], drawn)
+    return total.real, total.imag
+
+
+def best(function: Callable[[Number], Number], place: float, ends: tuple[Number, Number]) -> Number:
+    """The extreme of a smooth function next to a place, or its value at an end of its stretch."""
+    for end in ends:
         if abs(place - end) < 1e-9:
-            return function(mp.mpf(end))
-    return function(mp.findroot(slope, mp.mpf(place)))
+            return function(end)
+    slope = mp.findroot(partial(mp.diff, function), mp.mpf(place), tol=1e-30, verify=False)
+    return function(slope if abs(slope - place) < 1e-5 else mp.mpf(place))
+
+
+def piece_at(lift: Sequence[Piece], theta: Number) -> Piece:
+    """The piece of a cam angle; at a knot that after it."""
+    return next(one for one in reversed(lift) if one.low <= theta)
+
+
+def lost_between(
+    touch: Touch, lift: Sequence[Piece], theta: Number, insets: Sequence[Number]
+) -> Number:
+    """How far a follower moves between two parallels of its pitch curve, so deep within it."""
+
+    def lift_at(inset: Number) -> Number:
+        def centre(t: Number) -> Number:
+            place, first, _ = touch.pitch(t, piece_at(lift, t % (2 * mp.pi)).shape(t % (2 * mp.pi)))
+            return place - 1j * inset * first / abs(first)
+
+        t = mp.findroot(lambda t: touch.standing(theta, centre(t))[0], theta)
+        return touch.standing(theta, centre(t))[1]
+
+    inner, outer = (lift_at(inset) for inset in insets)
+    return outer - inner
 
 
 def crossing(touch: Touch, pair: tuple[Piece, Piece], told: tuple[float, float]) -> tuple[Number, ...]:

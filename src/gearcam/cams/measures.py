@@ -82,10 +82,14 @@ def range_of(
     def function(theta: Array) -> list[Array]:
         return pick(curve.contact(theta)).derivatives()
 
-    found = [extremes(function, curve.program.cuts_between(*ends)) for ends in stretches]
-    if not found:
+    if not stretches:
         return None
-    theta, value = np.concatenate(found, axis=1)
+    cuts = [curve.program.cuts_between(*ends) for ends in stretches]
+    found = [extremes(function, own) for own in cuts]
+    # extremes keep off the knots: what is largest there is taken from each side's own piece
+    ends, states = curve.program.sides(cuts)
+    at_ends = pick(curve.contact_of(states, 0)).c[0] + np.zeros_like(ends)
+    theta, value = np.concatenate([*found, [ends, at_ends]], axis=1)
     low, high = (
         Extreme(theta=float(theta[k]), value=float(value[k]))
         for k in (value.argmin(), value.argmax())
@@ -230,7 +234,7 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
     falls = np.where(np.isfinite(earlier), np.minimum(1.0, 2.0 * changes / earlier), 1.0)
     perimeter, area = found.tolist()
     curve = segments.curve
-    off = curve.program.error * curve.mechanism.lever
+    off = curve.program.errors[0] * curve.mechanism.lever
     unknown = np.array([2.0 * math.pi, perimeter]) * off
     errors = (changes * falls + unknown + _ROUNDING * found).tolist()
     return Size(perimeter=perimeter, area=area, perimeter_error=errors[0], area_error=errors[1])

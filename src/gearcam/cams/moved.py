@@ -38,9 +38,6 @@ _PLACES: Final = 256
 _FEWEST: Final = 3
 """Places over a turn, and at least in a stretch between cuts of the lift, its ends among them."""
 
-_DIRECTIONS: Final = np.exp(0.25j * math.pi * np.arange(8))
-"""In which a corner is moved."""
-
 Quantity = Callable[[CamCurve, Array, Array], Array | Plane]
 """What ``quantity(curve, theta, found)`` tells of cam angles, rad, and lift with derivatives."""
 
@@ -219,29 +216,43 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
     worst = 0.0
     points, misses = _corner_errors(moved, wall)
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
-        off = float(misses[np.abs(points - corner.point).argmin()])
+        off = misses[np.abs(points - corner.point).argmin()]
         theta = Jet([np.array([loss.theta])])
         lifts = [
             resting(wall.mechanism, complex(point), wall.curve.mechanism.away)(theta).c[0]
-            for point in (corner.point, *(corner.point + off * _DIRECTIONS))
+            for point in (corner.point, *(corner.point + off), *(corner.point - off))
         ]
         change = float(np.nanmax(np.abs(np.subtract(lifts[1:], lifts[0])), initial=0.0))
         worst = max(worst, change + moved.lift[0])
     return worst
 
 
-def _corner_errors(moved: Moved, wall: Wall) -> tuple[Plane, Array]:
-    """Return where trimming has left corners, and how far off they may be, mm."""
+def _corner_errors(moved: Moved, wall: Wall) -> tuple[Plane, Plane]:
+    """Return where trimming has left corners, and where to they may be off, (n, 2) both ways, mm.
+
+    Each side may be off along its normal: then the corner moves along the other side.
+    """
     drawn = replace(wall.drawn, curve=wall.curve)
     number = np.flatnonzero(drawn.corner)
     (points, after), (ends, before) = (
         drawn.at(number, drawn.start[number]),
         drawn.at(number - 1, drawn.end[number - 1]),
     )
-    crossing = np.abs((np.conj(before) * after).imag)
     theta = drawn.states(number, drawn.start[number])[0]
-    off = moved.errors_at(theta, wall.curve, profile)
-    return points, (np.abs(points - ends) + 2.0 * off) / np.maximum(crossing, off / wall.size.perimeter)
+    off = np.abs(points - ends) + 2.0 * normal_errors(moved, wall, theta)
+    crossing = np.maximum(np.abs((np.conj(before) * after).imag), off / wall.size.perimeter)
+    return points, (off / crossing * [before, after]).T
+
+
+def normal_errors(moved: Moved, wall: Wall, theta: Array) -> Array:
+    """Return the errors of a wall's place at cam angles (n,), rad, along its normal, mm."""
+    s, ds = wall.program.derivatives(theta, 1)
+    normals = -1j * wall.curve.trace(theta, s, ds, wall.curve.mechanism.radius)[1]
+
+    def height(curve: CamCurve, places: Array, found: Array) -> Array:
+        return (np.conj(normals) * profile(curve, places, found)).real
+
+    return moved.errors_at(theta, wall.curve, height)
 
 
 def play_error(moved: Moved, motion: PitchMotion, walls: tuple[Wall, ...], theta: float) -> float:
@@ -264,6 +275,6 @@ def play_error(moved: Moved, motion: PitchMotion, walls: tuple[Wall, ...], theta
         What the walls' points may be off there, as the follower feels it.
     """
     place = np.array([theta])
-    off = sum(float(moved.errors_at(place, wall.curve, profile)[0]) for wall in walls)
+    off = sum(float(normal_errors(moved, wall, place)[0]) for wall in walls)
     slant = float(motion.curve.contact(place, 0).pressure.c[0][0])
     return off / (math.cos(slant) * motion.mechanism.lever)

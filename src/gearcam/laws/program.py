@@ -104,11 +104,6 @@ class Program(Brief, Displacement):
     open: bool = False
 
     @property
-    def error(self) -> float:
-        """Estimated error of the lift beyond rounding, mm or rad."""
-        return self.errors[0]
-
-    @property
     def closed(self) -> bool:
         """Whether it is repeated every turn."""
         return not self.open
@@ -137,6 +132,14 @@ class Program(Brief, Displacement):
         """
         cuts = np.append(self.cuts, self.cuts + TURN)
         return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
+
+    def sides(self, cuts: Sequence[Array]) -> tuple[Array, Array]:
+        """Return the ends of all stretches between `cuts`, rad, and lift, s' and s'' within there."""
+        low, high = np.hstack([[own[:-1], own[1:]] for own in cuts])
+        periods, middle = self.within(0.5 * (low + high))
+        index = np.tile(np.searchsorted(self.knots[1:-1], middle), 2)
+        ends = np.concatenate([low, high])
+        return ends, self.lift.on_pieces(index, ends - np.tile(periods, 2) * TURN, 2)
 
     def phases(self, kind: str) -> list[tuple[float, float]]:
         """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
@@ -368,8 +371,7 @@ class _Place:
 
     def errors(self, rise: Rise) -> Array:
         """Return the errors of a law and of its first three derivatives."""
-        width = self.end - self.start
-        return abs(self.rise) * np.array(rise.errors) / width ** np.arange(4)
+        return abs(self.rise) * np.array(rise.errors) / (self.end - self.start) ** np.arange(4)
 
     def end_state(self, rise: Rise) -> tuple[float, float]:
         """Return velocity and acceleration of a law at the end."""
