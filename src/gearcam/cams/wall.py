@@ -271,6 +271,11 @@ class Wall(PitchMotion):
         return Sampler(curves=drawn, tolerance=self.tolerance, closed=self.program.closed)
 
     @property
+    def drawn(self) -> ProfileSegments:
+        """What trimming leaves, mirrored if the cam turns clockwise; it begins at a corner."""
+        return self._kept.drawn
+
+    @property
     def corners(self) -> tuple[Corner, ...]:
         """Where trimming has left corners, as the cam turns counter-clockwise."""
         return self._kept.corners
@@ -291,14 +296,14 @@ class Wall(PitchMotion):
     @cached_property
     def size(self) -> Size:
         """Perimeter and area of the profile."""
-        return size_of(self._kept.drawn)
+        return size_of(self.drawn)
 
     @property
     def nearest_flat(self) -> float:
         """Least distance of the axis from the inside of a straight piece, mm; inf without one."""
         if not self.mechanism.flat:
             return math.inf
-        kept = self._kept.drawn
+        kept = self.drawn
         inside = np.flatnonzero(kept.jump & (kept.start < 0.0) & (kept.end > 0.0))
         return float(np.abs(kept.at(inside, np.zeros(len(inside)))[0]).min(initial=math.inf))
 
@@ -362,7 +367,7 @@ class Wall(PitchMotion):
         points, normals : (n,) complex arrays, mm and 1
             Touched at those angles, with the outward normals of the metal.
         """
-        kept = self._kept.drawn
+        kept = self.drawn
         turn = 2.0 * math.pi
         # an open curve ends with its last place
         within = np.minimum(theta, np.nextafter(turn, 0)) if self.program.open else theta % turn

@@ -11,6 +11,7 @@ from typing import Any
 
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.numeric.arrays import Array
+from gearcam.laws.displacement import EXACT
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
 
 Function = Callable[[Any], Any]
@@ -101,6 +102,11 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> tuple[Callable[[J
 
     made = expanded(given, axis, tolerance)
     return made, made.error
+
+
+def errors_of(function: Callable[[Jet], Jet]) -> tuple[float, ...]:
+    """Return estimated errors of what `function_of` gives, and of its first three derivatives."""
+    return getattr(function, "errors", EXACT)
 
 
 def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:

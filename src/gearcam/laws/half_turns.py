@@ -24,7 +24,8 @@ from gearcam.laws.phases_of_lift import (
     angles_of,
     levels,
 )
-from gearcam.laws.program import Deviation, PlacedPhase, Program
+from gearcam.laws.displacement import Deviation
+from gearcam.laws.program import PlacedPhase, Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, extremes, piecewise

@@ -103,7 +103,9 @@ class Piecewise(Brief):
         jet = piece(Jet.variable(x.ravel(), order)) + self.offsets[0]
         return [values.reshape(x.shape) for values in jet.derivatives()]
 
-    def on_pieces(self, index: Ints, x: Array, order: int) -> Array:
+    def on_pieces(
+        self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None = None
+    ) -> Array:
         """Return function and derivatives by given pieces, right at knots too.
 
         Parameters
@@ -114,6 +116,8 @@ class Piecewise(Brief):
             Places in or at the ends of them.
         order : int
             Of the last derivative.
+        moved : callable, optional
+            ``moved(parameters) -> parameters``: what is done to those of the pieces at each place.
 
         Returns
         -------
@@ -126,7 +130,8 @@ class Piecewise(Brief):
             here = np.flatnonzero(family == number) if len(functions) > 1 else slice(None)
             which = index[here]
             if which.size:
-                jet = function(Jet.variable(x[here], order), *columns.take(which, 1, mode="clip"))
+                given = columns.take(which, 1, mode="clip")
+                jet = function(Jet.variable(x[here], order), *(moved(given) if moved else given))
                 for k, values in enumerate((jet + self.offsets[which]).derivatives()):
                     result[k, here] = values
         return result
