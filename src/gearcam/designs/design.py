@@ -26,6 +26,9 @@ from gearcam.display import cut
 from gearcam.errors import DesignError, InfeasibleError, Problem
 from gearcam.numeric.arguments import instance
 
+_PLACE: Final = re.compile("[0-9]{1,9}")
+"""The number of a place in a list."""
+
 HASH_DIGITS: Final = 16
 """Hexadecimal digits of a design's hash: two of a thousand million million are alike by chance."""
 
@@ -177,13 +180,13 @@ class Design:
         """
         document, rule = document_of(self), "a mapping of dotted keys to values"
         for key, value in instance("changes", changes, Mapping, rule).items():
-            *path, last = path_of(key)
             place: Any = document
             try:
+                *path, last = path_of(key)
                 for step in path:
                     place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
                 place[last] = value
-            except (IndexError, KeyError, TypeError):
+            except (IndexError, KeyError, TypeError, ValueError):  # the last: no step at all
                 problem = Problem("there is no such place", self.source, key=key)
                 raise DesignError([problem]) from None
         return design(document, self.source)
@@ -392,4 +395,5 @@ def value_at(document: Any, key: str) -> Any:
 
 def path_of(key: str) -> tuple[str | int, ...]:
     """Return the steps of a dotted key, such as ``law.ratios[1]``."""
-    return tuple(int(step) if step.isdigit() else step for step in re.findall(r"[^.\[\]]+", key))
+    steps = re.findall(r"[^.\[\]]+", key)
+    return tuple(int(step) if _PLACE.fullmatch(step) else step for step in steps)
