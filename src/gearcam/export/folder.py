@@ -63,6 +63,10 @@ def held(folder: Path) -> Iterator[None]:
     folder : Path
         With those above it.
 
+    Yields
+    ------
+    None
+
     Raises
     ------
     FileNotFoundError, NotADirectoryError, OSError

@@ -8,7 +8,7 @@ import time
 import webbrowser
 from argparse import ArgumentParser
 from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from typing import Final
 
 from gearcam.console import complain, say
@@ -66,6 +66,8 @@ def view(file: str, port: int = 0, *, browser: bool = True) -> None:
                 session.end()
                 server.shutdown()
                 workers.shutdown(wait=False, cancel_futures=True)
+                for worker in active_children():  # one that still builds would be waited for
+                    worker.kill()
 
 
 def _follow(session: Session) -> None:
