@@ -68,19 +68,39 @@ def interruptible() -> Iterator[Ended]:
 
 @contextmanager
 def unbroken() -> Iterator[None]:
-    """Have signals that end the program wait until what is done within is done."""
+    """Have signals that end the program wait until what is done within is done.
+
+    Threads and processes that begin within answer none of them.
+    """
+    if not _is_main():
+        yield
+        return
     came: list[int] = []
-    before = {number: signal.getsignal(number) for number in SIGNALS} if _is_main() else {}
+    before = {number: signal.getsignal(number) for number in SIGNALS}
     waiting = {number: one for number, one in before.items() if one not in (signal.SIG_IGN, None)}
     try:
-        for number in waiting:
+        for number in waiting:  # one may come by another thread, which no mask keeps back
             signal.signal(number, lambda number, _: came.append(number))
-        yield
+        with _masked():
+            yield
     finally:
         for number, handler in waiting.items():
             signal.signal(number, handler)
         for number in came:
             signal.raise_signal(number)
+
+
+@contextmanager
+def _masked() -> Iterator[None]:
+    """Keep signals back from this thread, and from what it begins, where systems can."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _is_main() -> bool:

@@ -13,6 +13,7 @@ from typing import Final
 
 from gearcam.console import complain, say
 from gearcam.designs.reader import content_of
+from gearcam.interrupts import unbroken
 from gearcam.view.server import Server
 from gearcam.view.session import Session, State
 from gearcam.view.watch import PAUSE, Watch
@@ -54,11 +55,12 @@ def view(file: str, port: int = 0, *, browser: bool = True) -> None:
     with ProcessPoolExecutor(count, mp_context=context, initializer=begin) as workers:
         session = Session(file, workers, count, lambda state: _tell(file, state))
         with Server(session, port) as server:
-            threading.Thread(target=server.serve_forever, daemon=True).start()
-            say(f"{file}: shown at {server.address} until Ctrl-C")
-            if browser:
-                webbrowser.open(server.address)
             try:
+                with unbroken():
+                    threading.Thread(target=server.serve_forever, daemon=True).start()
+                say(f"{file}: shown at {server.address} until Ctrl-C")
+                if browser:
+                    webbrowser.open(server.address)
                 _follow(session)
             except KeyboardInterrupt:
                 say("the view has ended")
@@ -76,7 +78,8 @@ def _follow(session: Session) -> None:
     while True:
         changed, content = watch.look()
         if changed:
-            session.refresh(content)
+            with unbroken():  # workers begin
+                session.refresh(content)
         time.sleep(PAUSE)
 
 
