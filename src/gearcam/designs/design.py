@@ -17,7 +17,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Final, Self
 
 from gearcam.designs.examine import examine
-from gearcam.designs.faults import dotted
+from gearcam.designs.faults import dotted, is_deep
 from gearcam.designs.functions import Function, function_name, functions_in, never, pickles
 from gearcam.designs.kind import KINDS
 from gearcam.designs.outputs import OutputSpec
@@ -314,7 +314,7 @@ def design(document: Mapping[str, Any], source: str = "") -> Any:
     DesignError
         For everything that is wrong in it, each with its key.
     """
-    plain = _plain(document)
+    plain = document if is_deep(document) else _plain(document)  # examine refuses what is deep
     found = examine(plain)
     if found.faults:
         raise DesignError(fault.problem(source) for fault in found.faults)
