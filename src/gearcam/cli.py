@@ -2,7 +2,8 @@
 
 Every command ends in an exit code: 0 good (warnings included), 1 built but with findings at error
 level, 2 wrong by reading the file or refused by the disk, 3 found impossible by computing, 4 a
-fault of the program, 130 interrupted. Several files are all tried; the largest code is returned.
+fault of the program, 130 interrupted (143 by SIGTERM, 129 by SIGHUP). Several files are all tried;
+the largest code is returned.
 What was done goes to stdout, what went wrong to stderr; progress is drawn on a terminal only.
 """
 
@@ -34,12 +35,14 @@ from gearcam.console import (
     refusal_text,
     remedy_lines,
     say,
+    streams,
 )
 from gearcam.designs import KINDS, Design, load
 from gearcam.designs.faults import unknown_word
 from gearcam.designs.kind import all_formats
 from gearcam.designs.outputs import FORMATS
 from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
+from gearcam.interrupts import interruptible
 
 if TYPE_CHECKING:
     from gearcam.commands import Command
@@ -57,7 +60,7 @@ _ABOUT: Final = "Non-circular gears and cams from a description of the motion."
 _FILES: Final = "design files (TOML)"
 _CODES: Final = (
     "exit codes: 0 good, 1 findings at error level, 2 wrong by reading, 3 impossible, "
-    "4 a fault of the program, 130 interrupted"
+    "4 a fault of the program, 130 interrupted (143 by SIGTERM, 129 by SIGHUP)"
 )
 
 
@@ -74,19 +77,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         The exit code.
     """
-    for stream in (sys.stdout, sys.stderr):
-        # a name that the terminal cannot show must not end the program
-        with contextlib.suppress(AttributeError, ValueError):
-            stream.reconfigure(errors="backslashreplace")  # pyright: ignore[reportAttributeAccessIssue]
+    with interruptible() as ended:
+        return ended.code(_run(arguments))
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    """Run the command line and return its exit code, that of Ctrl-C for every interruption."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     if arguments is None and not (sys.warnoptions or "--debug" in words or os.environ.get(DEBUG)):
         quieten()
     try:
-        _dispatch(words)
-    except SystemExit as stop:
-        return stop.code if isinstance(stop.code, int) else GOOD
+        with streams():
+            try:
+                _dispatch(words)
+            except SystemExit as stop:
+                return stop.code if isinstance(stop.code, int) else GOOD
     except KeyboardInterrupt:
         return _interrupted()
+    except WriteError as error:
+        complain(str(error))
+        return WRONG
     except Exception as error:
         return _fault(error, debug="--debug" in words)
     return GOOD
@@ -300,12 +310,8 @@ def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
         _refuse([Problem("nothing is listed", key="--only", allowed=", ".join(all_formats()))])
     strange = [kind for kind in kinds if kind not in FORMATS and kind not in all_formats()]
     if strange:
-        _refuse(
-            [
-                unknown_word(kind, "is not a kind of file", all_formats(), "--only")
-                for kind in strange
-            ]
-        )
+        words = "is not a kind of file"
+        _refuse([unknown_word(kind, words, all_formats(), "--only") for kind in strange])
     return tuple(dict.fromkeys(kinds))
 
 

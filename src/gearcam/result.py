@@ -330,8 +330,7 @@ class Result(Displayed):
                 contents |= self.files(kind, measured)
             self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
-        there: dict[str, str | None] = dict.fromkeys(contents)
-        return self._write_all(directory, contents, there, measured, self.findings)
+        return self._write_all(directory, contents, measured, self.findings)
 
     def keep(
         self,
@@ -357,18 +356,13 @@ class Result(Displayed):
         -------
         Written
         """
-        from gearcam.export.write import previous_files
-
-        there = previous_files(Path(directory) / self.design.name)
         found = self.findings if findings is None else findings
-        there |= dict.fromkeys(contents)
-        return self._write_all(directory, contents, there, measured, found, keep=True)
+        return self._write_all(directory, contents, measured, found, keep=True)
 
     def _write_all(
         self,
         directory: str | Path,
         contents: Mapping[str, bytes],
-        there: Mapping[str, str | None],
         measured: Mapping[str, Any],
         findings: Sequence[Finding],
         *,
@@ -381,18 +375,23 @@ class Result(Displayed):
 
         facts = self.facts_with(measured) if measured else self.facts
         made = self.design_hash
-        hashes = {name: made if name in contents else old for name, old in there.items()}
-        stale = {name: old for name, old in hashes.items() if old != made}
-        about = {"files": {name: made for name in hashes if name not in stale}}
-        summary = self.document(facts, findings, {**about, **({"stale": stale} if stale else {})})
-        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-        everything = {**contents, SUMMARY: (text + "\n").encode()}
-        folder = Path(directory) / self.design.name
-        removed = write_all(folder, everything, keep=keep)
+        summary: dict[str, Any] = {}
+
+        def complete(before: Mapping[str, str | None]) -> dict[str, bytes]:
+            hashes = {**(before if keep else {}), **dict.fromkeys(contents, made)}
+            stale = {name: old for name, old in hashes.items() if old != made}
+            about = {"files": {name: made for name in hashes if name not in stale}}
+            more = {"stale": stale} if stale else {}
+            summary.update(self.document(facts, findings, {**about, **more}))
+            text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+            return {**contents, SUMMARY: (text + "\n").encode()}
+
+        name = self.design.name
+        removed = write_all(directory, complete, name=name, keep=keep)
         return Written(
-            directory=folder,
-            files=tuple(everything),
-            removed=tuple(removed),
+            directory=Path(directory) / name,
+            files=(*contents, SUMMARY),
+            removed=removed,
             summary=summary,
             facts=facts,
             findings=tuple(findings),
