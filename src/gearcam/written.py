@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import platform
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearcam.designs.design import Design
 from gearcam.designs.kind import KINDS
@@ -16,6 +16,9 @@ from gearcam.errors import DesignError, Problem
 from gearcam.facts import Facts
 from gearcam.findings import Finding
 from gearcam.version import __version__
+
+if TYPE_CHECKING:
+    from gearcam.result import Result
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,3 +98,61 @@ def versions() -> dict[str, str]:
         if module is not None and hasattr(module, "__version__"):
             found[name] = str(module.__version__)
     return found
+
+
+def put(
+    result: Result,
+    directory: str | Path,
+    contents: Mapping[str, bytes],
+    there: Mapping[str, str | None],
+    measured: Mapping[str, Any],
+    findings: Sequence[Finding],
+    *,
+    keep: bool = False,
+) -> Written:
+    """Write files with the summary of all that will be there, all or none.
+
+    Parameters
+    ----------
+    result : Result
+        What they are of.
+    directory : path
+        Parent folder.
+    contents : mapping of str to bytes
+        The files by name.
+    there : mapping of str to (str or None)
+        The hashes of the designs that all files which will be there were made from, by name; those
+        of `contents` do not count.
+    measured : mapping
+        What the summary says of files.
+    findings : sequence of Finding
+        What checks found.
+    keep : bool
+        Whether other files of an earlier build stay.
+
+    Returns
+    -------
+    Written
+    """
+    import json
+
+    from gearcam.export.write import SUMMARY, write_all
+
+    facts = result.facts_with(measured) if measured else result.facts
+    made = result.design_hash
+    hashes = {name: made if name in contents else old for name, old in there.items()}
+    stale = {name: old for name, old in hashes.items() if old != made}
+    about = {"files": {name: made for name in hashes if name not in stale}}
+    summary = result.document(facts, findings, {**about, **({"stale": stale} if stale else {})})
+    text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+    everything = {**contents, SUMMARY: (text + "\n").encode()}
+    folder = Path(directory) / result.design.name
+    removed = write_all(folder, everything, keep=keep)
+    return Written(
+        directory=folder,
+        files=tuple(everything),
+        removed=tuple(removed),
+        summary=summary,
+        facts=facts,
+        findings=tuple(findings),
+    )
