@@ -97,7 +97,7 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
     Returns them with the driver angles, rad, of the range's ends on the driver, root first.
     """
     step, pair = pairs.beside(phi1)
-    turn, offset = pairs.guide.stand(phi1[step], 0.0)
+    turn, offset = pairs.guide.stand(pairs.guide.nominal(phi1)[step])
     every = Facing(
         pairs=pairs,
         step=step,
