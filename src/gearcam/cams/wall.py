@@ -170,15 +170,22 @@ class Wall(PitchMotion):
     side : {1, -1}
         Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; then it is
         a follower that is pressed outwards that loses lift.
+    of : PitchMotion or None
+        The motion whose pitch curve it has, where it is not the only one that has it.
     """
 
     side: int = 1
+    of: PitchMotion | None = None
 
     @cached_property
     def curve(self) -> CamCurve:
         """The wall's curves as the cam turns counter-clockwise: outside at a negative depth."""
         radius = self.side * self.mechanism.radius
         return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
+
+    def pitch_curvature(self, kind: str = "") -> Range | None:
+        """Return what is promised (see `PitchMotion`)."""
+        return (self.of or super()).pitch_curvature(kind)
 
     def radii(self, theta: Array) -> Array:
         """Return radii of curvature before trimming, mm.
