@@ -7,7 +7,7 @@ names it, and only that of a file is loaded. Its modules:
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
 - `facts`: ``facts(result, measured)`` returns what is known of it;
 - `files`: ``FILES``, what makes each kind of file; where it has ``report`` among them,
-  ``assembled(result, measured)`` returns its solids where they stand and ``framed(result)`` what
+  ``assembled(result)`` returns its solids where they stand and ``framed(result)`` what
   a notebook shows;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
 - `advice`: ``seek(search, refusal)`` leads the search for changes that help where it is refused

@@ -105,7 +105,8 @@ class Turning:
         -------
         turn, offset : (n,) complex arrays, 1 and mm
         """
-        turn, offset = self.rolling.guide.stand(phi1, lead)
+        guide = self.rolling.guide
+        turn, offset = guide.stand(guide.nominal(phi1) + lead)
         back = np.conj(turn)
         return np.exp(-1j * (phi1 + overclosure)) * back, back * (-self.distance - offset)
 

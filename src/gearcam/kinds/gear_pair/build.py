@@ -12,11 +12,12 @@ from gearcam.findings import in_order, run_checks
 from gearcam.kinds.gear_pair.columns import (
     centrode_columns,
     contact_ratio_columns,
-    contacts_at,
+    contact_rows,
     motion_columns,
 )
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.kinds.gear_pair.stages import PairStages
+from gearcam.meshing.contact import Contacts, contacts
 from gearcam.numeric.arguments import angles, one_of, whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -24,6 +25,7 @@ from gearcam.result import Progress
 from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
+    from gearcam.gears.contact import FlankPairs
     from gearcam.study import Study
 
 MESHING = "meshing.csv"
@@ -146,14 +148,31 @@ class GearPairResult(PairStages):
         InfeasibleError
             If the wheels cannot be made.
         """
+        pairs, phases = self.flanks_of(side), self._phases(phi1)
+        return contact_rows(self, pairs, phases, contacts(pairs, phases))
+
+    def flanks_of(self, side: Side) -> FlankPairs:
+        """Return the pairs of flanks of a `side`; DesignError if there is no such side."""
         coast, drive = self.subject.sides
-        pairs = drive if one_of("side", side, get_args(Side)) == "drive" else coast
-        return contacts_at(self, pairs, self._phases(phi1))
+        return drive if one_of("side", side, get_args(Side)) == "drive" else coast
+
+    @cached_property
+    def touching(self) -> dict[Side, Contacts]:
+        """Where flanks of both sides touch over `phases`."""
+        return {side: contacts(self.flanks_of(side), self.phases) for side in get_args(Side)}
+
+    @cached_property
+    def centrodes_of_phases(self) -> Columns:
+        """The table of `centrodes` over `phases`."""
+        return centrode_columns(self, self.phases)
 
     @cached_property
     def paths_of_contact(self) -> dict[Side, Columns]:
         """The tables of `contact` of both sides, over `phases`."""
-        return {side: self.contact(self.phases, side) for side in get_args(Side)}
+        return {
+            side: contact_rows(self, self.flanks_of(side), self.phases, found)
+            for side, found in self.touching.items()
+        }
 
     @cached_property
     def contact_ratio(self) -> float:
