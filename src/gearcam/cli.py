@@ -219,8 +219,7 @@ def _compare(files: list[str], debug: bool, **options: Any) -> None:
 
 def _fuzz(debug: bool, **options: Any) -> None:
     """Try random designs, in processes of their own; those at which it fails go into DIR."""
-    from gearcam.fuzz.command import fuzz
-
+    fuzz = import_module("gearcam.fuzz.command").fuzz
     _each(["fuzz"], "tried", lambda _: GOOD if fuzz(**options) else FINDINGS, debug=debug)
 
 

@@ -50,7 +50,7 @@ class Draw:
         return min(high, int(self.log(max(low, 0.7), high + 0.999))) if high > low else low
 
     def shares(self, count: int, least: float = 0.3) -> list[float]:
-        """Return numbers that are 1 in all, none below `least` times another."""
+        """Return a `count` of numbers that are 1 in all, none below `least` times another."""
         drawn = [self.random.uniform(least, 1.0) for _ in range(count)]
         return [one / sum(drawn) for one in drawn]
 

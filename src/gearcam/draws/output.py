@@ -44,7 +44,7 @@ def asked(d: Draw, shares: Mapping[str, float], rarer: float = 1.0) -> dict[str,
 
 
 def limits(d: Draw, document: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a limit or two of a design's checks, about their defaults, by draws `d`."""
+    """Return a limit or two of the checks of a `document`, about their defaults, by draws `d`."""
     known = known_keys(known_keys(schema(), document)["limits"], {})
     made = {}
     for key in {d.pick([*known]): None, d.pick([*known]): None}:

@@ -34,7 +34,7 @@ _REASONS: Final = 12
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A random design, told by its kind, the seed and its number."""
+    """A random design, told by its `kind`, the `seed` and its number, `index`."""
 
     kind: str
     seed: int
@@ -66,8 +66,8 @@ class Case:
 
 
 @dataclass(kw_only=True)
-class Found:
-    """A failure, its case, and the smallest design that fails so."""
+class Catch:
+    """A `failure`, its `case`, and the `files` of the smallest design that fails so."""
 
     case: Case
     failure: Failure
@@ -86,22 +86,30 @@ class Campaign:
         Where they are tried.
     counts : mapping of (str, str, str) to int
         Ends by kind and by whether the design is broken.
-    found : list of Found
+    reasons : mapping of str to int
+        Why designs that were drawn to be built are refused.
+    found : list of Catch
         Failures.
+    slowest : (float, str)
+        The longest processor time, s, and the design that took it.
+    seconds, clock : float, s
+        Processor time of all trials; time by the clock.
+    doubted, followed : int
+        Designs that were studied by other means, suggestions that were built.
     """
 
     cases: Sequence[Case]
     pool: Pool
     counts: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     reasons: Counter[str] = field(default_factory=Counter)
-    found: list[Found] = field(default_factory=list)
+    found: list[Catch] = field(default_factory=list)
     slowest: tuple[float, str] = (0.0, "")
     seconds: float = 0.0
     doubted: int = 0
     followed: int = 0
     clock: float = 0.0
 
-    def run(self, progress: Callable[[str, int, int], None] | None) -> Iterator[Found]:
+    def run(self, progress: Callable[[str, int, int], None] | None) -> Iterator[Catch]:
         """Try all and yield failures as they are found, `progress` told."""
         start = time.monotonic()
         tasks = ((number, case.task()) for number, case in enumerate(self.cases))
@@ -111,7 +119,7 @@ class Campaign:
                 progress(f"{len(self.found)} failures", done, len(self.cases))
             if outcome.failure is not None:
                 case = self.cases[number]
-                self.found.append(Found(case=case, failure=outcome.failure, files=case.drawn.files))
+                self.found.append(Catch(case=case, failure=outcome.failure, files=case.drawn.files))
                 yield self.found[-1]
         self.clock = time.monotonic() - start
 
@@ -125,7 +133,7 @@ class Campaign:
         if outcome.end in (REFUSED, WRONG) and not case.drawn.broken:
             self.reasons[outcome.reason] += 1
 
-    def shrink(self, found: Found) -> None:
+    def shrink(self, found: Catch) -> None:
         """Make the design of a failure small."""
 
         def fails(files: Files) -> bool:

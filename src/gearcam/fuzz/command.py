@@ -11,7 +11,7 @@ from gearcam.console import complain, progress_bar, say
 from gearcam.designs.faults import unknown_word
 from gearcam.draws.designs import drawn_kinds
 from gearcam.errors import DesignError
-from gearcam.fuzz.campaign import Campaign, Case, Found
+from gearcam.fuzz.campaign import Campaign, Case, Catch
 from gearcam.fuzz.pool import Pool
 from gearcam.fuzz.trial import tried
 from gearcam.numeric.arguments import whole
@@ -36,7 +36,9 @@ def arguments(parser: ArgumentParser) -> None:
     words = "only the design of this number, of each kind; several times for several"
     parser.add_argument("--only", action="append", type=int, metavar="N", help=words)
     words = "processes; as many as the machine has where left out"
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N", help=words)
+    parser.add_argument(
+        "--jobs", dest="processes", type=int, default=os.cpu_count() or 1, metavar="N", help=words
+    )
 
 
 def fuzz(
@@ -47,7 +49,7 @@ def fuzz(
     seed: int,
     kind: list[str] | None,
     only: list[int] | None,
-    jobs: int,
+    processes: int,
 ) -> bool:
     """Try random designs, say what comes of them, and write those that fail into a folder.
 
@@ -65,8 +67,8 @@ def fuzz(
         Kinds of design; all that can be drawn if None.
     only : list of int or None
         Numbers of single designs.
-    jobs : int
-        Processes.
+    processes : int
+        How many try designs at once.
 
     Returns
     -------
@@ -91,12 +93,12 @@ def fuzz(
         for index in only or range(-(-number // len(kinds)))
         for one in kinds
     ][: None if only else number]
-    with Pool(tried, min(whole("--jobs", jobs, 1), len(cases))) as pool:
+    with Pool(tried, min(whole("--jobs", processes, 1), len(cases))) as pool:
         campaign = Campaign(cases=cases, pool=pool)
         with progress_bar("fuzz") as progress:
             for found in campaign.run(progress):
                 complain(f"{found.case.name}: {found.failure.kind}: {found.failure.words}")
-        told: list[Found] = []
+        told: list[Catch] = []
         for found in campaign.found:
             if not any(found.failure.same(one.failure) for one in told):
                 campaign.shrink(found)
@@ -107,7 +109,7 @@ def fuzz(
     return campaign.good if only is None else not campaign.found
 
 
-def _saved(found: Found, folder: Path) -> Path:
+def _saved(found: Catch, folder: Path) -> Path:
     """Write a failing design with its story before it, and return its file."""
     from gearcam.export.write import write_all
 

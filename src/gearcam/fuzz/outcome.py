@@ -37,7 +37,7 @@ class Failure:
     Parameters
     ----------
     kind : str
-        Such as ``crash``, ``hang``, ``polygon``.
+        Such as ``crash``, ``time``, ``polygon``.
     words : str
         What happened.
     place : str

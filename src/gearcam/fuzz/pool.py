@@ -1,7 +1,7 @@
 """Trials in processes of their own, each with so much time and memory; whoever dies is replaced.
 
 Time is that of the processor where the system counts it for a process, so that a busy machine
-makes no hangs; by the clock a process has a few times more, and elsewhere just as much.
+makes no failures; by the clock a process has a few times more, and elsewhere just as much.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class _Worker:
 
     def answer(self) -> Outcome | None:
         """Return how its task ended, by its death too; None where it has only begun."""
-        outcome: Outcome | None = _HANG
+        outcome: Outcome | None = _TOO_LONG
         if self.channel.poll():
             try:
                 outcome = self.channel.recv()
@@ -103,12 +103,12 @@ class _Worker:
         self.channel.close()
 
 
-_HANG: Final = Outcome(end=FAILED, failure=Failure(kind="hang", words="it took too long"))
+_TOO_LONG: Final = Outcome(end=FAILED, failure=Failure(kind="time", words="it took too long"))
 
 
 def _death(code: int | None) -> Outcome:
     if _COUNTED and code == -signal.SIGPROF:
-        return _HANG
+        return _TOO_LONG
     words = f"the process ended with {code}"
     return Outcome(end=FAILED, failure=Failure(kind="crash", words=words, place=str(code)))
 
@@ -120,14 +120,14 @@ class Pool:
     ----------
     work : callable
         What they do; it pickles.
-    jobs : int
+    processes : int
         How many.
     seconds : float, s
         Processor time that a trial may take.
     """
 
-    def __init__(self, work: Work, jobs: int, seconds: float = SECONDS) -> None:
-        self.work, self.jobs, self.seconds = work, jobs, seconds
+    def __init__(self, work: Work, processes: int, seconds: float = SECONDS) -> None:
+        self.work, self.processes, self.seconds = work, processes, seconds
         self._workers: list[_Worker] = []
         # not within a process: one that is ended leaves its folder behind
         self._folder = tempfile.TemporaryDirectory(prefix="fuzz-", ignore_cleanup_errors=True)
@@ -165,19 +165,21 @@ class Pool:
                 if outcome is None or number is None:
                     continue
                 worker.number = None
-                if outcome is _HANG or worker.process.exitcode is not None:
+                if outcome is _TOO_LONG or worker.process.exitcode is not None:
                     worker.end()
                     self._workers.remove(worker)
                 yield number, outcome
 
     def _give(self, waiting: Iterator[tuple[int, Task]]) -> bool:
         """Give tasks to processes that have none; whether any has one then."""
-        idle = [one for one in self._workers if one.number is None]
-        for number, task in itertools.islice(waiting, self.jobs - len(self._workers) + len(idle)):
-            if not idle:
-                idle.append(_Worker(self.work, self.seconds, Path(self._folder.name)))
-                self._workers.append(idle[-1])
-            idle.pop().give(number, task)
+        free = [one for one in self._workers if one.number is None]
+        for number, task in itertools.islice(
+            waiting, self.processes - len(self._workers) + len(free)
+        ):
+            if not free:
+                free.append(_Worker(self.work, self.seconds, Path(self._folder.name)))
+                self._workers.append(free[-1])
+            free.pop().give(number, task)
         return any(one.number is not None for one in self._workers)
 
     def _heard(self) -> list[_Worker]:

@@ -33,7 +33,7 @@ class FaultError(Exception):
 
 
 def tried(task: Task, folder: Path) -> Outcome:
-    """Return how the trial of a design in an empty `folder` ended."""
+    """Return how the trial of a design, a `task`, in an empty `folder` ended."""
     return Trial(task, folder).run()
 
 
