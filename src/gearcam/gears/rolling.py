@@ -21,7 +21,7 @@ from gearcam.display import Brief
 from gearcam.gears.guide import Guide, RingShaft, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import RACK, RING, WHEEL, demand_smooth
+from gearcam.laws.ratio.span import RACK, RING, WHEEL
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes_of_each
@@ -245,8 +245,6 @@ def roll(
 
     Raises
     ------
-    InfeasibleError
-        Where the centrode turns so sharply that it has no smooth length.
     ValueError
         If not exactly one of the two sizes is given.
     """
@@ -255,8 +253,7 @@ def roll(
         _, r, dr = _radii(law.ratio.derivatives(phi, 1), law.mate)
         return np.sqrt(r * r + dr * dr)
 
-    with demand_smooth("the centrode"):
-        unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()
+    unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()
     lobes = law.lobes
     if not lobes.closed:
         unit = unit.shifted(-float(unit(0.0)))
