@@ -114,8 +114,18 @@ class Rolling(Brief):
             found = [[first, both - first], [slope, change - slope]]
             return np.array(found) / self.center_distance
 
-        first, second = extremes_of_each(curvatures, self._tooth_knots)
+        first, second = extremes_of_each(curvatures, self.cells(self._tooth_knots), cells=True)
         return first, second
+
+    def cells(self, knots: Array) -> Array:
+        """Return `knots` and between them those of the arc length, which tell how fast it changes.
+
+        What a ratio does in a degree or less is not lost between places taken in each (see
+        `gearcam.numeric.piecewise.places_between`).
+        """
+        found = self.arc.unit.knots
+        inside = found[(found > knots[0]) & (found < knots[-1])]
+        return np.union1d(knots, inside)
 
     @property
     def _tooth_knots(self) -> Array:
