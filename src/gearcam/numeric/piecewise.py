@@ -149,7 +149,7 @@ class Piecewise(Brief):
         return self.extremes_over(self.knots)
 
     def extremes_over(self, knots: Array) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return smallest and largest value, each as (place, value), over cells (see `extremes`)."""
+        """Return smallest and largest value over cells (see `extremes`), each as (place, value)."""
         places, values = extremes(lambda x: self.derivatives(x, 1), knots, cells=True)
         low, high = int(np.argmin(values)), int(np.argmax(values))
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
