@@ -58,10 +58,15 @@ def must_of(text: str) -> Must:
 
 
 def misses(path: Path, *, searched: bool = False) -> list[str]:
-    """What does not happen to the design of a file as it tells.
+    """What does not happen to the design of a file as it tells (see `outcome`)."""
+    return outcome(path, searched=searched)[0]
 
-    Of a refusal that tells of no key itself, what is told of one stands among the remedies that the
-    command searches and tells after it: looked at only if they are to be `searched`.
+
+def outcome(path: Path, *, searched: bool = False) -> tuple[list[str], Any]:
+    """What does not happen to the design of a file as it tells, and its result, None if refused.
+
+    What a refusal does not tell itself stands among the remedies that the command searches and
+    tells after it: looked at only if they are to be `searched`.
     """
     must = must_of(path.read_text())
     result: Any = None
@@ -69,17 +74,19 @@ def misses(path: Path, *, searched: bool = False) -> list[str]:
         result = gearcam.build(gearcam.load(path))
         codes = whole(result)
     except DesignError as error:
-        return _untold(must, "refused by reading", str(error))
+        return _untold(must, "refused by reading", str(error)), None
     except InfeasibleError as error:
-        message, told = str(error), must.key
-        if must.ending == "refused" and told not in message:
+        wrong = _untold(must, "refused", str(error))
+        if must.ending == "refused" and wrong:
             if not searched:
-                return []
-            message += "".join(f"; {one.text}" for one in gearcam.remedies(result, error).found)
-        return _untold(must, "refused", message)
+                return [], None
+            found = "".join(f"; {one.text}" for one in gearcam.remedies(result, error).found)
+            wrong = _untold(must, "refused", str(error) + found)
+        return wrong, None
     ending = "found" if codes else "built"
     wrong = [] if ending == must.ending else [f"{ending}, not {must.ending}"]
-    return wrong if codes == must.codes else [*wrong, f"{sorted(codes)}, not {sorted(must.codes)}"]
+    wrong += [] if codes == must.codes else [f"{sorted(codes)}, not {sorted(must.codes)}"]
+    return wrong, result
 
 
 def _untold(must: Must, ending: str, message: str) -> list[str]:

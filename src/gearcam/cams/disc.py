@@ -20,8 +20,9 @@ from gearcam.facts import Facts
 from gearcam.laws.program import Program
 from gearcam.numerals import shown
 
-_STANDSTILL = 1e-9
-"""A face that swings down within this of the cam's own speed touches one point for a while."""
+_STANDSTILL = 1e-7
+"""A face that swings down within this of the cam's own speed is touched millions of times farther
+off than its pivot stands, or in one point for a while."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -159,5 +160,5 @@ def _demand_swing(program: Program, mechanism: Mechanism, low: float, high: floa
             value=slowest,
             limit=-1.0,
             nearest="these are rad of swing per rad of the cam: lifts of less than "
-            f"{shown(-100.0 / slowest)} % of these suit",
+            f"{shown(-100.0 * (1.0 - 2.0 * _STANDSTILL) / slowest, 10)} % of these suit",
         )

@@ -16,6 +16,9 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.reading import UnreadableError, read
 
+MOST_ROWS: Final = 20000
+"""Rows of a table: more are a file of something else."""
+
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _POINT_NUMBER: Final = re.compile(r"[+-]?\d*\.\d*([eE][+-]?\d+)?")
 _NUMBER: Final = re.compile(
@@ -156,6 +159,8 @@ def read_rows(file: str) -> CsvRows:
     rows = [(k, row) for k, row in enumerate(text, start=1) if row.strip() and row[0] != "#"]
     if not rows:
         raise ColumnsError("is empty")
+    if len(rows) > MOST_ROWS + 1:
+        raise ColumnsError(f"has {len(rows) - 1} rows; up to {MOST_ROWS} are read")
     semicolons = ";" in rows[0][1] and "," not in rows[0][1]
     cells = []
     for line, row in rows:

@@ -44,6 +44,9 @@ _FEW = 0.12
 _GRAIN = 1e-3
 """Distance in tolerances below which two points of a dense run are one."""
 
+_STRAIGHT = 16.0 * np.finfo(float).eps
+"""Turning of a tangent that is rounding, rad."""
+
 _RISING = 1e-9
 """Chords that a straight piece is given, so that their count rises everywhere."""
 
@@ -114,6 +117,7 @@ class Sampler(Brief):
         """J from the start at ``_PROBES`` places a curve, rising; one more for the end."""
         points, tangents = self.probes
         turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
+        turning[turning <= _STRAIGHT] = 0.0  # the root of rounding would be no small number
         chords = np.abs(np.diff(points, axis=1))
         steps = np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
         steps += _RISING * max(1.0, float(steps.max()))

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.columns import ColumnsError, CsvRows, FromFile, close_angles
+from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
@@ -29,8 +29,7 @@ _VALUES: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
 """What the values may be, with their columns in a file."""
 
 _FEWEST: Final = 6
-_MOST: Final = 20000
-"""Rows of a table: fewer make no curve of quintics, more are a file of something else."""
+"""Rows of a table: fewer make no curve of quintics."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,8 +126,8 @@ class TableLaw(FromFile):
 def _points(rows: CsvRows) -> tuple[str, Array, Array]:
     kinds = [kind for kind, column in _VALUES.items() if column in rows.cells[0]]
     points, lines = rows.columns([_ANGLE, _VALUES[kinds[0]]] if len(kinds) == 1 else [])
-    if not _FEWEST <= len(points) <= _MOST:
-        raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
+    if len(points) < _FEWEST:
+        raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {MOST_ROWS} are read")
     angles = np.radians(points[:, 0])
     for row, state, rule in islice(close_angles(angles), 1):
         raise ColumnsError(f"line {lines[row]}: {state}; {rule}")
