@@ -37,6 +37,10 @@ with."""
 _FLAT = 1e-8
 """Share of an interval to which extremes are placed: there a value is flat, good to rounding."""
 
+_BLOCK = 1 << 15
+"""Places at which pieces are evaluated at once: of more, the arrays between, several for each
+parameter, leave the processor's cache, and the allocator gives them back."""
+
 
 @dataclass(frozen=True, eq=False)
 class Piece(Brief):
@@ -127,6 +131,14 @@ class Piecewise(Brief):
         -------
         (order + 1, n) array
         """
+        result = np.empty((order + 1, x.size))
+        for begin in range(0, x.size, _BLOCK):
+            part = slice(begin, begin + _BLOCK)
+            result[:, part] = self._some(index[part], x[part], order)
+        return result
+
+    def _some(self, index: Ints, x: Array, order: int) -> Array:
+        """Return what `on_pieces` does, at once."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
         family = numbers.take(index)
