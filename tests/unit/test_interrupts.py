@@ -119,6 +119,15 @@ def test_other_threads_neither_answer_nor_hold_signals() -> None:
     assert found == [(None, signal.getsignal(signal.SIGTERM))]
 
 
+def test_what_begins_within_answers_no_signal() -> None:
+    """A worker that Ctrl-C reaches while it is loaded would show where it was."""
+    words = "import signal; print(len(signal.pthread_sigmask(signal.SIG_BLOCK, [])))"
+    with unbroken():
+        within = subprocess.run([sys.executable, "-c", words], capture_output=True, check=True)
+    later = subprocess.run([sys.executable, "-c", words], capture_output=True, check=True)
+    assert (int(within.stdout), int(later.stdout)) == (len(SIGNALS), 0)
+
+
 def test_ctrl_c_while_the_command_is_loaded(tmp_path: Path) -> None:
     (tmp_path / "gearcam_loads.py").write_text(
         "import signal, sys\n"
@@ -141,7 +150,7 @@ def test_ctrl_c_while_the_command_is_loaded(tmp_path: Path) -> None:
 def test_the_view_ends_its_workers_at_once(tmp_path: Path, name: str, code: int) -> None:
     """Ctrl-C is how a view ends; a worker that is in the middle of a build is not waited for."""
     pair = PAIR.format(eccentricity=0.3, bore=8, files="[]")
-    (tmp_path / "pair.toml").write_text(pair.replace("[22, 22]", "[400, 400]"))
+    (tmp_path / "pair.toml").write_text(pair.replace("[22, 22]", "[9999, 9999]"))
     command = [sys.executable, "-m", "gearcam", "view", "--no-browser", "pair.toml"]
     process = subprocess.Popen(
         command, cwd=tmp_path, env=ENVIRONMENT, text=True,
@@ -155,7 +164,7 @@ def test_the_view_ends_its_workers_at_once(tmp_path: Path, name: str, code: int)
     while len(workers := children.read_text().split()) < 2 and time.monotonic() < end:
         time.sleep(0.02)
     process.send_signal(getattr(signal, name))
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=15)
     assert (process.returncode, out, err) == (code, "the view has ended\n", "")
     assert len(workers) > 1
     while any(map(_runs, workers)) and time.monotonic() < end:
