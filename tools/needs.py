@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,19 +51,20 @@ STUDIES: Final = ("meshing", "follow")
 REPEATS: Final = 3
 """Processes of which the median counts."""
 
-HEAD: Final = """\
-## What each output needs
+HEAD: Final = "## What each output needs\n"
 
+ABOUT: Final = """\
 A process for each row, asked for that output alone: of the profile `ellipse`, 41 : 41 teeth, and of
 `plate_cam_offset_roller`. Processor time with the start of Python, and the largest memory held, of
 the middle one of {repeats} processes; a bare `python -c "import numpy, shapely"` takes {seconds}
 and {memory}. Stages are the properties of a result that were computed, each once, in their order;
 other results are those of designs that are compared or refined, or shown with coarser outlines.
-Rooms are those beyond a build of `csv`, which has, of both kinds, {rooms}.
+Rooms are those beyond a build of `csv`, which has, of both kinds, {rooms}."""
 
-| kind | output | stages | packages | rooms besides | time | peak memory |
-|---|---|---|---|---|---|---|
-"""
+COLUMNS: Final = (
+    "| kind | output | stages | packages | rooms besides | time | peak memory |",
+    "|---|---|---|---|---|---|---|",
+)
 
 CHILD: Final = '''
 import contextlib, io, json, resource, sys, time
@@ -229,13 +231,13 @@ def section() -> str:
             rows.append(f"| {' | '.join(cells)} |")
             print(rows[-1], flush=True)
         shared = usual if shared is None else shared & usual
-    told = HEAD.format(
+    about = ABOUT.format(
         repeats=REPEATS,
         seconds=_seconds(bare),
         memory=_memory(bare),
         rooms=", ".join(sorted(shared or ())),
     )
-    return f"{BEGIN}\n{told}" + "\n".join(rows) + f"\n{END}\n"
+    return "\n".join([BEGIN, HEAD, textwrap.fill(about, 100), "", *COLUMNS, *rows, END, ""])
 
 
 def _median(found: Sequence[Needs]) -> Needs:

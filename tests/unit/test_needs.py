@@ -12,8 +12,8 @@ import pytest
 import needs
 
 TABLE = needs.table(needs.PAGE.read_text(encoding="utf-8"))
-SLOW = ("mesh", "accuracy", "compare", "step")
-"""Outputs that take longer than the fast tests may."""
+SLOW = ("mesh", "accuracy", "compare", "step", "glb", "drawing-dxf")
+"""Outputs that take longer than the fast tests may, or need what others need."""
 
 QUICK = {kind: [one for one in needs.outputs(kind) if one not in SLOW] for kind in needs.DESIGNS}
 

@@ -232,7 +232,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
         "Sampler.chords": 2, "cam_drawing": 1, "scene_data": 1,
     },
     ("groove_cam", check): {
-        # both walls, and the relief that a wider roller would need is not made
+        # both walls, and the pitch curve that the groove is cut along
         **WALL, **RANGES, **SUMMARY, "Wall.contour": 2, "undercut": 2,
         "run_checks": 2, "Sampler.chords": 3, "make_part": 1, "tool_limits": 1,
     },

@@ -88,11 +88,12 @@ class GearPairResult(PairStages):
             If the centrodes cannot be made.
         """
         if n is None:
-            return self._centrodes
+            return self.whole_centrodes
         return centrode_columns(self, self.centrode_angles(whole("n", n, 2)))
 
     @cached_property
-    def _centrodes(self) -> Columns:
+    def whole_centrodes(self) -> Columns:
+        """The table of `centrodes` where nothing else is asked for."""
         return centrode_columns(self, self.centrode_angles())
 
     def motion(self, phi1: ArrayLike | None = None) -> Columns:
@@ -171,7 +172,7 @@ class GearPairResult(PairStages):
     def centrodes_of_phases(self) -> Columns:
         """The table of `centrodes` over `phases`."""
         same = np.array_equal(self.phases, self.centrode_angles())  # no knots, and one turn
-        return self._centrodes if same else centrode_columns(self, self.phases)
+        return self.whole_centrodes if same else centrode_columns(self, self.phases)
 
     @cached_property
     def paths_of_contact(self) -> dict[Side, Columns]:
