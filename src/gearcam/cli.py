@@ -12,11 +12,9 @@ from __future__ import annotations
 import argparse
 import contextlib
 import os
-import shlex
 import sys
 import textwrap
 import time
-import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -39,7 +37,7 @@ from gearcam.console import (
 )
 from gearcam.designs import KINDS, Design, load
 from gearcam.designs.faults import unknown_word
-from gearcam.designs.kind import all_formats
+from gearcam.designs.kind import all_formats, rooms
 from gearcam.designs.outputs import FORMATS
 from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
 from gearcam.interrupts import interruptible
@@ -112,12 +110,12 @@ def _dispatch(words: list[str]) -> None:
         parser = _parser(word, own[word], formats)
         own[word](**vars(parser.parse_intermixed_args(words[1:])))
         return
-    others = {command.name: command for command in _commands_of_kinds()}
-    if word in others:
-        _of_kind(others[word], words[1:])
+    other = next((command for command in _commands_of_kinds() if command.name == word), None)
+    if other is not None:
+        _of_kind(other, words[1:])
         return
     docs = {name: function.__doc__ or "" for name, function in own.items()}
-    docs |= {name: command.doc for name, command in others.items()}
+    docs |= {command.name: command.doc for command in _commands_of_kinds()}
     top = argparse.ArgumentParser(
         prog="gearcam",
         description=_ABOUT,
@@ -140,11 +138,10 @@ def _dispatch(words: list[str]) -> None:
 
 def _commands_of_kinds() -> Iterator[Command]:
     """Yield the commands that kinds of design add, and those of studies of any kind."""
+    for room in rooms("commands"):
+        yield from room.COMMANDS
     from gearcam.studies.commands import COMMANDS
 
-    for kind in KINDS.values():
-        with contextlib.suppress(ModuleNotFoundError):
-            yield from kind.room("commands").COMMANDS
     yield from COMMANDS
 
 
@@ -268,6 +265,8 @@ def _new(kind: str, file: str | None, process: str | None) -> None:
     if file is None:
         say(text.rstrip("\n"))
         return
+    import shlex
+
     try:
         write_new(file, text)
     except WriteError as error:
@@ -395,6 +394,8 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
 def _fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
     """Say that the program is at fault; the traceback only where it is asked for."""
     if debug or os.environ.get(DEBUG):
+        import traceback
+
         complain("".join(traceback.format_exception(error)).rstrip())
     complain(fault_text(error, file))
     return FAULT

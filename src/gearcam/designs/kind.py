@@ -26,6 +26,7 @@ names it, and only that of a file is loaded. Its modules:
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import math
 import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -186,6 +187,14 @@ class _Kinds(Mapping[str, DesignKind]):
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
+
+
+def rooms(name: str) -> Iterator[ModuleType]:
+    """Yield the modules of a `name` that kinds have, without loading anything of their designs."""
+    for kind in _names():
+        home = f"{_package(kind)}.{name}"
+        if importlib.util.find_spec(home) is not None:
+            yield importlib.import_module(home)
 
 
 def all_formats() -> tuple[str, ...]:

@@ -197,7 +197,7 @@ class CamResult(Result):
     @property
     def ordered(self) -> bool:
         """Whether the design orders a part: a blank, or files that are made from parts."""
-        plain = {"csv", "curvature"}
+        plain = {"csv", "curvature", "inspection"}
         blank = CamBlank()
         return self.design.blank != blank or not set(self.design.output.files) <= plain
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, get_args
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.findings import in_order, run_checks
@@ -86,8 +87,14 @@ class GearPairResult(PairStages):
         InfeasibleError
             If the centrodes cannot be made.
         """
-        count = None if n is None else whole("n", n, 2)
-        return centrode_columns(self, self.centrode_angles(count))
+        if n is None:
+            return self.whole_centrodes
+        return centrode_columns(self, self.centrode_angles(whole("n", n, 2)))
+
+    @cached_property
+    def whole_centrodes(self) -> Columns:
+        """The table of `centrodes` where nothing else is asked for."""
+        return centrode_columns(self, self.centrode_angles())
 
     def motion(self, phi1: ArrayLike | None = None) -> Columns:
         """Return how the driven element moves, exactly.
@@ -164,7 +171,8 @@ class GearPairResult(PairStages):
     @cached_property
     def centrodes_of_phases(self) -> Columns:
         """The table of `centrodes` over `phases`."""
-        return centrode_columns(self, self.phases)
+        same = np.array_equal(self.phases, self.centrode_angles())  # no knots, and one turn
+        return self.whole_centrodes if same else centrode_columns(self, self.phases)
 
     @cached_property
     def paths_of_contact(self) -> dict[Side, Columns]:
@@ -233,7 +241,8 @@ class GearPairResult(PairStages):
         design = result.design
         gears = result.steps[design.meshing.step - 1]
         with result.stage("meshing"):
-            meshing = study(gears, design.meshing, progress)
+            designed = result.subject.sides if gears is result.steps[0] else ()
+            meshing = study(gears, design.meshing, progress, designed)
         if not meshing.blocks:
             raise KeyboardInterrupt
         with result.stage("checks"):

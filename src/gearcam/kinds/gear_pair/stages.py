@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
 """Checks that can find something else in each step of stepped wheels."""
 
+_PLAIN = frozenset({"csv", "inspection"})
+"""Files that are made from the teeth alone."""
+
 _WHOLE = 1e-9
 """Part of a lobe or travel by which an end may lie beyond it: rounding."""
 
@@ -201,7 +204,7 @@ class PairStages(Result):
     @property
     def ordered(self) -> bool:
         """Whether the design orders parts: a blank, or files that are made from parts."""
-        return self.design.blank != Blank() or not set(self.design.output.files) <= {"csv"}
+        return self.design.blank != Blank() or not set(self.design.output.files) <= _PLAIN
 
     @cached_property
     def parts(self) -> tuple[Part, Part]:
