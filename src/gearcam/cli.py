@@ -10,7 +10,6 @@ What was done goes to stdout, what went wrong to stderr; progress is drawn on a 
 from __future__ import annotations
 
 import argparse
-import contextlib
 import os
 import sys
 import textwrap
