@@ -88,7 +88,9 @@ def test_what_is_no_file_that_could_be_read(
     assert time.process_time() - start < 5.0
 
 
-def test_a_huge_file_is_refused_before_it_is_read(desk: Path) -> None:
+def test_a_huge_file_is_refused_before_it_is_read(
+    desk: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     huge(desk / "huge.toml")
     huge(desk / "huge.csv")
     tracemalloc.start()
@@ -96,9 +98,12 @@ def test_a_huge_file_is_refused_before_it_is_read(desk: Path) -> None:
         for file, most in (("huge.toml", reader.LARGEST), ("huge.csv", columns.LARGEST)):
             with pytest.raises(UnreadableError, match="has 100 MB"):
                 read(file, most)
-        # such as those of /proc, whose size is told as nothing
-        with pytest.raises(UnreadableError, match="is larger, and files of up to 1 B are read"):
-            read("/proc/self/status", 1)
+        # one that grows, or whose size the system does not tell
+        told = (desk / "good.toml").stat()
+        with monkeypatch.context() as patch:
+            patch.setattr("os.stat", lambda _: told)
+            with pytest.raises(UnreadableError, match="is larger, and files of up to 1 kB are"):
+                read("huge.csv", 1000)
         assert tracemalloc.get_traced_memory()[1] < 100_000
     finally:
         tracemalloc.stop()
@@ -316,6 +321,7 @@ def test_profiles_of_other_systems_are_read(profile: bytes) -> None:
         (b"AutoCAD Binary DXF\r\n\x1a\0\0", "is binary: save it as text"),
         (b"hello\nworld\n", "cannot be read"),
         (b"  0\nSECTION\n  2\nENTITIES\n  0\nLWPOLYLINE\n 10\nabc\n", "cannot be read"),
+        (b"  0\nSECTION\n  2\nHEADER\n  9\n  0\nENDSEC\n  0\nEOF\n", "cannot be read"),
     ],
 )
 def test_what_is_no_dxf(content: bytes, words: str) -> None:
@@ -323,6 +329,27 @@ def test_what_is_no_dxf(content: bytes, words: str) -> None:
         read_outline(content)
     assert len(str(refused.value)) < 150
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("old", [b"DIMSTYLE", b" 10\n0.0\n", b"SECTION", b"  0\n", b"ACAD"])
+@pytest.mark.parametrize("new", [b"", b"x", b"  0\n", b" 10\nnan\n", b"\n\n\n"])
+def test_damaged_dxf_files_are_read_or_refused(profile: bytes, old: bytes, new: bytes) -> None:
+    assert old in profile
+    for damaged in (profile.replace(old, new, 1), profile.replace(old, new)):
+        try:
+            vertices, bulges = read_outline(damaged)
+        except DxfError:
+            continue
+        assert np.isfinite(vertices).all()
+        assert np.isfinite(bulges).all()
+
+
+def test_an_outline_of_no_numbers_is_refused(profile: bytes) -> None:
+    start = profile.index(b"\n 10\n", profile.index(b"LWPOLYLINE", profile.index(b"ENTITIES")))
+    end = profile.index(b"\n", start + 5)
+    for number in (b"nan", b"inf", b"1e999"):
+        with pytest.raises(DxfError, match="not finite"):
+            read_outline(profile[: start + 5] + number + profile[end:])
 
 
 def test_what_is_no_profile(desk: Path, capsys: pytest.CaptureFixture[str], profile: bytes) -> None:
