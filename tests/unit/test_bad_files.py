@@ -306,7 +306,8 @@ def test_profiles_of_other_systems_are_read(profile: bytes) -> None:
     assert len(vertices) > 30
     latin = profile.replace(b"  0\nEOF", "999\nN\xfcrnberg\n  0\nEOF".encode("cp1252"))
     assert latin != profile
-    for other in (profile.replace(b"\n", b"\r\n"), b"\xef\xbb\xbf" + profile, latin):
+    crlf, marked = profile.replace(b"\n", b"\r\n"), b"\xef\xbb\xbf" + profile
+    for other in (crlf, marked, latin):
         found = read_outline(other)
         assert np.array_equal(found[0], vertices)
         assert np.array_equal(found[1], bulges)
@@ -350,6 +351,13 @@ def test_an_outline_of_no_numbers_is_refused(profile: bytes) -> None:
     for number in (b"nan", b"inf", b"1e999"):
         with pytest.raises(DxfError, match="not finite"):
             read_outline(profile[: start + 5] + number + profile[end:])
+
+
+def test_what_ezdxf_does_not_know_is_no_outline(profile: bytes) -> None:
+    start = profile.index(b"ENTITIES")
+    other = profile[:start] + profile[start:].replace(b"LWPOLYLINE", b"POLYGLINE")
+    with pytest.raises(DxfError, match="holds 0|has faults"):
+        read_outline(other)
 
 
 def test_what_is_no_profile(desk: Path, capsys: pytest.CaptureFixture[str], profile: bytes) -> None:

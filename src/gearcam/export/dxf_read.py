@@ -113,7 +113,7 @@ def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Ou
 
     chain: list[tuple[Array, Array]] = []
     for entity in document.modelspace():
-        if not wanted(entity.dxf.layer):
+        if not wanted(_layer(entity)):
             continue
         if isinstance(entity, LWPolyline):
             rows = entity.lwpoints.values
@@ -130,6 +130,11 @@ def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Ou
                 chain = []
     if chain:
         yield _joined(chain)
+
+
+def _layer(entity: Any) -> str:
+    """Return the layer of an entity; nothing of one that ezdxf does not know."""
+    return entity.dxf.layer if entity.dxf.is_supported("layer") else ""
 
 
 def _joined(chain: Sequence[tuple[Array, Array]]) -> _Outline:
@@ -165,7 +170,7 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
         finite numbers.
     """
     document = read_dxf(data)
-    layers = dict.fromkeys(entity.dxf.layer for entity in document.modelspace())
+    layers = dict.fromkeys(_layer(entity) for entity in document.modelspace())
     paths = [layer for layer in layers if layer.upper().endswith(KERF)]
     if paths:
         raise DxfError(
