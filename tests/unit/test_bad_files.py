@@ -179,6 +179,7 @@ def test_what_is_no_design(desk: Path, case: str, capsys: pytest.CaptureFixture[
         assert words in err
         assert "Traceback" not in err
         assert "\x1b" not in err
+        assert err.count("unknown key") <= 100
     assert {path.name for path in desk.iterdir()} == {"bad.toml", "good.toml"}
     assert time.process_time() - start < 5.0
 
@@ -356,7 +357,7 @@ def test_an_outline_of_no_numbers_is_refused(profile: bytes) -> None:
 def test_what_ezdxf_does_not_know_is_no_outline(profile: bytes) -> None:
     start = profile.index(b"ENTITIES")
     other = profile[:start] + profile[start:].replace(b"LWPOLYLINE", b"POLYGLINE")
-    with pytest.raises(DxfError, match="holds 0|has faults"):
+    with pytest.raises(DxfError, match=r"holds 0|has faults"):
         read_outline(other)
 
 
