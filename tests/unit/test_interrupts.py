@@ -95,6 +95,28 @@ def test_signals_wait_until_what_must_not_be_broken_is_done() -> None:
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
+def test_a_signal_that_comes_by_another_thread_waits_too() -> None:
+    """No mask of this thread keeps it back."""
+    done, free = list[str](), threading.Event()
+
+    def work() -> None:
+        with unbroken():
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(0.05)
+            done.append("unbroken")
+        done.append("never")
+
+    thread = threading.Thread(target=free.wait)
+    thread.start()
+    try:
+        with interruptible(), pytest.raises(KeyboardInterrupt):
+            work()
+    finally:
+        free.set()
+        thread.join()
+    assert done == ["unbroken"]
+
+
 def test_a_handler_that_somebody_has_chosen_stays() -> None:
     """Such as that of ``nohup``, which has a closed terminal be ignored."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
