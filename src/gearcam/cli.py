@@ -3,8 +3,8 @@
 Every command ends in an exit code: 0 good (warnings included), 1 built but with findings at error
 level, 2 wrong by reading the file or refused by the disk, 3 found impossible by computing, 4 a
 fault of the program, 130 interrupted (143 by SIGTERM, 129 by SIGHUP). Several files are all tried;
-the largest code is returned.
-What was done goes to stdout, what went wrong to stderr; progress is drawn on a terminal only.
+the largest code is returned. What was done goes to stdout, what went wrong to stderr; progress is
+drawn on a terminal only.
 """
 
 from __future__ import annotations
