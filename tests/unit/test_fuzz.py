@@ -53,8 +53,8 @@ def test_whatever_happens_in_a_process_every_task_has_its_outcome() -> None:
     tasks = [(number, Task(files={"a.toml": word})) for number, word in enumerate(words)]
     with Pool(helpers_fuzz.odd, processes=1, seconds=0.3) as pool:
         ends = dict(pool.each(tasks))
-    kinds = [ends[number].failure and ends[number].failure.kind for number in range(len(words))]
-    assert kinds == [None, "time", "crash", "memory", "time", None]
+    failures = [ends[number].failure for number in range(len(words))]
+    assert [one and one.kind for one in failures] == [None, "time", "crash", "memory", "time", None]
     assert ends[2].failure == Failure(kind="crash", words="the process ended with 7", place="7")
     assert (ends[0].reason, ends[5].reason) == ("one", "two")
 

@@ -216,13 +216,12 @@ def _cut(run: Run, grain: float) -> list[Run]:
     steps = np.hypot(*np.diff(run.points, axis=0).T)
     ends = np.flatnonzero(np.diff(np.concatenate([[0], steps > grain, [0]])))
     way, tangents = np.append(0.0, np.cumsum(steps)), as_complex(run.tangents)
-    low, high = ends[:-1:2], ends[1::2]
+    if not ends.size:
+        return []
+    low, high = ends[::2], ends[1::2]
     turn = np.abs(np.angle(tangents[low[1:]] * np.conj(tangents[high[:-1]])))
     corner = (way[low[1:]] - way[high[:-1]] <= grain) & (turn > _TURN)
-    low, high = (
-        low[np.append(True, corner)[: len(low)]],
-        high[np.append(corner, True)[-len(high) :]],
-    )
+    low, high = low[np.append(True, corner)], high[np.append(corner, True)]
     pieces = []
     for first, last in zip(low.tolist(), high.tolist(), strict=True):
         points = run.points[first : last + 1].copy()
