@@ -251,9 +251,7 @@ def test_arcs_of_the_disc_s_own_radius_become_corners() -> None:
     )
     made = moved(one, -3.0)
     assert len(made.runs) in (4, 5)  # the first corner may be where it begins
-    apart = moved(smooth, -3.0)
-    assert len(apart.runs) == 4
-    for run in (*made.runs, *apart.runs):
+    for run in made.runs:
         way = np.diff(run.points, axis=0)
         way /= np.hypot(*way.T)[:, None]
         assert np.abs(run.tangents[:-1] - way).max() < 1e-9

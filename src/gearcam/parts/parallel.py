@@ -214,13 +214,14 @@ def _cut(run: Run, grain: float) -> list[Run]:
     A stretch shorter than a `grain`, mm, is a point, and a corner where the tangent turns in it.
     """
     steps = np.hypot(*np.diff(run.points, axis=0).T)
-    ends = np.flatnonzero(np.diff(np.concatenate([[0], steps > grain, [0]])))
-    way, tangents = np.append(0.0, np.cumsum(steps)), as_complex(run.tangents)
+    groups = np.append(0, np.flatnonzero(np.diff(steps > grain)) + 1)
+    long = np.add.reduceat(steps, groups) > grain
+    kept = np.repeat(long, np.diff(np.append(groups, len(steps))))
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], kept, [0]])))
     if not ends.size:
         return []
-    low, high = ends[::2], ends[1::2]
-    turn = np.abs(np.angle(tangents[low[1:]] * np.conj(tangents[high[:-1]])))
-    corner = (way[low[1:]] - way[high[:-1]] <= grain) & (turn > _TURN)
+    low, high, tangents = ends[::2], ends[1::2], as_complex(run.tangents)
+    corner = np.abs(np.angle(tangents[low[1:]] * np.conj(tangents[high[:-1]]))) > _TURN
     low, high = low[np.append(True, corner)], high[np.append(corner, True)]
     pieces = []
     for first, last in zip(low.tolist(), high.tolist(), strict=True):
