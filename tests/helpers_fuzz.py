@@ -39,3 +39,12 @@ def dislikes_cycloids(task: Task, folder: Path) -> Outcome:  # noqa: ARG001
         return Outcome(end=BUILT, seconds=1.0)
     words = f"no way\nwith {len(text)} letters"
     return Outcome(end=FAILED, failure=Failure(kind="crash", words=words, place="x"))
+
+
+def late_at_first(task: Task, folder: Path) -> Outcome:  # noqa: ARG001
+    """Take for ever, but only the first time in the folder of all trials."""
+    mark = folder.parent / "tried"
+    if not mark.exists():
+        mark.touch()
+        time.sleep(1e3)
+    return Outcome(end=BUILT)

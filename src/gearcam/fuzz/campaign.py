@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
@@ -12,7 +12,7 @@ from typing import Final
 from gearcam.draws.designs import Drawn, design
 from gearcam.draws.draw import Draw
 from gearcam.facts import lined_up
-from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
+from gearcam.fuzz.outcome import BUILT, FAILED, LATE, REFUSED, WRONG, Failure, Outcome, Task
 from gearcam.fuzz.pool import Pool
 from gearcam.fuzz.shrink import Files, shrunk
 
@@ -112,8 +112,7 @@ class Campaign:
     def run(self, progress: Callable[[str, int, int], None] | None) -> Iterator[Catch]:
         """Try all and yield failures as they are found, `progress` told."""
         start = time.monotonic()
-        tasks = ((number, case.task()) for number, case in enumerate(self.cases))
-        for done, (number, outcome) in enumerate(self.pool.each(tasks), start=1):
+        for done, (number, outcome) in enumerate(self._outcomes(), start=1):
             self._take(self.cases[number], outcome)
             if progress is not None:
                 progress(f"{len(self.found)} failures", done, len(self.cases))
@@ -122,6 +121,19 @@ class Campaign:
                 self.found.append(Catch(case=case, failure=outcome.failure, files=case.drawn.files))
                 yield self.found[-1]
         self.clock = time.monotonic() - start
+
+    def _outcomes(self) -> Iterator[tuple[int, Outcome]]:
+        """Yield how trials ended; what took too long is tried once more, as machines may pause."""
+        late: list[int] = []
+        for number, outcome in self.pool.each(self._tasks(range(len(self.cases)))):
+            if outcome.failure is not None and outcome.failure.kind == LATE:
+                late.append(number)
+            else:
+                yield number, outcome
+        yield from self.pool.each(self._tasks(late))
+
+    def _tasks(self, numbers: Iterable[int]) -> Iterator[tuple[int, Task]]:
+        return ((number, self.cases[number].task()) for number in numbers)
 
     def _take(self, case: Case, outcome: Outcome) -> None:
         drawn = _BROKEN if case.drawn.broken else _WHOLE

@@ -11,6 +11,9 @@ REFUSED: Final = "refused"
 WRONG: Final = "refused by reading"
 FAILED: Final = "failed"
 
+LATE: Final = "time"
+"""The kind of failure of what takes too long."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Task:

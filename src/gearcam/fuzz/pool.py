@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Final, Self
 
 from gearcam.console import quieten
-from gearcam.fuzz.outcome import FAILED, Failure, Outcome, Task
+from gearcam.fuzz.outcome import FAILED, LATE, Failure, Outcome, Task
 
 SECONDS: Final = 30.0
 """Processor time of a trial."""
@@ -103,7 +103,7 @@ class _Worker:
         self.channel.close()
 
 
-_TOO_LONG: Final = Outcome(end=FAILED, failure=Failure(kind="time", words="it took too long"))
+_TOO_LONG: Final = Outcome(end=FAILED, failure=Failure(kind=LATE, words="it took too long"))
 
 
 def _death(code: int | None) -> Outcome:
