@@ -15,8 +15,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
-from random_draw import ROOT
-
+ROOT: Final = Path(__file__).resolve().parents[1]
 WORKER: Final = Path(__file__).with_name("compare_worker.py")
 GALLERY: Final = "profiles"
 

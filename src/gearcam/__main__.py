@@ -1,5 +1,17 @@
-"""``python -m gearcam``: the command line."""
+"""``python -m gearcam``, and the command: interrupted well even while it is loaded."""
 
-from gearcam.cli import main
+import sys
 
-raise SystemExit(main())
+
+def main() -> int:
+    """Run the command line of this process and return its exit code."""
+    try:
+        from gearcam.cli import main as run
+    except KeyboardInterrupt:  # while it is loaded
+        sys.stderr.write("interrupted: nothing was done\n")
+        return 130
+    return run()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

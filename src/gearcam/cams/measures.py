@@ -34,6 +34,9 @@ _MOST_CELLS = 1024
 _AGREED = 1e-14
 """Gauss points in each cell of a segment; the cells are halved until sums agree to this part."""
 
+_ROUNDING = 16.0 * np.finfo(float).eps
+"""Of sums, in parts of them."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Extreme:
@@ -54,6 +57,11 @@ class Range(Brief):
     def largest(self) -> float:
         """The largest absolute value."""
         return max(abs(self.low.value), abs(self.high.value))
+
+    @property
+    def least_radius(self) -> float:
+        """Of a range of curvature: the smallest radius, infinite where all is straight."""
+        return 1.0 / self.largest if self.largest else math.inf
 
 
 def range_of(
@@ -79,10 +87,14 @@ def range_of(
     def function(theta: Array) -> list[Array]:
         return pick(curve.contact(theta)).derivatives()
 
-    found = [extremes(function, curve.program.cuts_between(*ends)) for ends in stretches]
-    if not found:
+    if not stretches:
         return None
-    theta, value = np.concatenate(found, axis=1)
+    cuts = [curve.program.cuts_between(*ends) for ends in stretches]
+    found = [extremes(function, own) for own in cuts]
+    # extremes keep off the knots: what is largest there is taken from each side's own piece
+    ends, states = curve.program.sides(cuts)
+    at_ends = pick(curve.contact_of(states, 0)).c[0] + np.zeros_like(ends)
+    theta, value = np.concatenate([*found, [ends, at_ends]], axis=1)
     low, high = (
         Extreme(theta=float(theta[k]), value=float(value[k]))
         for k in (value.argmin(), value.argmax())
@@ -119,23 +131,25 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         return found
     places, values = extremes_among(speed, survey.places, *seen)
     sweep = np.searchsorted(cuts, places, side="right")
-    for k in np.flatnonzero(sweep[:-1] == sweep[1:]).tolist():  # not across a knot
-        pair, sign = places[k : k + 2], values[k : k + 2] < 0.0
-        if not sign.any():
-            continue
-        low, high = (_at_knot(float(place), knots) for place in pair)
-        if not sign.all():
-            root = float(bracketed_root(lambda t: speed(t)[0], pair[:1], pair[1:], _ROOT)[0])
-            low, high = (low, root) if sign[0] else (root, high)
-        if low < high:
-            found.append((low, high))
+    cells = places[:-1], places[1:]
+    before, after = values[:-1] < 0.0, values[1:] < 0.0
+    whole = sweep[:-1] == sweep[1:]  # not across a knot
+    low, high = (_at_knots(ends, knots) for ends in cells)
+    turns = whole & (before != after)
+    roots = bracketed_root(lambda t: speed(t)[0], *(ends[turns] for ends in cells), _ROOT)
+    low[turns & after] = roots[after[turns]]
+    high[turns & before] = roots[before[turns]]
+    kept = whole & (before | after) & (low < high)
+    found += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
     return _joined(sorted(found))
 
 
-def _at_knot(theta: float, knots: Array) -> float:
-    """Return the knot that an angle means if it is as near as extremes keep from knots."""
-    nearest = float(knots[np.abs(knots - theta).argmin()])
-    return nearest if abs(nearest - theta) <= _INSET else theta
+def _at_knots(theta: Array, knots: Array) -> Array:
+    """Return angles, each the knot that it means where it is as near as extremes keep to it."""
+    after = np.searchsorted(knots, theta).clip(1, len(knots) - 1)
+    before, behind = knots[after - 1], knots[after]
+    nearest = np.where(theta - before < behind - theta, before, behind)
+    return np.where(np.abs(nearest - theta) <= _INSET, nearest, theta)
 
 
 def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
@@ -200,34 +214,43 @@ class Size(Brief):
     area_error: float
 
 
-def size_of(segments: ProfileSegments) -> Size:
+def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CELLS) -> Size:
     """Return perimeter and area of a closed curve, by Gauss-Legendre quadrature of every segment.
 
     Parameters
     ----------
     segments : ProfileSegments
         Closed; mirrored or not.
+    nodes : int
+        In each cell.
+    most : int
+        Cells of a segment.
 
     Returns
     -------
     Size
-        The errors are differences to half the cells, and rounding.
+        The errors are differences to half the cells, fallen once more as they fell before; what
+        the lift is not known to; and rounding.
     """
-    cells, found = _CELLS, _integrals(segments, _CELLS)
+    cells, found, changes = _CELLS, _integrals(segments, _CELLS, nodes), np.full(2, np.inf)
     while True:
-        cells, before, found = 2 * cells, found, _integrals(segments, 2 * cells)
-        changes = np.abs(found - before)
-        if np.all(changes <= _AGREED * found) or cells >= _MOST_CELLS:
+        cells, before, found = 2 * cells, found, _integrals(segments, 2 * cells, nodes)
+        earlier, changes = changes, np.abs(found - before)
+        if np.all(changes <= _AGREED * found) or cells >= most:
             break
+    falls = np.where(np.isfinite(earlier), np.minimum(1.0, 2.0 * changes / earlier), 1.0)
     perimeter, area = found.tolist()
-    errors = (changes + 16.0 * np.finfo(float).eps * found).tolist()
+    curve = segments.curve
+    off = curve.program.errors[0] * curve.mechanism.lever
+    unknown = np.array([2.0 * math.pi, perimeter]) * off
+    errors = (changes * falls + unknown + _ROUNDING * found).tolist()
     return Size(perimeter=perimeter, area=area, perimeter_error=errors[0], area_error=errors[1])
 
 
-def _integrals(segments: ProfileSegments, cells: int) -> Array:
-    """Return perimeter and area with as many cells for each segment."""
-    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    share = ((np.arange(cells)[:, None] + 0.5 * (nodes + 1.0)) / cells).ravel()
+def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> Array:
+    """Return perimeter and area with as many cells for each segment, and nodes in each."""
+    places, weights = np.polynomial.legendre.leggauss(nodes)
+    share = ((np.arange(cells)[:, None] + 0.5 * (places + 1.0)) / cells).ravel()
     weight = np.tile(0.5 * weights / cells, cells)
     count = len(segments.start)
     index = np.repeat(np.arange(count), len(share))

@@ -79,12 +79,12 @@ class Driver(Brief):
         return f"{self.symbol}_{self.unit}"
 
     def told(self, theta: float) -> str:
-        """Return an angle, rad, as people are told, with its unit."""
-        return f"{shown(self.scale * theta)} {self.unit}"
+        """Return an angle, rad, as people are told, with its unit: rounding shows as nothing."""
+        return f"{shown(self.scale * theta, scale=self.turn)} {self.unit}"
 
     def seen(self, theta: float) -> str:
-        """Return a place for a table of facts: rounding shows as nothing."""
-        return f"at {shown(self.scale * theta, scale=self.turn)} {self.unit}"
+        """Return a place for people."""
+        return f"at {self.told(theta)}"
 
 
 TURNING = Driver(
@@ -317,7 +317,7 @@ def _out_of_reach(
         value=size,
         limit=limit,
         unit="mm",
-        nearest=f"{parts} allow {shown(low)} to {shown(high)} mm, both excluded",
+        nearest=f"{parts} allow {shown(least)} to {shown(high)} mm, both excluded",
         ways=ways,
     )
 

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 _Outline = tuple[Array, Array, bool]
 """Vertices, bulges, and whether it is closed."""
 
+_SHOWN: Final = 80
+"""Characters of what ezdxf complains of: it may quote a whole file."""
+
 _R12: Final = "AC1009"
 """The version that knows no units and no light polylines."""
 
@@ -206,10 +209,15 @@ def read_dxf(data: bytes) -> Document:
     from ezdxf.filemanagement import read
     from ezdxf.lldxf.const import DXFError
 
+    if data.startswith(b"AutoCAD Binary DXF"):
+        raise DxfError("the DXF file is binary: save it as text")
+    # older files are in another encoding than UTF-8, and lines end in two characters on Windows
+    text = data.decode("utf-8-sig", errors="surrogateescape")
     try:
-        document = read(io.StringIO(data.decode("utf-8")))
-    except (DXFError, UnicodeDecodeError) as error:
-        raise DxfError(f"the DXF file cannot be read: {error}") from error
+        document = read(io.StringIO(text, newline=None))
+    except DXFError as error:
+        told = " ".join(str(error).split())[:_SHOWN]
+        raise DxfError(f"the DXF file cannot be read: {told}") from error
     audit = document.audit()
     faults = [*audit.errors, *audit.fixes]
     if faults:

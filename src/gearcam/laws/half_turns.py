@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.display import Brief
+from gearcam.laws.displacement import Deviation
 from gearcam.laws.phases_of_lift import (
     TURN,
     TURN_MISS,
@@ -24,7 +25,7 @@ from gearcam.laws.phases_of_lift import (
     angles_of,
     levels,
 )
-from gearcam.laws.program import Deviation, PlacedPhase, Program
+from gearcam.laws.program import PlacedPhase, Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, extremes, piecewise

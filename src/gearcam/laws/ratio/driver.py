@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.ratio.base import RatioLaw, make_law
-from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, angle_text, demand_smooth
+from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, demand_radii, demand_smooth
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
@@ -71,7 +71,7 @@ def law_of_centrode(
 
 
 def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) -> None:
-    """Refuse what is not finite or not positive somewhere.
+    """Refuse what is not finite, not positive or out of range somewhere.
 
     Parameters
     ----------
@@ -88,10 +88,7 @@ def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) 
         Naming the first place.
     """
     angles = np.linspace(0.0, lobes.period, PLACES)
-    values = function(angles)
-    for bad, state in ((~np.isfinite(values), "is not finite"), (values <= 0, "is not positive")):
-        if bad.any():
-            raise InfeasibleError(f"{name} {state}", where=angle_text(angles[bad][0]), limit=0.0)
+    demand_radii(name, angles, function(angles))
 
 
 def _ratio(shape: Callable[..., Jet], center: float, mate: int) -> Callable[..., Jet]:
