@@ -178,9 +178,7 @@ def test_a_hundredth_power_has_derivatives_at_zero() -> None:
     sine, cosine = np.sin(theta / 2), np.cos(theta / 2)
     np.testing.assert_allclose(value, sine**100, rtol=1e-12)
     np.testing.assert_allclose(slope, 50.0 * sine**99 * cosine, rtol=1e-12)
-    np.testing.assert_allclose(
-        bend, 25.0 * (99.0 * sine**98 * cosine**2 - sine**100), rtol=1e-11
-    )
+    np.testing.assert_allclose(bend, 25.0 * (99.0 * sine**98 * cosine**2 - sine**100), rtol=1e-11)
 
 
 @pytest.mark.parametrize("lift", ["1e308*cos(theta)", "exp(exp(theta))", "exp(700*sin(theta)**2)"])
