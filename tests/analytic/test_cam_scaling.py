@@ -31,6 +31,8 @@ LENGTH = 10.0
 
 
 def at_scale(kind: str, law: str, scale: float) -> DiscCam:
+    follower: dict[str, Any]
+    cam: dict[str, Any]
     follower, cam = (
         {name: value if isinstance(value, str) else scale * value for name, value in given.items()}
         for given in SPECS[kind]

@@ -73,12 +73,12 @@ def test_the_share_of_a_lift_that_a_falling_face_carries(degrees: float) -> None
 @pytest.mark.parametrize("second", [None, 25.0])
 def test_a_groove_that_reaches_the_axis(second: float | None) -> None:
     lift, made = there_and_back("cycloidal", 10.0), mechanism("roller")
-    size = {"clearance": 48.0} if second is None else {"radius2": second}
+    size: dict[str, Any] = {"clearance": 48.0} if second is None else {"radius2": second}
     with pytest.raises(InfeasibleError, match="groove is so wide") as refused:
         make_groove(lift, made, **size)
     assert refused.value.limit == pytest.approx(30.0)
     assert refused.value.value == pytest.approx(30.0 if second is None else 44.0)
-    least = {"clearance": 47.9} if second is None else {"radius2": 17.9}
+    least: dict[str, Any] = {"clearance": 47.9} if second is None else {"radius2": 17.9}
     make_groove(lift, made, **least)
 
 

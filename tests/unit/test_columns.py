@@ -167,7 +167,9 @@ def test_ratios_and_radii_at_any_scale_that_has_a_square(name: str, scale: float
             with pytest.raises(InfeasibleError, match=f"{name} is too {size} for computing"):
                 plain(**law).build(ONE_LOBE, DEFAULT)
             continue
-        one = {name: WAVE, "phi1": ANGLES} if "phi1" in law else {name: "1 + 0.2*cos(phi1)"}
+        one: dict[str, Any] = (
+            {name: WAVE, "phi1": ANGLES} if "phi1" in law else {name: "1 + 0.2*cos(phi1)"}
+        )
         found, right = (plain(**each).build(ONE_LOBE, DEFAULT) for each in (law, one))
         places = np.linspace(0.0, 6.0, 31)
         np.testing.assert_allclose(found.phi2(places), right.phi2(places), atol=1e-12)

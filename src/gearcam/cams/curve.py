@@ -130,10 +130,20 @@ class CamCurve(Brief):
         return position, ds - m.offset, theta
 
     def jump_of(self, theta: Array, s: Array, ds: Array) -> Array:
-        """Return the parameter of a jump at velocities: even in it the profile is drawn evenly.
+        """Return what the velocities of a jump are in the parameter that draws it evenly.
 
-        The angle that a round follower's centre moves at, of a swinging face a share of where it
-        is touched. It rises with the velocity.
+        The direction of a round follower's centre, of a swinging face where along it is touched;
+        it rises with the velocity.
+
+        Parameters
+        ----------
+        theta, s, ds : (n,) arrays
+            Cam angles, rad, lift and velocity there.
+
+        Returns
+        -------
+        (n,) array
+            rad, or in the distance of the pivot; of a sliding face the velocity itself.
         """
         m = self.mechanism
         if m.flat:
@@ -142,7 +152,13 @@ class CamCurve(Brief):
         return np.arctan(b / np.abs(a))
 
     def velocity_of(self, theta: Array, s: Array, jump: Array) -> Array:
-        """Return the velocities at which a jump has a parameter (see `jump_of`)."""
+        """Return the velocities of a jump.
+
+        Parameters
+        ----------
+        theta, s, jump : (n,) arrays
+            Cam angles, rad, lift there, and the parameter of the jump (see `jump_of`).
+        """
         m = self.mechanism
         if m.flat:
             return jump / (1.0 - jump) if m.oscillating else jump
