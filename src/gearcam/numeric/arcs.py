@@ -12,7 +12,7 @@ Refused: runs that do not join to a closed chain, tolerances that are not positi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -51,17 +51,22 @@ REACH = 3
 MOST_CHECKS = 50
 """Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
 
+_BLOCK = 64
+"""Points of a long run that are looked at as one, for how far the tangent turns."""
+
 
 @dataclass(frozen=True, eq=False)
 class _Curves:
     """RunPoints of points, the angle that the tangent has `turned` so far, and where to check.
 
     Distances are taken at the `checks`: the points, and more between them where points are sparse
-    beside a sharper bend; `place` is where each point stands among the checks.
+    beside a sharper bend; `place` is where each point stands among the checks. `ranges` holds the
+    least and the largest angle of each `_BLOCK` points, (2, n).
     """
 
     rows: RunPoints
     turned: Array
+    ranges: Array
     checks: Plane
     place: Ints
 
@@ -158,7 +163,9 @@ def _curves(rows: RunPoints, tolerance: float) -> _Curves:
     turned = np.append(0.0, np.cumsum(steps))
     of = np.repeat(np.arange(len(rows.first)), rows.last - rows.first + 1)
     parts = _checks(np.abs(np.diff(rows.points)), steps, of, tolerance)
-    return _Curves(rows, turned, *_between(rows.points, rows.tangents, parts))
+    blocks = np.arange(0, len(turned), _BLOCK)
+    ranges = np.stack([end.reduceat(turned, blocks) for end in (np.minimum, np.maximum)])
+    return _Curves(rows, turned, ranges, *_between(rows.points, rows.tangents, parts))
 
 
 def _checks(length: Array, turn: Array, of: Ints, tolerance: float) -> Ints:
@@ -193,13 +200,37 @@ def _between(points: Plane, tangents: Plane, parts: Ints) -> tuple[Plane, Ints]:
 
 
 def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
-    """Return the last indices to which the tangent turns by no more than `MAX_TURN`."""
+    """Return the last indices to which the tangent turns by no more than `MAX_TURN`.
+
+    The first that is beyond is sought among the next few points, then among blocks of them, and
+    then in its block: the way to it may be as long as the run.
+    """
+    begin = curves.turned[start]
+
+    def point(index: Ints, of: Ints) -> Mask:
+        return np.abs(curves.turned[index] - begin[of]) > MAX_TURN
+
+    def block(index: Ints, of: Ints) -> Mask:
+        low, high = curves.ranges[:, index]
+        return np.maximum(high - begin[of], begin[of] - low) > MAX_TURN
+
+    beyond = last + 1
+    edge = np.minimum(_BLOCK * (start // _BLOCK + 1), beyond)
+    near = _first(point, start + 1, edge)
+    sought = (near == edge) & (edge < beyond)
+    number = _first(block, edge // _BLOCK, np.where(sought, last // _BLOCK + 1, 0))
+    inside = np.where(sought, np.minimum(_BLOCK * number, beyond), beyond)
+    far = _first(point, inside, np.minimum(inside + _BLOCK, beyond))
+    return np.maximum(np.where(sought, far, near) - 1, start + 1)
+
+
+def _first(is_it: Callable[[Ints, Ints], Mask], low: Ints, high: Ints) -> Ints:
+    """Return the first numbers in ranges of which it is true, the upper end where of none."""
 
     def short(index: Ints, of: Ints) -> Array:
-        over = np.abs(curves.turned[index] - curves.turned[start[of]]) > MAX_TURN
-        return np.where(over, last[of] + 1 - index, 0)
+        return np.where(is_it(index, of), high[of] - index, 0)
 
-    return np.maximum(last - largest(short, start + 1, last + 1).astype(np.int64), start + 1)
+    return high - largest(short, low, high).astype(np.int64)
 
 
 def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:
