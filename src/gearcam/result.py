@@ -74,6 +74,7 @@ class Result(Displayed):
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
         self.sizes: dict[str, int] = {}  # bytes of the files of a build so far
+        self.sought: dict[float, Any] = {}  # remedies, by the patience of the search
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.design, self.tolerances)  # computed again where it is read
