@@ -112,7 +112,7 @@ class Result(Displayed):
 
     @cached_property
     def meshes(self) -> dict[str, Mesh]:
-        """The same as plain arrays, which files are made from."""
+        """The parts as closed meshes of plain arrays by name, mm: what files are made from."""
         from gearcam.solids import solid
 
         return {part.name: solid(part) for part in self.parts}
