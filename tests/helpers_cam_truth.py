@@ -39,9 +39,18 @@ def extremes(pieces: list[Piece], order: int = 0) -> tuple[Number, Number]:
         slopes = [one.shape(t)[order + 1] for t in places]
         for a, b, low, high in zip(places, places[1:], slopes, slopes[1:], strict=False):
             if low * high < 0 and min(abs(low), abs(high)) > _NOTHING * max(map(abs, slopes)):
-                root = mp.findroot(partial(_slope, one, order + 1), (a, b), solver="illinois", verify=False)
+                root = _root(partial(_slope, one, order + 1), a, b)
                 found.append(one.shape(root)[order])
     return min(found), max(found)
+
+
+def _root(function: Any, low: Number, high: Number) -> Number:
+    """Where a function changes its sign, by halving."""
+    falls = function(low) > 0
+    for _ in range(70):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (function(middle) > 0) == falls else (low, middle)
+    return low
 
 
 def _slope(piece: Piece, order: int, theta: Number) -> Number:
@@ -241,6 +250,22 @@ def judged(found: Iterator[Row]) -> dict[str, tuple[float, float]]:
     """The largest true error of each family, and its size."""
     made: dict[str, tuple[float, float]] = {}
     for name, value, true, size in found:
-        off = float(abs(mp.mpf(value) - true))
-        made[name] = max(off, made.get(name, (0.0, 0.0))[0]), max(float(size), made.get(name, (0.0, 0.0))[1])
+        off, before = float(abs(mp.mpf(value) - true)), made.get(name, (0.0, 0.0))
+        made[name] = max(off, before[0]), max(float(size), before[1])
+    return made
+
+
+def faults(
+    told: Mapping[str, float], found: Mapping[str, tuple[float, float]], most: float = 100.0
+) -> list[str]:
+    """What is not honest: estimates below the true error, or above so many times it.
+
+    Where both are rounding, below 1e-13 of the size, only the first counts.
+    """
+    made = []
+    for name, (true, size) in found.items():
+        estimate = told[name]
+        idle = max(estimate, true) <= 1e-13 * size
+        if not (true <= estimate and (idle or estimate <= most * true)):
+            made.append(f"{name}: {estimate:.3g} told, {true:.3g} true, of {size:.3g}")
     return made

@@ -289,7 +289,8 @@ def lift(design: Mapping[str, Any]) -> list[Piece]:
     unit, scale = ("deg", mp.pi / 180) if swings else ("mm", mp.mpf(1))
     turn = 2 * mp.pi
     if not isinstance(motion, list):
-        return [Piece(mp.mpf(0), turn, differences(formula(motion["lift"], "theta")))]
+        shape = differences(formula(motion["lift"], "theta"))
+        return [Piece(turn * k / 16, turn * (k + 1) / 16, shape) for k in range(16)]
     sliding = design["cam"].get("form") == "translating"
     phases, key = list(motion), "way_mm" if sliding else "angle_deg"
     for name, place in (("run_in_mm", 0), ("run_out_mm", len(phases) + 1)):

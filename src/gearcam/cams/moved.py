@@ -98,7 +98,7 @@ class Moved(Brief):
         for _ in range(_TRIES):
             places = moved(theta, _ANGLES)
             found = lift.on_pieces(index, places, 3, moved)
-            found += off * signs(found.shape)
+            found += off * np.sign(signs(found.shape))
             made.append(_State(places, found, moved(np.ones(count), _SIZES)))
         return made
 
