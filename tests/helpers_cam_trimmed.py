@@ -40,7 +40,7 @@ def trimming(result: Any, own: Any, touch: Touch, pieces: list[Piece]) -> Iterat
         exact.crossing(touch, tuple(exact.piece_at(pieces, t) for t in pair), pair)  # type: ignore[arg-type]
         for pair in told
     ]
-    size = max(map(abs, exact.piece_at(pieces, 0).shape(0)[:1])) + own.program.range[1]
+    size = own.program.range[1] - own.program.range[0]
     for loss, (_, _, point) in zip(own.lost, true, strict=True):
         piece = exact.piece_at(pieces, loss.theta)
 
@@ -70,4 +70,5 @@ def play(result: Any, motion: Touch, walls: list[Touch], pieces: list[Piece]) ->
         return exact.lost_between(motion, pieces, t, insets)
 
     true = exact.best(between, lost.theta, (mp.mpf(-1), mp.mpf(8)))
-    yield f"lost_motion_{unit}", scale * lost.value, scale * true, scale * lost.value
+    size = cam.motions[0].total_lift.value
+    yield f"lost_motion_{unit}", scale * lost.value, scale * true, size

@@ -118,7 +118,7 @@ def _second(design: Mapping[str, Any], own: Touch, highest: Number) -> Touch:
             apart = mp.mpf(given["roller_distance_mm"]) + preload
         below = apart - own.start - highest
     return replace(
-        own, start=-highest - below, radius=mp.mpf(given["roller2_radius_mm"]), arm=arm
+        own, start=-highest - below, radius=mp.mpf(given.get("roller2_radius_mm", own.radius)), arm=arm
     )
 
 

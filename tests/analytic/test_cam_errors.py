@@ -56,14 +56,18 @@ def drawn(number: int) -> dict[str, Any]:
             made.pop("blank", None)
         if isinstance(made["motion"], list) or "lift" in made["motion"]:
             break
+    follower, wheel = made["follower"], made["cam"]
+    if number % 4 == 1 and follower["type"] == "roller" and wheel.get("form") is None:
+        size = wheel.get("prime_radius_mm") or wheel["base_radius_mm"]
+        follower["roller_radius_mm"] = 0.8 * size  # often undercut
     return {"kind": "cam", "name": "cam", **made}
 
 
-def found_faults(result: Any, truth: Mapping[str, Any], most: float = 100.0) -> list[str]:
-    """What is not honest about a result whose design is the truth."""
+def told_and_true(result: Any, truth: Mapping[str, Any]) -> tuple[dict[str, float], Any]:
+    """The estimates of a result, and its true errors with their sizes."""
     with mp.workdps(DIGITS):
         true = judged(rows(result, truth))
-    return faults({name: value for name, (value, _) in error_rows(result).items()}, true, most)
+    return {name: value for name, (value, _) in error_rows(result).items()}, true
 
 
 def random_faults(number: int) -> list[str] | None:
@@ -74,7 +78,7 @@ def random_faults(number: int) -> list[str] | None:
         _ = result.profiles
     except gearcam.GearcamError:
         return None
-    return [f"{number}: {fault}" for fault in found_faults(result, design)]
+    return [f"{number}: {fault}" for fault in faults(*told_and_true(result, design))]
 
 
 def smooth(follower: str, text: str) -> dict[str, Any]:
@@ -88,7 +92,7 @@ def with_motion(design: Mapping[str, Any], motion: Any) -> Any:
     return gearcam.build(replace(gearcam.loads(toml(design)), motion=motion))
 
 
-@pytest.mark.parametrize("number", [1, 10, 11, 41, 57])
+@pytest.mark.parametrize("number", [10, 11, 41, 73])
 def test_estimates_of_random_cams_are_honest(number: int) -> None:
     assert random_faults(number) == []
 
@@ -109,13 +113,13 @@ def test_estimates_of_a_hundred_random_cams_are_honest() -> None:
 )
 def test_estimates_of_the_gallery_are_honest(path: Path) -> None:
     design = tomllib.loads(path.read_text())
-    assert found_faults(gearcam.build(gearcam.load(path)), design) == []
+    assert faults(*told_and_true(gearcam.build(gearcam.load(path)), design)) == []
 
 
 @pytest.mark.parametrize(
     ("follower", "text"),
     [
-        pytest.param(name, text, marks=() if text == LIFTS[0] else pytest.mark.slow)
+        pytest.param(name, text, marks=() if (name, text) == ("flat", LIFTS[0]) else pytest.mark.slow)
         for name in FOLLOWERS
         for text in LIFTS
     ],
@@ -125,13 +129,13 @@ def test_estimates_of_python_functions_are_honest(follower: str, text: str) -> N
     lift = design["motion"]["lift"]
     names = {"cos": np.cos, "sin": np.sin, "exp": np.exp}
     motion = gearcam.MotionFormula(lift=lambda theta: eval(lift, names, {"theta": theta}))
-    assert found_faults(with_motion(design, motion), design) == []
+    assert faults(*told_and_true(with_motion(design, motion), design)) == []
 
 
 @pytest.mark.parametrize(
     ("follower", "text", "count"),
     [
-        pytest.param(name, text, count, marks=() if (name, count) == ("roller", 60) else pytest.mark.slow)
+        pytest.param(name, text, count, marks=() if (name, text, count) == ("flat", LIFTS[0], 36) else pytest.mark.slow)
         for name in FOLLOWERS
         for text in LIFTS
         for count in (36, 60, 180)
@@ -148,22 +152,16 @@ def test_estimates_of_rows_are_honest(follower: str, text: str, count: int) -> N
         lift = formula(design["motion"]["lift"], "theta")
         rows_of_lift = [float(lift(mp.mpf(place))) for place in theta.tolist()]
     motion = gearcam.MotionTable(theta=theta, lift=np.array(rows_of_lift))
-    result = with_motion(design, motion)
-    found = found_faults(result, design)
-    assert [fault for fault in found if not fault.startswith(SIZES)] == []
-    assert found_faults(result, design, most=np.inf) == []
+    both = told_and_true(with_motion(design, motion), design)
+    assert [fault for fault in faults(*both) if not fault.startswith(SIZES)] == []
+    assert faults(*both, most=np.inf) == []
 
 
-@pytest.mark.parametrize("family", ["lift_mm", "pressure_angle_deg", "profile_mm", "area_mm2"])
-def test_estimates_that_are_too_small_or_too_large_are_seen(family: str) -> None:
-    """Of rows, whose errors are no rounding: a hundredth of an estimate, a thousandfold one."""
-    design = smooth("roller", LIFTS[1])
-    theta = 2.0 * np.pi * np.arange(60) / 60
-    lift = 2.0 * np.sin(theta) + np.sin(3.0 * theta)
-    result = with_motion(design, gearcam.MotionTable(theta=theta, lift=lift))
-    with mp.workdps(DIGITS):
-        true = judged(rows(result, design))
-    told = {name: value for name, (value, _) in error_rows(result).items()}
-    for factor in (1e-4, 1e4):
-        wrong = {**told, family: factor * told[family]}
-        assert any(fault.startswith(family) for fault in faults(wrong, true))
+def test_estimates_that_are_too_small_or_too_large_are_seen() -> None:
+    design = drawn(41)
+    told, true = told_and_true(gearcam.build(gearcam.loads(toml(design))), design)
+    assert len(true) >= 7
+    for family in true:
+        for factor in (1e-4, 1e4):
+            wrong = {**told, family: factor * told[family]}
+            assert any(fault.startswith(family) for fault in faults(wrong, true))

@@ -7,6 +7,7 @@ equations that define them. Numbers of a design are taken as the doubles that th
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -14,6 +15,8 @@ from math import comb, factorial
 from typing import Any
 
 import mpmath
+
+from witness.series import Series, cos, exp, sin
 
 mp: Any = mpmath.mp
 Number = Any
@@ -47,22 +50,20 @@ def polynomial(coefficients: Sequence[Number], place: Number = 0) -> Shape:
     return shape
 
 
-def differences(function: Callable[[Number], Number]) -> Shape:
-    """A function with derivatives by differences in more digits."""
-    return lambda x: [function(x), *(mp.diff(function, x, k) for k in (1, 2, 3))]
-
-
-def formula(text: str, variable: str) -> Callable[[Number], Number]:
-    """A formula as a function."""
-    names = {name: getattr(mp, name) for name in ("sin", "cos", "tanh", "exp", "sqrt", "pi")}
+def formula(text: str, variable: str) -> Callable[[Any], Any]:
+    """A formula as a function of numbers, or of power series."""
+    names = {"sin": sin, "cos": cos, "exp": exp, "pi": mp.pi, "mpf": mp.mpf}
     numbers = _exact_numbers(text)
-    return lambda x: eval(numbers, {"__builtins__": {}}, {**names, "mpf": mp.mpf, variable: x})
+    return lambda x: eval(numbers, {"__builtins__": {}}, {**names, variable: x})
+
+
+def expanded(function: Callable[[Any], Any]) -> Shape:
+    """A function of power series with its derivatives."""
+    return lambda x: function(Series.variable(x)).derivatives
 
 
 def _exact_numbers(text: str) -> str:
     """Wrap decimal numbers, so that they are the doubles that they are read as."""
-    import re
-
     return re.sub(r"(?<![\w.])(\d+\.\d*(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)", r"mpf(\1)", text)
 
 
@@ -256,7 +257,7 @@ def rise(phase: Mapping[str, Any]) -> list[Piece]:
         case _:
             given = formula(phase["formula"], "x")
             low, high = given(mp.mpf(0)), given(mp.mpf(1))
-            whole = _scaled(differences(lambda x: given(x) - low), 1 / (high - low))
+            whole = _scaled(expanded(lambda x: given(x) - low), 1 / (high - low))
             return [Piece(mp.mpf(0), mp.mpf(1), whole)]
 
 
@@ -289,7 +290,7 @@ def lift(design: Mapping[str, Any]) -> list[Piece]:
     unit, scale = ("deg", mp.pi / 180) if swings else ("mm", mp.mpf(1))
     turn = 2 * mp.pi
     if not isinstance(motion, list):
-        shape = differences(formula(motion["lift"], "theta"))
+        shape = expanded(formula(motion["lift"], "theta"))
         return [Piece(turn * k / 16, turn * (k + 1) / 16, shape) for k in range(16)]
     sliding = design["cam"].get("form") == "translating"
     phases, key = list(motion), "way_mm" if sliding else "angle_deg"

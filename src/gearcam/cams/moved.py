@@ -28,7 +28,7 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet
 
-_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2))
+_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2.5))
 """By what part of themselves numbers are moved, as many roundings as they may be the work of: sizes
 of the follower; cam angles, which knots are sums of; coefficients of the lift."""
 
