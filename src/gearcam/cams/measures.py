@@ -35,7 +35,7 @@ _AGREED = 1e-14
 """Gauss points in each cell of a segment; the cells are halved until sums agree to this part."""
 
 _CANCELLED = 40.0
-"""What a rough curve's integral may miss less than others of its kind, since errors cancel in it."""
+"""What a rough curve's integral may miss less than others of its kind: errors cancel in it."""
 
 _ROUNDING = 16.0 * np.finfo(float).eps
 """Of sums, in parts of them."""

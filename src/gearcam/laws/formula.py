@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from gearcam.laws.displacement import EXACT
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.numeric.arrays import Array
-from gearcam.laws.displacement import EXACT
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
 
 Function = Callable[[Any], Any]

@@ -133,7 +133,7 @@ class Program(Brief, Displacement):
         return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
 
     def sides(self, cuts: Sequence[Array]) -> tuple[Array, Array]:
-        """Return the ends of all stretches between `cuts`, rad, and lift, s' and s'' within there."""
+        """Return the ends of stretches between `cuts`, rad, and lift, s' and s'' from within."""
         low, high = np.hstack([[own[:-1], own[1:]] for own in cuts])
         periods, middle = self.within(0.5 * (low + high))
         index = np.tile(np.searchsorted(self.knots[1:-1], middle), 2)

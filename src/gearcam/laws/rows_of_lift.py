@@ -171,7 +171,7 @@ def _rough(knots: Array, theta: Array, lift: Array) -> Piecewise:
 
 
 def _errors(theta: Array, lift: Array) -> tuple[tuple[float, ...], float]:
-    """Estimate the errors of the curve between rows, and of its derivatives, by curves through fewer.
+    """Estimate errors of the curve between rows, and of its derivatives, by curves through fewer.
 
     Curves through every second row miss the rows between by so much, those through every fourth by
     more. By what it falls between these, which the smoothness of the motion decides, it is taken to
