@@ -128,7 +128,7 @@ class Moved(Brief):
         -------
         float
         """
-        return float(np.nanmax(_changes(self._turn, curve, QUANTITIES[quantity]), initial=0.0))
+        return float(_changes(self._turn, curve, QUANTITIES[quantity]).max())
 
     def errors_at(self, theta: Array, curve: CamCurve, quantity: Quantity) -> Array:
         """Return the errors of a quantity at cam angles.
@@ -151,10 +151,11 @@ class Moved(Brief):
 
 
 def _changes(states: list[_State], curve: CamCurve, quantity: Quantity) -> Array:
-    """Return the largest change of a quantity at each place."""
+    """Return the largest change of a quantity at each place, 0 where it has no value."""
     with np.errstate(divide="ignore", invalid="ignore"):
         own, *others = (one.of(curve, quantity) for one in states)
-        return np.max([np.abs(one - own) for one in others], axis=0)
+        changes = np.max([np.abs(one - own) for one in others], axis=0)
+    return np.where(np.isfinite(changes), changes, 0.0)
 
 
 def _pressure(curve: CamCurve, theta: Array, found: Array) -> Array:

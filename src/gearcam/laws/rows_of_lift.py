@@ -55,7 +55,7 @@ _ORDER: Final = 6
 _SHARES: Final = np.array([0.0, 0.25, 0.5, 0.75])
 """Places of a step at which derivatives are compared."""
 
-_BESIDE: Final = np.array([3.0, 4.0, 4.0, 4.0])
+_BESIDE: Final = np.array([2.0, 4.0, 4.0, 4.0])
 """A miss is seen in the middle between rows; beside it, where a derivative jumps near a row, it may
 be twice as large. Derivatives are held against a curve that misses them too."""
 
