@@ -22,6 +22,7 @@ from gearcam.laws.phases_of_lift import (
     TURN_MISS,
     DwellPhase,
     Phase,
+    PlacedPhase,
     angles_of,
     levels,
 )
