@@ -190,7 +190,7 @@ def test_arms_that_swing_too_far_are_refused() -> None:
     d, arm, prime = 100.0, 90.0, 40.0
     room = 180.0 - math.degrees(math.acos((d * d + arm * arm - prime**2) / (2 * d * arm)))
     cam("swinging roller", lift=room - 1e-6)
-    with pytest.raises(InfeasibleError, match="passes that line"):
+    with pytest.raises(InfeasibleError, match="passes the line of centres"):
         cam("swinging roller", lift=room + 1e-6)
     room = 90.0 - math.degrees(math.asin(0.4))
     cam("swinging face", lift=room - 1e-6, degrees=(90.0, 30.0, 210.0, 30.0))

@@ -13,14 +13,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.cams.cam import Cam
-from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.mechanism import Mechanism, swing
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.errors import InfeasibleError
 from gearcam.facts import Facts
 from gearcam.laws.program import Program
+from gearcam.numerals import shown
 
-_STANDSTILL = 1e-9
-"""A face that swings down within this of the cam's own speed touches one point for a while."""
+_STANDSTILL = 1e-7
+"""A face that swings down within this of the cam's own speed is touched millions of times farther
+off than its pivot stands, or in one point for a while."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -101,30 +103,55 @@ def demand_standing(program: Program, mechanism: Mechanism) -> None:
     low, high = program.range
     if mechanism.oscillating:
         _demand_swing(program, mechanism, mechanism.start + low, mechanism.start + high)
-    least = replace(mechanism, start=mechanism.start + low).least
-    if not (least > mechanism.radius and (mechanism.oscillating or mechanism.start + low > 0.0)):
+    if not clears_axis(program, mechanism):
         scale, unit = mechanism.outward
         raise InfeasibleError(
             "the lowest lift brings the follower onto the cam's axis",
             where="motion",
             value=scale * low,
+            limit=scale * (_on_axis(mechanism) - mechanism.start),
             unit=unit,
-            nearest="this is the lowest lift",
+            nearest="the limit, excluded, is the lowest lift that there may be",
         )
+
+
+def clears_axis(program: Program, mechanism: Mechanism) -> bool:
+    """Return whether a follower keeps off the cam's axis at the lowest lift.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    mechanism : Mechanism
+        The follower.
+    """
+    low = mechanism.start + program.range[0]
+    clear = replace(mechanism, start=low).least > mechanism.radius
+    return clear and (mechanism.oscillating or low > 0.0)
+
+
+def _on_axis(mechanism: Mechanism) -> float:
+    """Return the position, mm or rad, at which a follower touches the cam's axis."""
+    m = mechanism
+    if not m.oscillating:
+        return math.sqrt(max((m.radius - m.offset) * (m.radius + m.offset), 0.0))
+    if m.flat:
+        return math.asin(max(m.face_offset / m.pivot, -1.0))
+    return swing(m.pivot, m.arm, max(m.radius, abs(m.pivot - m.arm)))
 
 
 def _demand_swing(program: Program, mechanism: Mechanism, low: float, high: float) -> None:
     """Refuse an arm that passes the line of centres, and a face that loses its contact."""
     least, most = (-0.5 * math.pi, 0.5 * math.pi) if mechanism.flat else (0.0, math.pi)
     if not (low > least and high < most):
-        what = "stands across the line of centres" if mechanism.flat else "passes that line"
+        what = "stands across" if mechanism.flat else "passes"
         raise InfeasibleError(
-            f"the arm swings too far: it {what}",
+            f"the arm swings too far: it {what} the line of centres",
             where="motion",
             value=math.degrees((low if low <= least else high) - mechanism.start),
             limit=math.degrees((least if low <= least else most) - mechanism.start),
             unit="deg",
-            nearest="these are lifts",
+            nearest="these are lifts; the limit is excluded",
         )
     if mechanism.flat and not (slowest := program.range_of(1)[0]) > -1.0 + _STANDSTILL:
         raise InfeasibleError(
@@ -132,5 +159,6 @@ def _demand_swing(program: Program, mechanism: Mechanism, low: float, high: floa
             where="motion",
             value=slowest,
             limit=-1.0,
-            nearest="these are rad of swing per rad of the cam",
+            nearest="these are rad of swing per rad of the cam: lifts of less than "
+            f"{shown(-100.0 * (1.0 - 2.0 * _STANDSTILL) / slowest, 10)} % of these suit",
         )

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.cams.cam import Cam
-from gearcam.cams.disc import demand_standing
+from gearcam.cams.disc import clears_axis, demand_standing
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
@@ -144,11 +144,13 @@ def make_groove(
         If it cannot, or the groove would open the blank.
     """
     common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
+    motion = PitchMotion(mechanism=mechanism, **common)
     radius, second = mechanism.radius, mechanism.radius if radius2 is None else radius2
 
     def wall(size: float, side: int, key: str) -> Wall:
         wide = replace(mechanism, radius=size + 0.5 * clearance)
-        return Wall(mechanism=wide, side=side, key=key, called=f"{key} wall", **common)
+        called = f"{key} wall"
+        return Wall(mechanism=wide, side=side, of=motion, key=key, called=called, **common)
 
     relief = None
     if second != radius:
@@ -156,9 +158,11 @@ def make_groove(
         relief = wall(far, side, "relief")
     inner, outer = wall(radius, 1, "inner"), wall(second, -1, "outer")
     deepest = relief if relief is not None and relief.side > 0 else inner
-    demand_standing(program, deepest.mechanism)
+    demand_standing(program, mechanism)
+    if not clears_axis(program, deepest.mechanism):
+        raise _on_axis(program, deepest.mechanism)
     made = GrooveCam(
-        motion=PitchMotion(mechanism=mechanism, **common),
+        motion=motion,
         inner=inner,
         outer=outer,
         radius2=second,
@@ -181,3 +185,17 @@ def make_groove(
             ),
         )
     return made
+
+
+def _on_axis(program: Program, deepest: Mechanism) -> InfeasibleError:
+    """Return the refusal of a groove that the axis lies in."""
+    nearest = replace(deepest, start=deepest.start + program.range[0]).least
+    return InfeasibleError(
+        "the groove is so wide that it reaches the cam's axis",
+        where="[cam]",
+        value=deepest.radius,
+        limit=nearest,
+        unit="mm",
+        nearest="these are from the middle of the groove to its inner wall, and to the axis where "
+        "that is nearest",
+    )

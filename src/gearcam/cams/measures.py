@@ -61,6 +61,11 @@ class Range(Brief):
         """The largest absolute value."""
         return max(abs(self.low.value), abs(self.high.value))
 
+    @property
+    def least_radius(self) -> float:
+        """Of a range of curvature: the smallest radius, infinite where all is straight."""
+        return 1.0 / self.largest if self.largest else math.inf
+
 
 def range_of(
     curve: CamCurve, pick: Callable[[Contact], Jet], stretches: list[tuple[float, float]]
@@ -128,18 +133,16 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     if _stays_positive(survey.places, *seen):
         return found
     places, values = extremes_among(speed, survey.places, *seen)
-    for k in np.flatnonzero(places[:-1] < places[1:]).tolist():  # not across a knot
-        pair, ends = places[k : k + 2], values[k : k + 2]
-        sign = ends < 0.0
-        if not sign.any():
-            continue
-        low, high = pair.tolist()
-        if not sign.all():
-            known = ends[:1], ends[1:]
-            root = bracketed_root(lambda t: speed(t)[0], pair[:1], pair[1:], _ROOT, known)
-            low, high = (low, float(root[0])) if sign[0] else (float(root[0]), high)
-        if low < high:
-            found.append((low, high))
+    before, after = values[:-1] < 0.0, values[1:] < 0.0
+    low, high = places[:-1].copy(), places[1:].copy()
+    whole = low < high  # not across a knot
+    turns = whole & (before != after)
+    ends, known = (low[turns], high[turns]), (values[:-1][turns], values[1:][turns])
+    roots = bracketed_root(lambda t: speed(t)[0], *ends, _ROOT, known)
+    low[turns & after] = roots[after[turns]]
+    high[turns & before] = roots[before[turns]]
+    kept = whole & (before | after) & (low < high)
+    found += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
     return _joined(sorted(found))
 
 

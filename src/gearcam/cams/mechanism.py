@@ -79,12 +79,12 @@ class Driver(Brief):
         return f"{self.symbol}_{self.unit}"
 
     def told(self, theta: float) -> str:
-        """Return an angle, rad, as people are told, with its unit."""
-        return f"{shown(self.scale * theta)} {self.unit}"
+        """Return an angle, rad, as people are told, with its unit: rounding shows as nothing."""
+        return f"{shown(self.scale * theta, scale=self.turn)} {self.unit}"
 
     def seen(self, theta: float) -> str:
-        """Return a place for a table of facts: rounding shows as nothing."""
-        return f"at {shown(self.scale * theta, scale=self.turn)} {self.unit}"
+        """Return a place for people."""
+        return f"at {self.told(theta)}"
 
 
 TURNING = Driver(
@@ -250,10 +250,13 @@ def swing(pivot: float, arm: float, size: float) -> float:
         From the axis to the pivot, from there to the arm's end, from this to the axis: sides of a
         triangle.
     """
-    # half the angle from the sides: exact where the triangle is nearly flat
+    # half the angle from the sides, with parentheses (after Kahan) that keep all digits where the
+    # triangle is nearly flat
+    small, large = sorted([pivot, arm])
+    apart = large - small
     half = math.atan2(
-        math.sqrt((size - pivot + arm) * (size + pivot - arm)),
-        math.sqrt((pivot + arm - size) * (pivot + arm + size)),
+        math.sqrt((size - apart) * (size + apart)),
+        math.sqrt((small - (size - large)) * (small + (size + large))),
     )
     return 2.0 * half
 
@@ -317,7 +320,7 @@ def _out_of_reach(
         value=size,
         limit=limit,
         unit="mm",
-        nearest=f"{parts} allow {shown(low)} to {shown(high)} mm, both excluded",
+        nearest=f"{parts} allow {shown(least)} to {shown(high)} mm, both excluded",
         ways=ways,
     )
 

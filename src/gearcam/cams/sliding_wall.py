@@ -3,19 +3,22 @@
 A *stretch* is a part of a contour: runs, and the vertices of its polygon. Beyond its ends a wall
 follows the roller until it is level, and so to the plate's end.
 
-Depends on wall and numeric.
+Refused: walls that are narrower than their chords are exact.
+
+Depends on wall, trim and numeric.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
+from gearcam.cams.trim import crossing_chords
 from gearcam.cams.wall import OVERSAMPLING, Wall
 from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Plane
@@ -28,8 +31,8 @@ _DENSE = 1 / 40
 _FEWEST = 8
 """Fewest chords of an arc."""
 
-_ALIKE = 1e-9
-"""Distance of corners, mm, below which they are one: rounding."""
+_ALIKE = 1e-11
+"""Distance of corners, in sizes of the plate, below which they are one: rounding."""
 
 Stretch = tuple[tuple[Run, ...], Array]
 """Runs of a part of a contour, and its vertices, (n, 2), but for the last, mm."""
@@ -82,7 +85,19 @@ class SlidingWall(Wall):
 
     @cached_property
     def contour(self) -> Contour:
-        """The metal behind the wall, counter-clockwise."""
+        """The metal behind the wall, counter-clockwise, proved to be a simple curve."""
+        ways = np.diff(self.line[:, 0])
+        seen_whole = bool(np.all(ways > 0.0) or np.all(ways < 0.0))
+        if not seen_whole and not self._metal.polygon.is_valid:
+            raise crossing_chords(
+                self.called,
+                self.sampler,
+                lambda finer: replace(self, tolerance=finer.tolerance)._metal,
+            )
+        return self._metal
+
+    @cached_property
+    def _metal(self) -> Contour:
         plate = self.plate
         edge = plate.low if self.side > 0 else plate.high
         left, last = self._level(-1, plate.left)
@@ -106,7 +121,7 @@ class SlidingWall(Wall):
         center, start = (complex(*line[which]) for line in (self.pitch_line, self.line))
         outwards = -1.0 if which else 1.0
         far = outwards * min(outwards * center.real, outwards * limit)
-        if not outwards * (far - start.real) > _ALIKE:
+        if not outwards * (far - start.real) > _ALIKE * (self.plate.right - self.plate.left):
             return [], self.line[which]
         aside = far - center.real
         deep = math.sqrt((self.mechanism.radius - aside) * (self.mechanism.radius + aside))
@@ -130,16 +145,16 @@ def straight(corners: Array) -> Stretch:
     Parameters
     ----------
     corners : (n, 2) array, mm
-        From one to the next; between those that are one there is no run.
+        From one to the next, all over the plate; between those that are one there is no run.
 
     Returns
     -------
     Stretch
     """
-    made = []
+    made, alike = [], _ALIKE * float(np.ptp(corners, axis=0).max())
     for one, two in pairwise(corners):
         length = float(np.hypot(*(two - one)))
-        if length > _ALIKE:
+        if length > alike:
             slope = (two - one) / length
             made.append(Run(points=np.array([one, two]), tangents=np.array([slope, slope])))
     return tuple(made), np.array([run.points[0] for run in made])

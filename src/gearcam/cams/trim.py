@@ -4,7 +4,7 @@ An undercut profile crosses itself: between two crossings it lies where the foll
 another angle. What is left is the region of positive winding number that holds the axis (see
 `gearcam.numeric.crossings`), and its corners are crossings of the curve with itself.
 
-Refused: crossings that cannot be told apart.
+Refused: crossings that cannot be told apart, and hundreds of undercut stretches.
 
 Depends on curve and numeric.
 """
@@ -12,7 +12,7 @@ Depends on curve and numeric.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,9 @@ from gearcam.cams.curve import ProfileSegments
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.contour import Contour
 from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
+from gearcam.numeric.sampling import Sampler
 
 _PROBES = 33
 """Places on each segment at which its chords are counted."""
@@ -41,11 +43,17 @@ _RUNS = 8.0
 _ROUNDS = 8
 """Times that chords are made four times finer where crossings are not told apart."""
 
+_MOST = 500
+"""Undercut stretches that are trimmed: of more, each crosses hundreds of others."""
+
 _OVERLAP = 1e-12
 """Angle, rad, by which an undercut stretch may reach into what is left: rounding."""
 
 _MISS = 1e-12
-"""Distance of two curves at their crossing, in sizes of the cam: rounding of points and angles."""
+"""Distance of two curves at their crossing, in sizes of the cam: rounding of points."""
+
+_ROUNDING = 4.0 * np.finfo(float).eps
+"""Part of an angle by which it is rounded where two curves cross: a steep curve moves far by it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,15 +113,23 @@ def trimmed(
     Raises
     ------
     InfeasibleError
-        If the crossings cannot be told apart.
+        If the crossings cannot be told apart, or are too many.
     """
+    if len(undercut) > _MOST:
+        raise InfeasibleError(
+            "the profile is undercut in so many places that what is left of it is not sought",
+            where="[cam]",
+            value=len(undercut),
+            limit=_MOST,
+            nearest="a lift with fewer waves, or less noise, has fewer of them",
+        )
     for number in range(_ROUNDS):
         chain = _chain(segments, undercut, tolerance * 0.25**number)
         rings = [
             ring for ring in remaining(segments, [chain])[0] if chain.open or _about_axis(ring)
         ]
         # chords that are too long may have missed a loop
-        if len(rings) == 1 and rings[0].gap <= _MISS * np.abs(chain.points).max():
+        if len(rings) == 1 and _meets(segments, rings[0], float(np.abs(chain.points).max())):
             made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
             if not _backwards(made[0], undercut):
                 return made
@@ -143,6 +159,18 @@ def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]
     )
 
 
+def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
+    """Return whether curves meet at the crossings of a ring, as near as rounding allows."""
+    places = [place for branch in ring.branches for place in branch]
+    index, parameter = (np.array(values) for values in zip(*places, strict=True))
+    rounding = _ROUNDING * np.abs(parameter)
+    ends = np.sort([segments.start[index], segments.end[index]], axis=0)
+    # a curve that stands at its beginning may be fast within the rounding of an angle
+    beside = (np.clip(parameter + shift, *ends) for shift in (-rounding, 0.0, rounding))
+    ways = [rounding * np.abs(segments.moving(index, place)[1]) for place in beside]
+    return ring.gap <= _MISS * size + float(np.max(ways))
+
+
 def _about_axis(ring: Ring) -> bool:
     """Return whether a ring holds the axis."""
     p = ring.polygon
@@ -154,6 +182,7 @@ def _chain(
 ) -> Chain:
     """Cut every segment into chords, finely around undercut stretches; counter-clockwise."""
     number, low, high = [], [], []
+    beside = _beside(undercut)
     for k in range(len(segments.start)):
         start, end = float(segments.start[k]), float(segments.end[k])
         probes = np.linspace(start, end, _PROBES)
@@ -168,8 +197,8 @@ def _chain(
         places = np.interp(np.linspace(0.0, float(total[-1]), count + 1), total, probes)
         places[-1] = end
         if not segments.jump[k]:
-            extra = [_beside(pair, start, end) for pair in undercut]
-            places = np.unique(np.concatenate([places, *extra]))
+            inside = slice(*np.searchsorted(beside, [np.nextafter(start, np.inf), end]).tolist())
+            places = np.unique(np.concatenate([places, beside[inside]]))
         number.append(np.full(len(places) - 1, k))
         low.append(places[:-1])
         high.append(places[1:])
@@ -182,14 +211,47 @@ def _chain(
     return Chain(curve=curve, low=lows, high=highs, points=points)
 
 
-def _beside(stretch: tuple[float, float], start: float, end: float) -> Array:
-    """Return places in and beside an undercut stretch that lie within a sweep."""
-    low, high = stretch
+def _beside(stretches: Sequence[tuple[float, float]]) -> Array:
+    """Return places in and beside undercut stretches, also a turn on and back, in rising order."""
+    low, high = np.reshape(stretches, (-1, 2)).T
     more = _BESIDE * (high - low)
     places = np.linspace(low - more, high + more, _AROUND)
     turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])  # of an open curve nothing lies there
-    shifted = (places + turns[:, None]).ravel()
-    return shifted[(shifted > start) & (shifted < end)]
+    return np.sort((places + turns[:, None, None]).ravel())
+
+
+def crossing_chords(
+    called: str, sampler: Sampler, contour: Callable[[Sampler], Contour]
+) -> InfeasibleError:
+    """Return the refusal of chords that cross: finer ones may not, where a profile is narrow.
+
+    Parameters
+    ----------
+    called : str
+        What people call the profile.
+    sampler : Sampler
+        With the tolerance of the chords.
+    contour : callable
+        ``contour(sampler) -> Contour``.
+    """
+    for number in range(1, _ROUNDS):
+        finer = replace(sampler, tolerance=sampler.tolerance * 0.25**number)
+        if contour(finer).polygon.is_valid:
+            key = "output.chord_tolerance_mm"
+            return InfeasibleError(
+                f"the {called} is so narrow somewhere that its chords cross",
+                where=key,
+                value=sampler.tolerance,
+                limit=finer.tolerance,
+                unit="mm",
+                nearest="with the limit they do not",
+                ways=(Way(near={key: finer.tolerance}),),
+            )
+    return InfeasibleError(
+        f"the {called} crosses itself, and what is left of it cannot be told",
+        where="[cam]",
+        nearest="no piece of it has a place in the order of the others",
+    )
 
 
 def cut_out(

@@ -14,19 +14,20 @@ Depends on curve, measures, loops, trim, lost and numeric.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments, begun, segments
 from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.trim import Corner, star_shaped, trimmed
+from gearcam.cams.trim import Corner, crossing_chords, star_shaped, trimmed
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
 from gearcam.facts import Fact
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
@@ -84,9 +85,21 @@ class PitchMotion(Brief):
         scale, unit = self.mechanism.outward
         return Fact(scale * (high - low), "lift", unit=unit)
 
+    @cached_property
+    def _ranges(self) -> dict[tuple[str, str], Range | None]:
+        """The ranges that were asked for, by what is told of and the kind of phase."""
+        return {}
+
+    def _range(self, what: str, pick: Callable[[Contact], Jet], kind: str) -> Range | None:
+        """Return the range of what to `pick` over a turn or all phases of a `kind`, found once."""
+        if (what, kind) not in self._ranges:
+            stretches = self.program.phases(kind) if kind else _TURN
+            self._ranges[what, kind] = range_of(self.curve, pick, stretches)
+        return self._ranges[what, kind]
+
     def pressure(self, kind: str) -> Range | None:
         """Return the signed pressure angles, rad, over all phases of a `kind` (rise, return)."""
-        return range_of(self.curve, lambda contact: contact.pressure, self.program.phases(kind))
+        return self._range("pressure angle", lambda contact: contact.pressure, kind)
 
     def pitch_curvature(self, kind: str = "") -> Range | None:
         """Return the pitch curve's curvature, 1/mm, over a turn or all phases of a `kind`.
@@ -96,11 +109,7 @@ class PitchMotion(Brief):
         """
         if self.mechanism.flat:
             return None
-        return range_of(
-            self.curve,
-            lambda contact: contact.turning / contact.pitch_speed,
-            self.program.phases(kind) if kind else _TURN,
-        )
+        return self._range("curvature", lambda contact: contact.turning / contact.pitch_speed, kind)
 
     @cached_property
     def contact_place(self) -> Range | None:
@@ -160,9 +169,12 @@ class Wall(PitchMotion):
     side : {1, -1}
         Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; then it is
         a follower that is pressed outwards that loses lift.
+    of : PitchMotion or None
+        The motion whose pitch curve it has, where it is not the only one that has it.
     """
 
     side: int = 1
+    of: PitchMotion | None = None
 
     @cached_property
     def curve(self) -> CamCurve:
@@ -170,20 +182,9 @@ class Wall(PitchMotion):
         radius = self.side * self.mechanism.radius
         return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
 
-    def motion(self, theta: Array) -> dict[str, Array]:
-        """Return motion and contact at cam angles (see `PitchMotion.motion`), with own radii.
-
-        Parameters
-        ----------
-        theta : (n,) array, rad
-            Cam angles; at a knot the values after it count.
-
-        Returns
-        -------
-        dict of str to (n,) array
-            Those, and ``rho_profile`` in mm (see `radii`).
-        """
-        return {**super().motion(theta), "rho_profile": self.radii(theta)}
+    def pitch_curvature(self, kind: str = "") -> Range | None:
+        """Return what is promised (see `PitchMotion`)."""
+        return (self.of or super()).pitch_curvature(kind)
 
     def radii(self, theta: Array) -> Array:
         """Return radii of curvature before trimming, mm.
@@ -320,11 +321,7 @@ class Wall(PitchMotion):
         points = as_complex(made.vertices)
         seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
         if not seen_whole and not made.polygon.is_valid:
-            raise InfeasibleError(
-                f"the {self.called} crosses itself, and what is left of it cannot be told",
-                where="[cam]",
-                nearest="no piece of it has a place in the order of the others",
-            )
+            raise crossing_chords(self.called, self.sampler, self._contour)
         return made
 
     @property

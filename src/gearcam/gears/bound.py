@@ -31,15 +31,18 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
         Smallest of any flank: from addendum curve to addendum curve, cusps taken off.
     """
     sf, sigma = (values[first.whole_flanks] for values in first.flanks)
-    (low, high), (low2, high2) = _reach(first, sf, sigma), _reach(second, sf, -sigma)
+    (low, high), (low2, high2) = _reach(first, second, sf, sigma), _reach(second, first, sf, -sigma)
     return float((np.minimum(high, -low2) - np.maximum(low, -high2)).min()) / first.pitch
 
 
-def _reach(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array]:
-    """Reach of flanks from their cusps, or without end, to the addendum curve, mm."""
-    far = _FAR * replace(toothing.cutter, kc=0.0).reach
-    cusps = find_cusps(toothing, sf, sigma, -far, far)
-    tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, far))
+def _reach(toothing: Toothing, mate: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array]:
+    """Reach of flanks from their cusps, or without end, to the addendum curve, mm.
+
+    Below the pitch curve they go as far as the own cutter, above it as far as that of the mate.
+    """
+    far = [_FAR * replace(one.cutter, kc=0.0).reach for one in (toothing, mate)]
+    cusps = find_cusps(toothing, sf, sigma, -far[0], far[1])
+    tips = find_tips(toothing, sf, sigma, np.minimum(cusps.addendum, far[1]))
     return cusps.dedendum, sigma * (sf - toothing.track.arc_length(tips.phi))
 
 

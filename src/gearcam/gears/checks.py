@@ -185,6 +185,11 @@ def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
             "Tips collide outside the mesh: where it enters or leaves the ring, a corner of "
             f"wheel 1 is {shown(-found.margin)} mm within a tooth, along the pitch curve."
         )
+    if found.margin < -0.5 * subject.pair.toothings[1].pitch:  # no tooth is as wide
+        message = (
+            "The wheel has no room in its ring: outside the mesh a corner of wheel 1 runs through "
+            "the ring's teeth into its metal."
+        )
     yield Remark(
         message,
         f"wheel 1, tooth {found.tooth}, {angle_text(found.phi1)}",

@@ -252,6 +252,10 @@ class _Paths(Brief):
 
         path = self._path(some, self._ends(some, reach))
         metal = shapely.contains_xy(self._body, path.real, path.imag) != self.mate.track.hollow
+        if not (self.mate.closed or self.toothing.closed):
+            # beyond its travel an open pair does not go, were it only into the mate's other end
+            s = self._about(self._other.s, some)
+            metal &= (s >= 0.0) & (s <= self.mate.length)
         if self.internal:
             metal &= (self._centrode.beyond(path) > 0.0) == self.mate.track.ring
         return np.any(metal, axis=1)

@@ -202,7 +202,8 @@ def demand_clearance(
     alpha = rack.pressure_angle
     for number, (wheel, shift) in enumerate(zip(finish, (spec.x, -spec.x), strict=True)):
         half = (0.25 * math.pi + shift * math.tan(alpha)) * module - 0.25 * spec.backlash
-        height = (rack.addendum + shift - _LEAST_ADDENDUM) * module
+        # `demand_shift` leaves the least addendum but for rounding
+        height = max(0.0, rack.addendum + shift - _LEAST_ADDENDUM) * module
         most = min(0.5 * half * math.cos(alpha), height)
         if wheel.clearance > most:
             raise InfeasibleError(

@@ -33,7 +33,8 @@ _WHOLE = 350.0
 """Travel of a wheel, deg, beyond which no tooth count helps."""
 
 _MORE = 1.001
-"""Times the least rim or diameter that is named as one that does: clear of rounding."""
+"""Times the least rim or diameter that is named as one that does: clear of rounding. Over it, the
+same of the largest travel."""
 
 _HUB = 0.6
 """Radius of the hub over the smallest radius that the body has room for."""
@@ -148,6 +149,7 @@ def body_runs(
         sweep = span = -span
     if span >= 2.0 * math.pi - _GAP:
         name = ("driver", "driven wheel")[toothing.wheel - 1]
+        key = ("law.driver_travel_deg", "law.driven_travel_deg")[toothing.wheel - 1]
         ways = toothing.track.rotation(np.array([0.0, toothing.track.around]))
         travel = math.degrees(ways[1] - ways[0])
         limit = travel * (2.0 * math.pi - _GAP) / span
@@ -158,6 +160,7 @@ def body_runs(
             limit=limit,
             unit="deg",
             nearest=f"this is how far the {name} turns; with its end teeth it fills the circle",
+            ways=(Way(near={key: limit / _MORE}, far={key: 0.8 * limit}),),
             more_teeth=travel / limit if travel < _WHOLE else 0.0,
         )
     hub = radius * inner / np.abs(inner)

@@ -18,6 +18,7 @@ from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, join, regular_rows, 
 from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
 from gearcam.gears.undercut import Undercut, find_cusps
+from gearcam.laws.ratio.span import angle_text
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs
@@ -360,15 +361,17 @@ def _demand_shaft(outline: Outline) -> None:
         return
     toothing = outline.toothing
     around = np.linspace(0.0, toothing.track.around, 1441)
-    radius = float(np.abs(toothing.frames(around).p).min())
+    radii = np.abs(toothing.frames(around).p)
+    radius = float(radii.min())
     module = toothing.pitch / np.pi
     largest = module * radius / toothing.cutter.dedendum
     raise InfeasibleError(
         f"the teeth of wheel {toothing.wheel} reach past its own shaft",
-        where=f"the centrode comes within {shown(radius)} mm of the axis",
+        where=angle_text(float(around[radii.argmin()])),
         value=module,
         limit=largest,
         unit="mm",
-        nearest="this is the module, and the one whose roots would reach the shaft at this size",
+        nearest="this is the module, and the one whose roots would reach the shaft at this size; "
+        f"there the centrode comes within {shown(radius)} mm of it",
         more_teeth=module / largest,
     )

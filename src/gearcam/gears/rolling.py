@@ -18,12 +18,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.display import Brief
+from gearcam.errors import InfeasibleError
 from gearcam.gears.guide import Guide, RingShaft, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import RACK, RING, WHEEL
+from gearcam.laws.ratio.span import RACK, RING, WHEEL, angle_text
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.chebyshev import expand
+from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.tolerances import Tolerances
 
@@ -113,8 +114,18 @@ class Rolling(Brief):
             found = [[first, both - first], [slope, change - slope]]
             return np.array(found) / self.center_distance
 
-        first, second = extremes_of_each(curvatures, self._tooth_knots)
+        first, second = extremes_of_each(curvatures, self.cells(self._tooth_knots), cells=True)
         return first, second
+
+    def cells(self, knots: Array) -> Array:
+        """Return `knots` and between them those of the arc length, which tell how fast it changes.
+
+        What a ratio does in a degree or less is not lost between places taken in each (see
+        `gearcam.numeric.piecewise.places_between`).
+        """
+        found = self.arc.unit.knots
+        inside = found[(found > knots[0]) & (found < knots[-1])]
+        return np.union1d(knots, inside)
 
     @property
     def _tooth_knots(self) -> Array:
@@ -245,6 +256,8 @@ def roll(
 
     Raises
     ------
+    InfeasibleError
+        Where the ratio changes too fast for an arc length.
     ValueError
         If not exactly one of the two sizes is given.
     """
@@ -253,7 +266,13 @@ def roll(
         _, r, dr = _radii(law.ratio.derivatives(phi, 1), law.mate)
         return np.sqrt(r * r + dr * dr)
 
-    unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()
+    try:
+        unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()
+    except NotSmoothError as error:
+        raise InfeasibleError(
+            "the ratio changes so fast that the centrodes have no length to be told",
+            where=angle_text(error.place),
+        ) from error
     lobes = law.lobes
     if not lobes.closed:
         unit = unit.shifted(-float(unit(0.0)))

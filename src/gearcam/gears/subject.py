@@ -77,7 +77,7 @@ class Subject(Brief):
             bend = (ddr * r - dr * dr) / (r * r + dr * dr)
             return np.arctan(dr / r), bend
 
-        return extremes(slope, self.pair.law.knots)
+        return extremes(slope, self.pair.rolling.cells(self.pair.law.knots), cells=True)
 
     @cached_property
     def pressure_angles(self) -> dict[str, tuple[float, float]]:
@@ -104,7 +104,7 @@ class Subject(Brief):
             _, di, ddi = law.ratio.derivatives(phi, 2)
             return scale * di, scale * ddi
 
-        return extremes(change, law.knots)
+        return extremes(change, self.pair.rolling.cells(law.knots), cells=True)
 
     @cached_property
     def sides(self) -> tuple[FlankPairs, FlankPairs]:

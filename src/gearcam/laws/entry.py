@@ -8,6 +8,9 @@ from typing import Any, Final
 TYPED: Final = 1e-9
 """Miss, in rad or in parts, that digits typed or printed may leave: it is taken out."""
 
+NO_JUMPS: Final = "what changes within some arc seconds counts as a jump"
+"""What is told with a function that is not smooth: it may be one that is only steep."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class LawEntry:

@@ -1,6 +1,7 @@
 """The lift of a follower over a turn of the cam as one formula, or a function written in Python.
 
-Refused: what is not finite or smooth, does not repeat after the turn, does not move.
+Refused: what is not finite or smooth, does not repeat after the turn, does not move or moves by
+kilometres.
 """
 
 from __future__ import annotations
@@ -14,13 +15,19 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED
-from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of
-from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.formula import (
+    Axis,
+    Given,
+    errors_of,
+    formula_problems,
+    function_of,
+    values_of,
+)
+from gearcam.laws.phases_of_lift import LONGEST, TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import stretches_of
 from gearcam.laws.smoothness import demand_smooth
 from gearcam.numerals import shown
-from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.quantities import TEXT, param
 from gearcam.tolerances import Tolerances
@@ -37,7 +44,9 @@ _AXIS: Final = Axis(
 _NAMES: Final = ("the lift", "its velocity", "its acceleration", "its jerk")
 
 _PLACES: Final = 1440
-"""Places at which it is asked whether the lift moves: a quarter of a degree."""
+_PER_CUT: Final = 2
+"""Places at which it is asked whether the lift moves: a quarter of a degree, and as many for each
+of the cuts, of which the shortest wave has some: else all might be its zeros."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,11 +97,23 @@ class MotionFormula:
             Where the formula is not finite or not smooth, does not repeat or does not move.
         """
         function, _ = function_of(self.lift, _AXIS, tolerances.expansion)
-        cuts = demand_smooth(function, self.lift, _AXIS, _NAMES, tolerances)
-        theta = np.linspace(0.0, TURN, _PLACES + 1)
-        values = function(Jet.variable(theta, 0)).derivatives()[0]
-        extent, size = float(np.ptp(values)), float(np.abs(values).max())
         scale, unit = (math.degrees(1.0), "deg") if oscillating else (1.0, "mm")
+        theta = np.linspace(0.0, TURN, _PLACES + 1)
+        first = values_of(function)(theta)
+        largest, far = (math.pi if oscillating else LONGEST), int(np.abs(first).argmax())
+        if np.isfinite(first).all() and abs(first[far]) > largest:
+            raise InfeasibleError(
+                "the lift is too large",
+                where=_AXIS.place(float(theta[far])),
+                value=scale * float(first[far]),
+                limit=scale * math.copysign(largest, first[far]),
+                unit=unit,
+            )
+        cuts = demand_smooth(function, self.lift, _AXIS, _NAMES, tolerances)
+        count = max(_PLACES, _PER_CUT * len(cuts))
+        theta = np.linspace(0.0, TURN, count + 1)
+        values = values_of(function)(theta)
+        extent, size = float(np.ptp(values)), float(np.abs(values).max())
         if extent <= TYPED * size:
             raise InfeasibleError("the follower never moves", where=_WHERE)
         miss = float(values[-1] - values[0])
@@ -106,7 +127,7 @@ class MotionFormula:
                 nearest="the limit is the lift at the beginning",
             )
         lift = piecewise([0.0, TURN], [Piece(lambda x: function(x) - (miss / TURN) * x)])
-        rows = theta[:-1], values[:-1], TYPED * extent, 0.5 * _PLACES
+        rows = theta[:-1], values[:-1], TYPED * extent, 0.5 * count
         return Program(
             lift=lift,
             stretches=stretches_of(lift, *rows),

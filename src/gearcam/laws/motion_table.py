@@ -15,9 +15,9 @@ from typing import Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.columns import ColumnsError, FromFile
+from gearcam.laws.columns import NARROWEST_STEP, ColumnsError, FromFile, close_angles, degrees
 from gearcam.laws.entry import TYPED
-from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.phases_of_lift import LONGEST, TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import program_of_rows
 from gearcam.numerals import shown
@@ -34,15 +34,9 @@ _MOST: Final = 3600
 """Rows: fewer make no curve of quintics, more are finer than a tenth of a degree, where rounding
 leaves smoothing too few digits (see `gearcam.numeric.least_jerk.smoothed_ring`)."""
 
-_NARROWEST: Final = 1e-6 * TURN
-"""Least step of the angle, rad: a second of arc; the place of a row in it is known to 1e-10."""
-
 _OPEN: Final = 1.5
 """Gap over the end of the turn, in widest steps, above which rows are missing: a last row that is
 left out leaves a step."""
-
-_LONGEST: Final = 1e6
-"""Largest lift, mm, as of phases."""
 
 _DEG: Final = math.radians(1.0)
 
@@ -72,8 +66,8 @@ class MotionTable(FromFile):
     lift: Row | None = param(
         LENGTH,
         default=None,
-        ge=-_LONGEST,
-        le=_LONGEST,
+        ge=-LONGEST,
+        le=LONGEST,
         min_length=_FEWEST,
         doc="lifts at theta (translating follower)",
         angular=Param(
@@ -145,7 +139,7 @@ class MotionTable(FromFile):
         def told(value: float) -> str:
             return f"{shown(value / scale, 10)} {unit}"
 
-        largest = math.pi if oscillating else _LONGEST
+        largest = math.pi if oscillating else LONGEST
         for row in np.flatnonzero(np.abs(lift) > largest).tolist():
             yield "lift", row, f"the lift is {told(lift[row])}", f"at most {told(largest)}"
         extent, tolerance = float(np.ptp(lift)), self.smoothing_tolerance or 0.0
@@ -196,25 +190,18 @@ def _columns(oscillating: bool) -> tuple[str, str]:
 
 def _repeats(theta: Array) -> bool:
     """Whether the last row is the first one, a turn on."""
-    return TURN - float(theta[-1] - theta[0]) < _NARROWEST
+    return TURN - float(theta[-1] - theta[0]) < NARROWEST_STEP
 
 
 def _angle_problems(theta: Array) -> Iterator[Problem]:
     if not _FEWEST <= len(theta) <= _MOST:
         yield "theta", None, f"has {len(theta)} rows", f"{_FEWEST} to {_MOST} rows"
     for row in np.flatnonzero((theta < 0.0) | (theta > TURN + TYPED)).tolist():
-        yield "theta", row, f"the angle is {_degrees(theta[row])}", "0 to 360 deg"
+        yield "theta", row, f"the angle is {degrees(theta[row])}", "0 to 360 deg"
+    for row, state, rule in close_angles(theta):
+        yield "theta", row, state, rule
     steps = np.diff(theta)
-    for row in np.flatnonzero(steps < _NARROWEST).tolist():
-        before, here = _degrees(theta[row]), _degrees(theta[row + 1])
-        state = f"{here} stands twice" if steps[row] == 0.0 else f"{here} follows {before}"
-        rule = f"each angle at least {_degrees(_NARROWEST)} above the one before"
-        yield "theta", row + 1, state, rule
     if TURN - float(theta[-1] - theta[0]) > _OPEN * steps.max() + TYPED:
-        state = f"the rows go from {_degrees(theta[0])} to {_degrees(theta[-1])}"
+        state = f"the rows go from {degrees(theta[0])} to {degrees(theta[-1])}"
         rule = "rows over the whole turn; the last one, at 360 deg, may be left out"
         yield "theta", None, state, rule
-
-
-def _degrees(angle: float) -> str:
-    return f"{shown(math.degrees(angle), 10)} deg"

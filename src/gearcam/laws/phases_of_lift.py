@@ -49,6 +49,9 @@ Problem = tuple[int | None, str, str, str]
 TURN: Final = 2.0 * math.pi
 """A turn of the cam, rad."""
 
+LONGEST: Final = 1e6
+"""Largest lift, mm."""
+
 _WAY: Final = Param(LENGTH, word="way", gt=0, le=1e6, doc="way of a sliding cam that it takes")
 
 _SPAN: Final[dict[str, Any]] = {
@@ -97,7 +100,7 @@ class RisePhase(Brief):
         LENGTH,
         default=None,
         gt=0,
-        le=1e6,
+        le=LONGEST,
         doc="how far (translating follower)",
         angular=Param(ANGLE, gt=0, lt=180, doc="how far (oscillating follower)"),
     )
@@ -138,8 +141,8 @@ class SegmentPhase(Brief):
     to: float | None = param(
         LENGTH,
         default=None,
-        ge=-1e6,
-        le=1e6,
+        ge=-LONGEST,
+        le=LONGEST,
         doc="lift at its end (translating)",
         angular=Param(ANGLE, gt=-180, lt=180, doc="lift at its end (oscillating)"),
     )

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError
+from gearcam.laws.entry import NO_JUMPS
 from gearcam.laws.formula import Axis, Given
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
@@ -83,4 +84,7 @@ def _cuts(
         return expand(values, [axis.low, odd, axis.high], tolerance).knots
     except NotSmoothError as error:
         state = "smooth" if error.finite else "finite"
-        raise InfeasibleError(f"{name} is not {state}", where=axis.place(error.place)) from error
+        nearest = NO_JUMPS if error.finite else ""
+        raise InfeasibleError(
+            f"{name} is not {state}", where=axis.place(error.place), nearest=nearest
+        ) from error

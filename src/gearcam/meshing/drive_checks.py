@@ -90,7 +90,9 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
     for message, sides in told.items():
         where = "; ".join(place for _, place in sides)
         severity: Severity = "warning" if message == _FEW else "error"
-        yield Remark(message, where, min(sides)[0], severity)
+        worst = min(sides)[0]
+        # flanks that carry long enough may still leave phases without any
+        yield Remark(message, where, worst, severity, limit=limit if worst < limit else math.inf)
 
 
 @check("nothing-drives", kind=KIND, severity="error", unit="deg")

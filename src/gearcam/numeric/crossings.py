@@ -175,14 +175,19 @@ def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
     if not chains:
         return []
     tangles = [_tangle(chain) for chain in chains]
+    rings = [_rings(tangle) for tangle in tangles]
     brackets = [tangle.brackets for tangle in tangles]
     index, low, high = (np.concatenate(column, axis=1) for column in zip(*brackets, strict=True))
-    parameter, gap = _refined(curves, index, low, high) if index.size else (low, low[0])
+    used = np.concatenate([_used(*pair) for pair in zip(tangles, rings, strict=True)])
+    parameter, gap = low, np.zeros(len(used))
+    if used.any():
+        narrow = _refined(curves, index[:, used], low[:, used], high[:, used])
+        parameter[:, used], gap[used] = narrow
     cuts = np.cumsum([tangle.share.shape[1] for tangle in tangles])[:-1]
     return [
-        [_ring(tangle, stays, places, gaps) for stays in _rings(tangle)]
-        for tangle, places, gaps in zip(
-            tangles, np.split(parameter, cuts, axis=1), np.split(gap, cuts), strict=True
+        [_ring(tangle, stays, places, gaps) for stays in left]
+        for tangle, left, places, gaps in zip(
+            tangles, rings, np.split(parameter, cuts, axis=1), np.split(gap, cuts), strict=True
         )
     ]
 
@@ -279,6 +284,14 @@ def _rings(tangle: _Tangle) -> list[_Stays]:
         return [[_WHOLE]]
     *others, (begin, end) = rings[0]
     return [[(-1, end), *others, (begin, -1)]]
+
+
+def _used(tangle: _Tangle, rings: list[_Stays]) -> Mask:
+    """Return which crossings of a chain are ends of what is left."""
+    events = np.array([end for stays in rings for pair in stays for end in pair], dtype=np.int64)
+    used = np.zeros(len(tangle.turn), dtype=bool)
+    used[events[events >= 0] % max(len(used), 1)] = True
+    return used
 
 
 def _events(tangle: _Tangle) -> tuple[Array, Ints]:

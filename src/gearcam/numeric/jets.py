@@ -20,6 +20,9 @@ from gearcam.numeric.arrays import Array
 Value = Array | float
 """A number, or one at each sample point."""
 
+_WHOLE: Final = 128
+"""Largest whole power that is taken by multiplying, which zero has too."""
+
 _BLOCK: Final = 2048
 """Points of which harmonics are summed at once."""
 
@@ -118,7 +121,7 @@ class Jet:
                 if values.size == 1:
                     return self ** float(values[0])
             return exp(log(self) * exponent)
-        if float(exponent).is_integer() and abs(exponent) <= 64:
+        if float(exponent).is_integer() and abs(exponent) <= _WHOLE:
             return self._integer_power(int(exponent))
         power: list[Value] = [self.c[0] ** exponent]
         for k in range(1, len(self.c)):

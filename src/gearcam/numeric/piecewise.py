@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints
-from gearcam.numeric.chebyshev import Expansion, expand
+from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.roots import bracketed_root
 
@@ -27,11 +27,19 @@ _SAME = 1e-9
 _INSET = 1e-12
 """Share of an interval that its outermost places keep from the knots: still of its own piece."""
 
-_PLACES = 192
-"""Places in all intervals together, at least a quarter of them in each."""
+_PLACES, _LEAST = 192, 48
+"""Places in all intervals together, and at least in each."""
+
+_PLACES_OF_CELLS, _LEAST_OF_CELL = 9 * FIRST_CUTS, 9
+"""The same where intervals are as narrow as what happens in them: as many as expansions begin
+with."""
 
 _FLAT = 1e-8
 """Share of an interval to which extremes are placed: there a value is flat, good to rounding."""
+
+_BLOCK = 1 << 15
+"""Places at which pieces are evaluated at once: of more, the arrays between, several for each
+parameter, leave the processor's cache, and the allocator gives them back."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +131,16 @@ class Piecewise(Brief):
         -------
         (order + 1, n) array
         """
+        result = np.empty((order + 1, x.size))
+        for begin in range(0, x.size, _BLOCK):
+            part = slice(begin, begin + _BLOCK)
+            result[:, part] = self._some(index[part], x[part], order, moved)
+        return result
+
+    def _some(
+        self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None
+    ) -> Array:
+        """Return what `on_pieces` does, at once."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
         family = numbers.take(index)
@@ -150,8 +168,8 @@ class Piecewise(Brief):
         return self.extremes_over(self.knots)
 
     def extremes_over(self, knots: Array) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return smallest and largest value between some of the knots, each as (place, value)."""
-        places, values = extremes(lambda x: self.derivatives(x, 1), knots)
+        """Return smallest and largest value over cells (see `extremes`), each as (place, value)."""
+        places, values = extremes(lambda x: self.derivatives(x, 1), knots, cells=True)
         low, high = int(np.argmin(values)), int(np.argmax(values))
         return (float(places[low]), float(values[low])), (float(places[high]), float(values[high]))
 
@@ -219,13 +237,16 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
     return replace(parts, offsets=totals[:-1] - starts)
 
 
-def places_between(knots: ArrayLike) -> Array:
+def places_between(knots: ArrayLike, *, cells: bool = False) -> Array:
     """Return places in every interval between knots, both ends just inside.
 
     Parameters
     ----------
     knots : (n + 1,) array
         Rising.
+    cells : bool
+        Whether knots that an expansion has found are among them: then the intervals are as narrow
+        as what happens in them, and all together have as many places as expansions begin with.
 
     Returns
     -------
@@ -234,7 +255,8 @@ def places_between(knots: ArrayLike) -> Array:
     """
     grid = np.asarray(knots, dtype=float)
     width = np.diff(grid)
-    steps = np.linspace(_INSET, 1.0 - _INSET, max(_PLACES // len(width), _PLACES // 4))
+    most, least = (_PLACES_OF_CELLS, _LEAST_OF_CELL) if cells else (_PLACES, _LEAST)
+    steps = np.linspace(_INSET, 1.0 - _INSET, max(most // len(width), least))
     x = grid[:-1, None] + width[:, None] * steps
     # of a narrow interval so small a share may round to the knot, which is another piece's
     x[:, 0] = np.maximum(x[:, 0], np.nextafter(grid[:-1], np.inf))
@@ -242,7 +264,9 @@ def places_between(knots: ArrayLike) -> Array:
     return x
 
 
-def extremes(function: Callable[[Array], Sequence[Array]], knots: ArrayLike) -> tuple[Array, Array]:
+def extremes(
+    function: Callable[[Array], Sequence[Array]], knots: ArrayLike, *, cells: bool = False
+) -> tuple[Array, Array]:
     """Find all extremes of a function: roots of its slope, and both sides of its knots.
 
     Parameters
@@ -251,17 +275,19 @@ def extremes(function: Callable[[Array], Sequence[Array]], knots: ArrayLike) -> 
         ``function(x) -> (values, slopes)``.
     knots : (n + 1,) array
         Between them the function is smooth.
+    cells : bool
+        See `places_between`.
 
     Returns
     -------
     places, values : (k,) arrays
         Candidates for the largest and smallest value, in rising order of place.
     """
-    return extremes_of_each(lambda x: np.array(function(x))[:, None], knots)[0]
+    return extremes_of_each(lambda x: np.array(function(x))[:, None], knots, cells=cells)[0]
 
 
 def extremes_of_each(
-    functions: Callable[[Array], Array], knots: ArrayLike
+    functions: Callable[[Array], Array], knots: ArrayLike, *, cells: bool = False
 ) -> list[tuple[Array, Array]]:
     """Find the extremes of several functions at once (see `extremes`).
 
@@ -271,12 +297,14 @@ def extremes_of_each(
         ``functions(x) -> (values, slopes)``, an array (2, m, k) for m functions.
     knots : (n + 1,) array
         Between them the functions are smooth.
+    cells : bool
+        See `places_between`.
 
     Returns
     -------
     list of m (places, values)
     """
-    x = places_between(knots)
+    x = places_between(knots, cells=cells)
     values, slopes = (found.reshape(-1, *x.shape) for found in functions(x.ravel()))
     return _extremes_among(functions, x, values, slopes)
 

@@ -15,6 +15,10 @@ from gearcam.numeric.hermite import hermite_quintics
 
 _STENCIL = 5
 
+_BEND = 8.0
+"""Largest curvature beside an extreme, in slopes there over the interval: four times that of a
+parabola, far below what a neighbour much nearer would make of its own slopes."""
+
 
 def quintics(x: Array, y: Array, rise: float | None) -> Array:
     """Return the quintics through points.
@@ -92,8 +96,9 @@ def _limited_bends(slope: Array, bend: Array, secant: Array, h: Array, repeats: 
     low1, high1 = np.where(sign > 0, low1, -high1), np.where(sign > 0, high1, -low1)
     # an interval whose ends slope against it has an extreme anyway
     free = (d0 < 0.0) | (d1 < 0.0)
-    low0, low1 = (np.where(free, -np.inf, v) for v in (low0, low1))
-    high0, high1 = (np.where(free, np.inf, v) for v in (high0, high1))
+    most = _BEND * (np.abs(d0) + np.abs(d1) + np.abs(secant)) / h
+    low0, low1 = (np.where(free, -most, v) for v in (low0, low1))
+    high0, high1 = (np.where(free, most, v) for v in (high0, high1))
     none = (low1[-1], high1[-1], low0[0], high0[0]) if repeats else (-np.inf, np.inf) * 2
     low = np.maximum(np.append(low0, none[2]), np.append(none[0], low1))
     high = np.minimum(np.append(high0, none[3]), np.append(none[1], high1))

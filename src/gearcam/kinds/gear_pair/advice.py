@@ -75,7 +75,8 @@ def _more_teeth(search: Search, factor: float) -> float | None:
         return {"pair.teeth": [count // common * k for count in given]}
 
     low, most = common, _MOST * common // max(given)
-    high = max(low + 1, math.ceil(low * factor * (1.0 - 1e-9)))
+    # what an error tells is enough, and may be more than is tried
+    high = max(low + 1, min(math.ceil(low * factor * (1.0 - 1e-9)), most))
     while high <= most and not search.over() and not search.cures(teeth(high)):
         low, high = high, min(2 * high, most) if high < most else most + 1
     if high > most or search.over():

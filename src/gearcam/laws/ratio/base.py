@@ -155,8 +155,9 @@ class RatioLaw(Brief, Displacement):
     @cached_property
     def ratio_range(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Smallest and largest ratio, each as (driver angle in rad, value)."""
-        closed = self.lobes.closed
-        return self.ratio.extremes if closed else self.ratio.extremes_over(self.knots)
+        knots, cells = self.knots, self.driven.knots
+        inside = cells[(cells > knots[0]) & (cells < knots[-1])]
+        return self.ratio.extremes_over(np.concatenate([knots[:1], inside, knots[-1:]]))
 
     @cached_property
     def error(self) -> float:
@@ -230,9 +231,9 @@ def make_law(
     with demand_smooth("the ratio"):
         driven = integrate(knots, pieces, tolerances.expansion)
         ratio = piecewise(knots, pieces)
-        _demand_positive(ratio)
+        _demand_positive(ratio, driven.knots)
         if lobes.mate == RING:
-            _, (place, largest) = ratio.extremes
+            _, (place, largest) = ratio.extremes_over(driven.knots)
             demand_below_one(largest, angle_text(place), lobes.advance / lobes.period)
         if not lobes.closed:
             longer, more = continued(ratio, pieces, lobes.mate)
@@ -255,8 +256,8 @@ def make_law(
     return law
 
 
-def _demand_positive(ratio: Piecewise) -> None:
-    (place, smallest), _ = ratio.extremes
+def _demand_positive(ratio: Piecewise, cells: Array) -> None:
+    (place, smallest), _ = ratio.extremes_over(cells)
     if not smallest > 0.0:
         raise InfeasibleError(
             "the ratio must stay positive: the driven wheel would stand still or turn back",

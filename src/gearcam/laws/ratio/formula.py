@@ -20,7 +20,7 @@ from gearcam.laws.formula import (
     values_of,
 )
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
+from gearcam.laws.ratio.driver import demand_positive, demand_radii, law_of_centrode
 from gearcam.laws.ratio.span import (
     PLACES,
     RING,
@@ -172,7 +172,7 @@ def from_phi2(
     if (slopes <= 0).any():
         place = int(np.argmax(slopes <= 0))
         raise InfeasibleError(
-            "phi2 is not monotonic: the driven wheel would turn back",
+            "phi2 is not monotonic: the driven wheel would stand still or turn back",
             where=angle_text(x[place]),
             value=float(slopes[place]),
             limit=0.0,
@@ -228,9 +228,7 @@ class RackLaw(Brief):
         else:
             piece = Piece(derivative(function), function)
         places = np.linspace(0.0, turn, PLACES)
-        values = values_of(piece.function)(places)
-        for bad in np.flatnonzero(~np.isfinite(values))[:1]:
-            raise InfeasibleError("r1 is not finite", where=angle_text(float(places[bad])))
+        demand_radii("r1", places, values_of(piece.function)(places))
         with demand_smooth("r1"):
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)

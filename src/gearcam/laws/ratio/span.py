@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
+from gearcam.laws.entry import NO_JUMPS
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
@@ -274,7 +275,9 @@ def demand_smooth(name: str) -> Iterator[None]:
         yield
     except NotSmoothError as error:
         state = "is not smooth" if error.finite else "is not finite"
-        raise InfeasibleError(f"{name} {state}", where=angle_text(error.place)) from error
+        nearest = NO_JUMPS if error.finite else ""
+        where = angle_text(error.place)
+        raise InfeasibleError(f"{name} {state}", where=where, nearest=nearest) from error
 
 
 def open_travel(wheel: str) -> Any:

@@ -6,16 +6,17 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from typing import Final
 
 import numpy as np
 
 from gearcam.errors import InfeasibleError
-from gearcam.laws.columns import ColumnsError, CsvRows, FromFile
+from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.driver import law_of_centrode
-from gearcam.laws.ratio.span import Lobes, Span, Travel, angle_text, demand_equal, open_travel
+from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
+from gearcam.laws.ratio.span import Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
@@ -28,8 +29,7 @@ _VALUES: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
 """What the values may be, with their columns in a file."""
 
 _FEWEST: Final = 6
-_MOST: Final = 20000
-"""Rows of a table: fewer make no curve of quintics, more are a file of something else."""
+"""Rows of a table: fewer make no curve of quintics."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,8 +81,8 @@ class TableLaw(FromFile):
             message = f"{count} values for {len(self.phi1)} angles"
             yield inline[0], None, message, "one value for each angle"
         else:
-            for index in np.flatnonzero(np.diff(self.phi1) <= 0.0)[:1]:
-                yield "phi1", int(index) + 1, "angles must rise", "more than the angle before"
+            for row, state, rule in islice(close_angles(np.array(self.phi1)), 1):
+                yield "phi1", row, state, rule
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -126,13 +126,13 @@ class TableLaw(FromFile):
 def _points(rows: CsvRows) -> tuple[str, Array, Array]:
     kinds = [kind for kind, column in _VALUES.items() if column in rows.cells[0]]
     points, lines = rows.columns([_ANGLE, _VALUES[kinds[0]]] if len(kinds) == 1 else [])
-    if not _FEWEST <= len(points) <= _MOST:
-        raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {_MOST} are read")
-    falling = np.flatnonzero(np.diff(points[:, 0]) <= 0.0)
-    if falling.size:
-        raise ColumnsError(f"line {lines[int(falling[0]) + 1]}: {_ANGLE} does not rise")
+    if len(points) < _FEWEST:
+        raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {MOST_ROWS} are read")
+    angles = np.radians(points[:, 0])
+    for row, state, rule in islice(close_angles(angles), 1):
+        raise ColumnsError(f"line {lines[row]}: {state}; {rule}")
     factor = math.pi / 180.0 if kinds[0] == "phi2" else 1.0
-    return kinds[0], np.radians(points[:, 0]), points[:, 1] * factor
+    return kinds[0], angles, points[:, 1] * factor
 
 
 def _pieces(
@@ -179,14 +179,7 @@ def _demand_ratio(kind: str, angles: Array, values: Array, span: Span) -> None:
             value=float(values[-1]),
             limit=float(values[0]),
         )
-    if not (values > 0.0).all():
-        worst = int(np.argmin(values))
-        raise InfeasibleError(
-            f"{kind} is not positive",
-            where=f"law.file, {angle_text(angles[worst])}",
-            value=float(values[worst]),
-            limit=0.0,
-        )
+    demand_radii(kind, angles, values, "law.file, ")
 
 
 LAWS.register(
