@@ -18,10 +18,11 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.draws.draw import Draw
+from gearcam.draws.toml import toml
 from gearcam.kinds.cam.accuracy import error_rows
+from gearcam.kinds.cam.draw import design as cam
 from helpers_cam_truth import faults, judged, rows
-from random_cams import cam
-from random_draw import Draw, toml
 from witness.lifts import formula
 
 mp: Any = mpmath.mp
@@ -53,10 +54,7 @@ SIZES = ("perimeter_mm", "area_mm2")
 def drawn(number: int) -> dict[str, Any]:
     """A design at random, of the families that take turns; rows are looked at by themselves."""
 
-    def blank(*_: Any, **__: Any) -> dict[str, Any]:
-        return {}
-
-    draws = (cam(Draw(f"errors {number} {again}"), number, blank) for again in range(9))
+    draws = (cam(Draw(f"errors {number} {again}"), number) for again in range(9))
     made = next(one for one in draws if isinstance(one["motion"], list) or "lift" in one["motion"])
     if made["cam"].get("form") != "translating":
         made.pop("blank", None)
