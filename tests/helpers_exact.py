@@ -30,6 +30,7 @@ from witness import exact
 from witness.exact import Exact, Function, Piece, Slope, mp, of_radius
 
 TURN = 2.0 * math.pi
+RING_TYPE = {1: "external", 0: "external", -1: "internal"}
 Number = Any
 
 

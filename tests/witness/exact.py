@@ -209,13 +209,8 @@ class Exact:
 
         return Integral([(low, high, both(function)) for low, high, function in self.pieces])
 
-    def flank_point(
-        self, wheel: int, phi: Number, size: Number, sf: Number, sigma: int, alpha: Number
-    ) -> Number:
-        """Point of the flank that crosses the pitch curve at the arc length `sf`, mm, at roll phi.
-
-        Parameters are those of design 3.3: the foot of the perpendicular from the pitch point.
-        """
+    def frame(self, wheel: int, phi: Number) -> tuple[Number, Number, Number, Number]:
+        """Point, unit tangent, outward unit normal and arc length for unit centre distance."""
         turns = mp.floor(phi / self.period)
         x = phi - turns * self.period
         r = self.radius(self.ratio(x))
@@ -232,8 +227,23 @@ class Exact:
             pole = mp.expj(-self.mate * phi2)
             point, turn = (r.v - self.mate) * pole, mp.mpc(0, 1)
         tangent = moved / speed * pole
-        normal = tangent * (mp.cos(alpha) + sigma * mp.sin(alpha) * turn)
+        return point, tangent, turn * tangent, arc
+
+    def flank_point(
+        self, wheel: int, phi: Number, size: Number, sf: Number, sigma: int, alpha: Number
+    ) -> Number:
+        """Point of the flank that crosses the pitch curve at the arc length `sf`, mm, at roll phi.
+
+        The foot of the perpendicular from the pitch point on the rack's flank.
+        """
+        point, tangent, outward, arc = self.frame(wheel, phi)
+        normal = mp.cos(alpha) * tangent + sigma * mp.sin(alpha) * outward
         return size * point + (sf - size * arc) * mp.cos(alpha) * normal
+
+    def tip_point(self, wheel: int, phi: Number, size: Number, height: Number) -> Number:
+        """Point of the parallel of the pitch curve at a height, mm."""
+        point, _, outward, _ = self.frame(wheel, phi)
+        return size * point + height * outward
 
 
 def of_radius(shapes: Sequence[Piece], advance: Number, mate: int, near: float) -> tuple[Exact, Any]:

@@ -103,6 +103,25 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> tuple[Callable[[J
     return made, made.error
 
 
+def error_of(function: Callable[[Jet], Jet], order: int) -> float:
+    """Return the estimated error of a derivative of a formula: zero for a text, which is exact.
+
+    Parameters
+    ----------
+    function : callable
+        As `function_of` returns it.
+    order : int
+        Of the derivative.
+
+    Returns
+    -------
+    float
+    """
+    from gearcam.laws.functions import Expanded
+
+    return function.error_of(order) if isinstance(function, Expanded) else 0.0
+
+
 def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:
     """Return a function of jets as one of places."""
     return lambda x: function(Jet.variable(x, 0)).derivatives()[0]

@@ -84,6 +84,11 @@ class Waves:
     cosines: Array
     sines: Array
 
+    @property
+    def loss(self) -> float:
+        """By what an error grows in one derivative: the last harmonic's."""
+        return self.rate * max(len(self.cosines), 1)
+
     def derivatives(self, x: Array, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at places `x`."""
         distance = Jet.variable(x, order) - self.low
@@ -96,6 +101,11 @@ class Pieces:
     """Chebyshev pieces: an `expansion` and its derivatives."""
 
     expansion: Expansion
+
+    @property
+    def loss(self) -> float:
+        """By what an error grows in one derivative at most: at the ends of a piece (Markov)."""
+        return 2.0 * _DEGREE**2 / float(np.diff(self.expansion.knots).min())
 
     @cached_property
     def _chain(self) -> list[Expansion]:
@@ -120,13 +130,23 @@ class Expanded:
     ----------
     curves : tuple of Waves or Pieces
         The function and the derivatives that were given with it.
-    error : float
-        Estimated error of its values: the largest difference between expansion and function, at
+    errors : tuple of float
+        Estimated errors of their values: the largest difference between expansion and function, at
         places between its nodes, and rounding.
     """
 
     curves: tuple[Waves | Pieces, ...]
-    error: float
+    errors: tuple[float, ...]
+
+    @property
+    def error(self) -> float:
+        """Estimated error of its values."""
+        return self.errors[0]
+
+    def error_of(self, order: int) -> float:
+        """Return the estimated error of a derivative, by the last that was given up to it."""
+        last = min(order, len(self.curves) - 1)
+        return self.errors[last] * self.curves[last].loss ** (order - last)
 
     def __call__(self, x: Jet) -> Jet:
         """Return the function of a jet."""
@@ -161,7 +181,7 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
     functions = given if isinstance(given, tuple) else (given,)
     places = np.linspace(axis.low, axis.high, _PLACES)
     curves: list[Waves | Pieces] = []
-    first = 0.0
+    errors: list[float] = []
     for number, function in enumerate(functions):
         ask = _Asked(function, axis, number)
         values = ask(places)
@@ -175,11 +195,10 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
                 raise ask.refusal(what, axis.low, nearest="a formula as text has no such limit")
         if curves:
             _demand_agreement(curves[-1], ask, places, values)
-        else:
-            miss = np.abs(curve.derivatives(places, 0)[0] - values)
-            first = float(miss.max()) + _ROUNDING * scale
+        miss = np.abs(curve.derivatives(places, 0)[0] - values)
+        errors.append(float(miss.max()) + _ROUNDING * scale)
         curves.append(curve)
-    return Expanded(tuple(curves), first)
+    return Expanded(tuple(curves), tuple(errors))
 
 
 class _Asked:

@@ -12,6 +12,7 @@ import numpy as np
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
+from gearcam.gears.estimates import estimates
 from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
@@ -264,23 +265,6 @@ def _part(result: GearPairResult, gear: Gear) -> Tree:
 
 def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
     """Error estimates, and how each was made."""
-    rolling, law = result.pair.rolling, result.law
-    reach = max(float(np.hypot(*gear.outline.T).max()) for gear in result.gears)
-    rounding = 8.0 * np.finfo(float).eps * reach
-    how = "rad of the driven angle: against Gauss-Legendre quadrature"
-    if law.function_error:
-        how += ", and the Python function against its expansion"
-    rows = {
-        "law": (law.error, how),
-        "closure_rad": (abs(law.closure_error), "miss of the driven angle over a lobe"),
-        "arc_length_mm": (
-            rolling.arc_error,
-            "last Chebyshev coefficients over all intervals, and rounding",
-        ),
-        "flank_mm": (
-            rolling.arc_error + reach * law.error + rounding,
-            "arc length, and the law's error and rounding at the largest radius",
-        ),
-    }
+    rows = estimates(result.subject)
     chord = max(gear.profile.chord_error for gear in result.gears)
     return accuracy(rows, chord, result.design.output.kerf, measured)

@@ -32,8 +32,9 @@ from gearcam.laws.ratio.span import (
 )
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints
-from gearcam.numeric.chebyshev import Expansion
+from gearcam.numeric.chebyshev import Expansion, expand
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
+from gearcam.numeric.quadrature import missed
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
@@ -54,6 +55,8 @@ class RatioLaw(Brief, Displacement):
         What was left to the program, by name.
     function_error : float, rad
         Error of phi2 that comes from the expansion of a Python function.
+    slope_error : float, 1/rad
+        That of the ratio's slope.
     """
 
     lobes: Span
@@ -61,6 +64,7 @@ class RatioLaw(Brief, Displacement):
     driven: Piecewise | Expansion
     solved: Mapping[str, float] = field(default_factory=dict)
     function_error: float = 0.0
+    slope_error: float = 0.0
 
     @property
     def mate(self) -> int:
@@ -160,19 +164,28 @@ class RatioLaw(Brief, Displacement):
 
     @cached_property
     def error(self) -> float:
-        """Estimated error of phi2, rad: against Gauss-Legendre quadrature of the ratio.
+        """Estimated error of phi2, rad, or of a rack's travel, over a lobe or an open travel.
 
-        What the expansion of a Python function misses is added.
+        That of the integral, and the rounding of the driver angle where the other turns fastest.
         """
-        nodes, weights = np.polynomial.legendre.leggauss(20)
-        parts = np.linspace(self.knots[:-1], self.knots[1:], 17)[:-1]
-        grid = np.append(parts.T, self.knots[-1])
-        half = 0.5 * np.diff(grid)
-        x = 0.5 * (grid[:-1] + grid[1:]) + half * nodes[:, None]
-        second = np.concatenate([[0.0], np.cumsum(half * (weights @ self.ratio(x)))])
-        first = np.append(self.driven(grid[:-1]), self.travelled)
-        rounding = np.finfo(float).eps * self.lobes.advance
-        return float(np.abs(first - second).max()) + rounding + self.function_error
+        _, (_, fastest) = self.ratio_range
+        return self.integral_error + float(np.finfo(float).eps) * self.period * fastest
+
+    @cached_property
+    def integral_error(self) -> float:
+        """Estimated error of phi2, rad, at a driver angle that is exact.
+
+        Measured against a quadrature of the ratio, twice that since both are rounded; the miss of
+        a law that was solved so that it closes; what the expansion of a Python function misses;
+        and rounding.
+        """
+        known = isinstance(self.driven, Expansion)
+        grid = self.driven.knots if known else expand(self.ratio, self.knots, 0.0).knots
+        inside = grid[(grid >= 0.0) & (grid <= self.period)]
+        measured = 2.0 * missed(self.driven, self.ratio, inside) + abs(float(self.driven(0.0)))
+        solved = abs(self.closure_error) if self.solved else 0.0
+        rounding = 4.0 * float(np.finfo(float).eps) * self.advance
+        return measured + solved + self.function_error + rounding
 
 
 _HOMES: Final = {

@@ -15,6 +15,7 @@ from gearcam.laws.formula import (
     Axis,
     Given,
     derivative,
+    error_of,
     formula_problems,
     function_of,
     values_of,
@@ -88,7 +89,8 @@ class Formula(Brief):
         if self.phi2 is not None:
             axis = axis_of("phi2", span.period)
             phi2, error = function_of(self.phi2, axis, tolerances.expansion)
-            return replace(from_phi2(phi2, span, tolerances), function_error=error)
+            law = from_phi2(phi2, span, tolerances)
+            return replace(law, function_error=error, slope_error=error and error_of(phi2, 2))
         name = "ratio" if self.ratio is not None else "r1"
         axis = axis_of(name, span.n1 * span.period)
         function, error = function_of(getattr(self, name), axis, tolerances.expansion)
@@ -100,14 +102,18 @@ class Formula(Brief):
             ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
             rate = float(((1.0 + law.mate * ratio) ** 2).mean())
             rate /= law.solved["center_distance_over_scale"]
-            return replace(law, function_error=rate * error * span.period)
+            slope_error = rate * (error and error_of(function, 1))
+            error *= rate * span.period
+            return replace(law, function_error=error, slope_error=slope_error)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
         factor = span.advance / total.antiderivative().last
         piece = Piece(lambda x: factor * function(x))
         solved = {"ratio_factor": factor}
         law = make_law(span, [0.0, span.period], [piece], tolerances, solved)
-        return replace(law, function_error=factor * error * span.period)
+        slope_error = factor * (error and error_of(function, 1))
+        error *= factor * span.period
+        return replace(law, function_error=error, slope_error=slope_error)
 
 
 def axis_of(name: str, high: float) -> Axis:
@@ -224,9 +230,9 @@ class RackLaw(Brief):
         axis = Axis(name=name, high=turn, place=angle_text)
         function, error = function_of(getattr(self, name), axis, tolerances.expansion)
         if self.travel is None:
-            piece, error = Piece(function), turn * error
+            piece, error, slope_error = Piece(function), turn * error, error and error_of(function, 1)
         else:
-            piece = Piece(derivative(function), function)
+            piece, slope_error = Piece(derivative(function), function), error and error_of(function, 2)
         places = np.linspace(0.0, turn, PLACES)
         values = values_of(piece.function)(places)
         for bad in np.flatnonzero(~np.isfinite(values))[:1]:
@@ -234,7 +240,7 @@ class RackLaw(Brief):
         with demand_smooth("r1"):
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
-        return replace(law, function_error=error)
+        return replace(law, function_error=error, slope_error=slope_error)
 
 
 LAWS.register(
