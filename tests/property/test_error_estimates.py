@@ -224,10 +224,11 @@ def of_tips(case: Case, result: Any, exact: Exact, told: Any) -> list[Row]:
             ratio, true = float(pairs.contact_ratios[j]), sum(end[0] for end in ends) / pitch
             if abs(ratio - float(true)) < 1e-6:  # else roots end it
                 rows.append(Row("contact_ratio", float(abs(mp.mpf(ratio) - true)), told["contact_ratio"][0], pair.teeth[0]))
+    far = max(gear.largest_radius for gear in result.gears)
     for gear in result.gears:
         toothing = gear.toothing
-        thickness, far = gear.profile.tip_thickness, gear.largest_radius
-        for k in (int(thickness.argmin()), int(thickness.argmax())):
+        thickness = gear.profile.tip_thickness
+        for k in (int(thickness.argmin()),):
             tooth = list(toothing.numbers)[toothing.whole][k]
             if not _inside(pair, toothing.wheel, tooth):
                 continue
@@ -260,9 +261,9 @@ def rows_of(case: Case) -> list[Row]:
     rows.append(of_ratios(law, exact, rolling))
     try:
         result = gc.build(gc.GearPairDesign(name="one", law=case.law, pair=spec))
+        told = estimates(result.subject)
     except InfeasibleError:
         return rows
-    told = estimates(result.subject)
     rows.append(of_flanks(case, result.pair, exact, told["flank_mm"][0]))
     rows.append(of_pressure_angles(result, exact, told["pressure_angle_deg"][0]))
     return rows + of_tips(case, result, exact, told)

@@ -74,8 +74,8 @@ def estimates(subject: Subject) -> Estimates:
             "flanks at their tips, by the angle at which they end",
         ),
         "tip_thickness_mm": (
-            2.0 * flank_error(pair),
-            "both flanks at the tip",
+            max(thickness_error(gear) for gear in gears),
+            "both flanks of the thinnest tooth at its tip",
         ),
         "backlash_mm": (_FEW * _EPS * pair.toothings[0].pitch, "rounding of the pitch"),
         "area_mm2": (
@@ -94,46 +94,77 @@ def ratio_error(rolling: Rolling) -> float:
     """Return the error of ratios: with ``i = u/(1 - w*u)`` that of u, times ``1 + w*i``.
 
     A law that was solved so that it closes shares its miss, as a centre distance's, all around; a
-    Python function's own is in it.
+    Python function's own is in it, and the rounding that the extremes show.
     """
     law = rolling.law
-    _, (_, largest) = law.ratio_range
+    (low, _), (high, largest) = law.ratio_range
     solved = abs(law.closure_error) / law.advance if law.solved else 0.0
-    own = law.function_error / law.advance
-    return largest * ((1.0 + abs(law.mate) * largest) * (_FEW * _EPS + solved) + own)
+    shared = (1.0 + abs(law.mate) * largest) * (_FEW * _EPS + solved)
+    shown = float(law.scatter(np.array([low, high]))[0].max())
+    return largest * shared + shown + law.function_errors[1]
 
 
 def direction_error(rolling: Rolling, phi: Array) -> Array:
-    """Return errors of the centrode's directions at driver angles, rad.
+    """Return errors of the centrode's directions at driver angles of the first lobe, rad.
 
-    Of the slope psi of the radius, ``tan(psi) = r'/r = i'/(i*(1 + w*i))``: rounding, also that of
-    the driver angle where psi changes fast, and what the expansion of a Python function misses.
+    Of the slope psi of the radius, ``tan(psi) = r'/r = i'/(i*(1 + w*i))``: rounding, that of the
+    driver angle where psi changes fast, that which the ratio's slope shows, and what the expansion
+    of a Python function misses.
     """
     law = rolling.law
     r, dr, ddr = rolling.radii(phi, 2)
     square = r * r + dr * dr
     ratio = law.ratio(phi)
-    own = law.slope_error * r * r / (square * ratio * (1.0 + law.mate * ratio))
+    slope = law.function_errors[2] + law.scatter(phi)[1]
+    own = slope * r * r / (square * ratio * (1.0 + law.mate * ratio))
     return _EPS * (_FEW + law.period * np.abs(ddr * r - dr * dr) / square) + own
 
 
-def flank_error(pair: GearPair) -> float:
-    """Return the error of points on flanks, mm.
+def own_error(pair: GearPair, phi: Array) -> Array:
+    """Return errors of points on flanks against their own wheel's teeth and tips, mm.
 
-    That of the place on the centrode, of its arc length, of the driven wheel's angle, and of the
-    direction of the normal along the way to the flank.
+    Parameters
+    ----------
+    pair : GearPair
+        The pair.
+    phi : (n,) array, rad
+        Driver angles in the first lobe.
+
+    Returns
+    -------
+    (n,) array
+        The direction of the normal along the way to the flank, and rounding of what is as far off
+        as the wheel, as long as the centrode and as fast as it runs with the driver angle.
     """
     rolling, law, cutter = pair.rolling, pair.law, pair.toothings[0].cutter
+    frames = [track.frames(phi, curved=False) for track in rolling.tracks]
+    far = max(float(np.abs(frame.p).max()) for frame in frames)
+    long = 0.5 * rolling.tracks[0].length + law.period * float(frames[0].speed.max())
+    way = max(cutter.addendum, cutter.dedendum) / math.sin(cutter.alpha)
+    turned = _EPS * law.period + direction_error(rolling, phi)
+    return way * turned + _EPS * (_FEW * far + long)
+
+
+def flank_error(pair: GearPair) -> float:
+    """Return the error of points on flanks, mm, in the wheels' frames.
+
+    That of their own teeth's, of arc lengths, and of the driven wheel's angle.
+    """
+    rolling, law = pair.rolling, pair.law
     extremes = [places for places, _ in rolling.curvature_extremes]
     phi = np.concatenate([np.linspace(0.0, law.period, _PLACES), *extremes])
     phi = phi[(phi >= 0.0) & (phi <= law.period)]
-    frames = [track.frames(phi, curved=False) for track in rolling.tracks]
-    far = max(float(np.abs(frame.p).max()) for frame in frames)
+    far = max(float(np.abs(t.frames(phi, curved=False).p).max()) for t in rolling.tracks)
     lever = rolling.center_distance if pair.on_rack else far
-    turned = _EPS * law.period + float(direction_error(rolling, phi).max())
-    way = max(cutter.addendum, cutter.dedendum) / math.sin(cutter.alpha)
-    rounding = _EPS * (_FEW * far + law.period * float(frames[0].speed.max()))
-    return float(rolling.arc_error + lever * law.integral_error + way * turned + rounding)
+    away = rolling.arc_error + lever * law.integral_error
+    return away + float(own_error(pair, phi).max())
+
+
+def thickness_error(gear: Gear) -> float:
+    """Return the error of the thinnest tip, mm: that of both flanks."""
+    tips = gear.toothing.of_teeth(gear.profile.flanks.tips.phi)
+    thinnest = tips[:, gear.profile.tip_thickness.argmin()]
+    return float(own_error(gear.pair, _in_lobe(gear, thinnest)).sum())
 
 
 def reach_error(gear: Gear) -> float:
@@ -143,11 +174,19 @@ def reach_error(gear: Gear) -> float:
     """
     flanks, toothing = gear.profile.flanks, gear.toothing
     high, low = np.split(flanks.tips.foot, 2)
-    crossed = toothing.whole_flanks & (flanks.tips.full | np.tile(high <= low, 2))
-    frames = toothing.frames(flanks.tips.phi[crossed])
-    regular = toothing.regularity(frames, flanks.sf[crossed], flanks.sigma[crossed])
-    least = max(float(regular.min(initial=1.0)), np.sqrt(_EPS))
-    return flank_error(gear.pair) / least
+    crossed = (flanks.tips.full | np.tile(high <= low, 2))[toothing.whole_flanks]
+    phi, sf, sigma = (
+        values[toothing.whole_flanks] for values in (flanks.tips.phi, flanks.sf, flanks.sigma)
+    )
+    regular = toothing.regularity(toothing.frames(phi), sf, sigma)
+    run = np.where(crossed, np.maximum(regular, math.sqrt(_EPS)), 1.0)
+    return float((own_error(gear.pair, _in_lobe(gear, phi)) / run).max())
+
+
+def _in_lobe(gear: Gear, phi: Array) -> Array:
+    """Return the driver angles of the first lobe, or of an open pair's travel, next to some."""
+    law = gear.pair.law
+    return np.mod(phi, law.period) if law.closed else np.clip(phi, 0.0, law.period)
 
 
 def area_error(gear: Gear) -> float:

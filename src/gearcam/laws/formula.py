@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.numeric.arrays import Array
@@ -103,23 +103,26 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> tuple[Callable[[J
     return made, made.error
 
 
-def error_of(function: Callable[[Jet], Jet], order: int) -> float:
-    """Return the estimated error of a derivative of a formula: zero for a text, which is exact.
+def errors_of(function: Callable[[Jet], Jet], error: float) -> tuple[float, float, float]:
+    """Return the estimated errors of a formula and of its first two derivatives.
 
     Parameters
     ----------
     function : callable
-        As `function_of` returns it.
-    order : int
-        Of the derivative.
+    error : float
+        As `function_of` returns them.
 
     Returns
     -------
-    float
+    tuple of float
+        Zeros for a text.
     """
+    if not error:
+        return 0.0, 0.0, 0.0
     from gearcam.laws.functions import Expanded
 
-    return function.error_of(order) if isinstance(function, Expanded) else 0.0
+    expanded = cast(Expanded, function)
+    return error, expanded.error_of(1), expanded.error_of(2)
 
 
 def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:

@@ -39,6 +39,16 @@ from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
 
+_BUNCH: Final = 12
+_BESIDE: Final = 1e-7
+_ORDER: Final = 4
+"""Places at which rounding is looked for beside one, their distances in the piece's width, and the
+order of differences that nothing smooth has there."""
+
+_SIGMAS: Final = 3.0
+"""Times a scatter that hardly any value is off by."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RatioLaw(Brief, Displacement):
     """A ratio over one lobe or over the travel of an open pair, and phi2, its integral.
@@ -53,18 +63,16 @@ class RatioLaw(Brief, Displacement):
         phi2 over the same interval, rad, zero at zero; of a rack its travel.
     solved : mapping of str to float
         What was left to the program, by name.
-    function_error : float, rad
-        Error of phi2 that comes from the expansion of a Python function.
-    slope_error : float, 1/rad
-        That of the ratio's slope.
+    function_errors : (float, float, float)
+        Errors of phi2, rad, of the ratio and of its slope, 1/rad, that come from the expansion of a
+        Python function.
     """
 
     lobes: Span
     ratio: Piecewise
     driven: Piecewise | Expansion
     solved: Mapping[str, float] = field(default_factory=dict)
-    function_error: float = 0.0
-    slope_error: float = 0.0
+    function_errors: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def mate(self) -> int:
@@ -161,6 +169,33 @@ class RatioLaw(Brief, Displacement):
         """Smallest and largest ratio, each as (driver angle in rad, value)."""
         closed = self.lobes.closed
         return self.ratio.extremes if closed else self.ratio.extremes_over(self.knots)
+
+    @property
+    def function_error(self) -> float:
+        """Error of phi2, rad, that comes from the expansion of a Python function."""
+        return self.function_errors[0]
+
+    def scatter(self, phi: Array) -> Array:
+        """Return how far the ratio and its slope scatter about smooth curves: their rounding.
+
+        Parameters
+        ----------
+        phi : (n,) array, rad
+            Places in the first lobe, or in an open pair's travel.
+
+        Returns
+        -------
+        (2, n) array
+            Three times the root of the mean square of high differences between neighbours that
+            are as good as one, over what those of noise are.
+        """
+        knots = self.knots
+        piece = np.clip(np.searchsorted(knots, phi, side="right") - 1, 0, len(knots) - 2)
+        width = np.diff(knots)[piece]
+        start = np.clip((phi - knots[piece]) / width, _BESIDE, 1.0 - _BESIDE * (_BUNCH + 1))
+        x = knots[piece] + width * (start + _BESIDE * np.arange(_BUNCH)[:, None])
+        found = np.diff(self.ratio.derivatives(x, 1), _ORDER, axis=1)
+        return _SIGMAS * np.sqrt((found**2).mean(axis=1) / math.comb(2 * _ORDER, _ORDER))
 
     @cached_property
     def error(self) -> float:

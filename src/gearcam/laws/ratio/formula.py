@@ -15,7 +15,7 @@ from gearcam.laws.formula import (
     Axis,
     Given,
     derivative,
-    error_of,
+    errors_of,
     formula_problems,
     function_of,
     values_of,
@@ -90,7 +90,7 @@ class Formula(Brief):
             axis = axis_of("phi2", span.period)
             phi2, error = function_of(self.phi2, axis, tolerances.expansion)
             law = from_phi2(phi2, span, tolerances)
-            return replace(law, function_error=error, slope_error=error and error_of(phi2, 2))
+            return replace(law, function_errors=errors_of(phi2, error))
         name = "ratio" if self.ratio is not None else "r1"
         axis = axis_of(name, span.n1 * span.period)
         function, error = function_of(getattr(self, name), axis, tolerances.expansion)
@@ -102,18 +102,22 @@ class Formula(Brief):
             ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
             rate = float(((1.0 + law.mate * ratio) ** 2).mean())
             rate /= law.solved["center_distance_over_scale"]
-            slope_error = rate * (error and error_of(function, 1))
-            error *= rate * span.period
-            return replace(law, function_error=error, slope_error=slope_error)
+            return _of_ratio(law, rate, function, error)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
         factor = span.advance / total.antiderivative().last
         piece = Piece(lambda x: factor * function(x))
         solved = {"ratio_factor": factor}
         law = make_law(span, [0.0, span.period], [piece], tolerances, solved)
-        slope_error = factor * (error and error_of(function, 1))
-        error *= factor * span.period
-        return replace(law, function_error=error, slope_error=slope_error)
+        return _of_ratio(law, factor, function, error)
+
+
+def _of_ratio(
+    law: RatioLaw, factor: float, function: Callable[[Jet], Jet], error: float
+) -> RatioLaw:
+    """Return a law with the errors of a function that its ratio is in proportion to."""
+    ratio, slope, _ = (factor * each for each in errors_of(function, error))
+    return replace(law, function_errors=(law.period * ratio, ratio, slope))
 
 
 def axis_of(name: str, high: float) -> Axis:
@@ -230,9 +234,9 @@ class RackLaw(Brief):
         axis = Axis(name=name, high=turn, place=angle_text)
         function, error = function_of(getattr(self, name), axis, tolerances.expansion)
         if self.travel is None:
-            piece, error, slope_error = Piece(function), turn * error, error and error_of(function, 1)
+            piece = Piece(function)
         else:
-            piece, slope_error = Piece(derivative(function), function), error and error_of(function, 2)
+            piece = Piece(derivative(function), function)
         places = np.linspace(0.0, turn, PLACES)
         values = values_of(piece.function)(places)
         for bad in np.flatnonzero(~np.isfinite(values))[:1]:
@@ -240,7 +244,9 @@ class RackLaw(Brief):
         with demand_smooth("r1"):
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
-        return replace(law, function_error=error, slope_error=slope_error)
+        if self.travel is None:
+            return _of_ratio(law, 1.0, function, error)
+        return replace(law, function_errors=errors_of(function, error))
 
 
 LAWS.register(

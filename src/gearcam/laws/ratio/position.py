@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import Axis, Given, error_of, formula_problems, function_of, values_of
+from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of, values_of
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
@@ -106,8 +106,9 @@ class MotionLaw(Brief):
             "k2_deg_per_y": math.degrees(scale),
         }
         law = from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
-        slope_error = abs(scale) * per_angle**2 * (error and error_of(shape, 2))
-        return replace(law, function_error=abs(scale) * error, slope_error=slope_error)
+        y, slope, bend = (abs(scale) * each for each in errors_of(shape, error))
+        errors = y, abs(per_angle) * slope, per_angle**2 * bend
+        return replace(law, function_errors=errors)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         if lobes.n2 != 1:
@@ -128,9 +129,8 @@ class MotionLaw(Brief):
             "crank_angle_at_start_deg": math.degrees(start),
         }
         law = make_law(lobes, knots, pieces, tolerances, solved)
-        size = radius * NARROWEST
-        slope_error = (error and error_of(shape, 2)) / size
-        return replace(law, function_error=error / size, slope_error=slope_error)
+        angle, ratio, slope = (each / (radius * NARROWEST) for each in errors_of(shape, error))
+        return replace(law, function_errors=(angle, ratio, slope))
 
 
 LAWS.register(
