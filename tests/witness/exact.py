@@ -246,7 +246,9 @@ class Exact:
         return size * point + height * outward
 
 
-def of_radius(shapes: Sequence[Piece], advance: Number, mate: int, near: float) -> tuple[Exact, Any]:
+def of_radius(
+    shapes: Sequence[Piece], advance: Number, mate: int, near: float
+) -> tuple[Exact, Any]:
     """Return the law of a driver's centrode and its centre distance, which makes it close.
 
     Parameters

@@ -55,7 +55,10 @@ def estimates(subject: Subject) -> Estimates:
             "rad of the driven angle: against Gauss-Legendre quadrature" + function,
         ),
         "closure_rad": (abs(law.closure_error), "miss of the driven angle over a lobe"),
-        "ratio": (ratio_error(rolling), "rounding where the radius nears the distance, and closure"),
+        "ratio": (
+            ratio_error(rolling),
+            "rounding where the radius nears the distance, and closure",
+        ),
         "arc_length_mm": (
             rolling.arc_error,
             "against Gauss-Legendre quadrature, and rounding" + function,

@@ -130,23 +130,27 @@ class Expanded:
     ----------
     curves : tuple of Waves or Pieces
         The function and the derivatives that were given with it.
-    errors : tuple of float
-        Estimated errors of their values: the largest difference between expansion and function, at
-        places between its nodes, and rounding.
+    missed : tuple of float
+        The largest difference between each and its expansion, at places between its nodes.
+    rounding : tuple of float
+        Rounding of their values.
     """
 
     curves: tuple[Waves | Pieces, ...]
-    errors: tuple[float, ...]
+    missed: tuple[float, ...]
+    rounding: tuple[float, ...]
 
     @property
     def error(self) -> float:
         """Estimated error of its values."""
-        return self.errors[0]
+        return self.error_of(0)
 
     def error_of(self, order: int) -> float:
         """Return the estimated error of a derivative, by the last that was given up to it."""
         last = min(order, len(self.curves) - 1)
-        return self.errors[last] * self.curves[last].loss ** (order - last)
+        if order == last:
+            return self.missed[last] + self.rounding[last]
+        return self.missed[last] * self.curves[last].loss ** (order - last)
 
     def __call__(self, x: Jet) -> Jet:
         """Return the function of a jet."""
@@ -181,7 +185,8 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
     functions = given if isinstance(given, tuple) else (given,)
     places = np.linspace(axis.low, axis.high, _PLACES)
     curves: list[Waves | Pieces] = []
-    errors: list[float] = []
+    missed: list[float] = []
+    rounding: list[float] = []
     for number, function in enumerate(functions):
         ask = _Asked(function, axis, number)
         values = ask(places)
@@ -195,10 +200,10 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
                 raise ask.refusal(what, axis.low, nearest="a formula as text has no such limit")
         if curves:
             _demand_agreement(curves[-1], ask, places, values)
-        miss = np.abs(curve.derivatives(places, 0)[0] - values)
-        errors.append(float(miss.max()) + _ROUNDING * scale)
+        missed.append(float(np.abs(curve.derivatives(places, 0)[0] - values).max()))
+        rounding.append(_ROUNDING * scale)
         curves.append(curve)
-    return Expanded(tuple(curves), tuple(errors))
+    return Expanded(tuple(curves), tuple(missed), tuple(rounding))
 
 
 class _Asked:

@@ -38,7 +38,6 @@ from gearcam.numeric.quadrature import missed
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
-
 _BUNCH: Final = 12
 _BESIDE: Final = 1e-7
 _ORDER: Final = 4

@@ -233,10 +233,9 @@ class RackLaw(Brief):
         name = "r1" if self.travel is None else "travel"
         axis = Axis(name=name, high=turn, place=angle_text)
         function, error = function_of(getattr(self, name), axis, tolerances.expansion)
-        if self.travel is None:
-            piece = Piece(function)
-        else:
-            piece = Piece(derivative(function), function)
+        piece = (
+            Piece(derivative(function), function) if self.travel is not None else Piece(function)
+        )
         places = np.linspace(0.0, turn, PLACES)
         values = values_of(piece.function)(places)
         for bad in np.flatnonzero(~np.isfinite(values))[:1]:
