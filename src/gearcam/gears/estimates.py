@@ -110,9 +110,19 @@ def ratio_error(rolling: Rolling) -> float:
 def direction_error(rolling: Rolling, phi: Array) -> Array:
     """Return errors of the centrode's directions at driver angles of the first lobe, rad.
 
-    Of the slope psi of the radius, ``tan(psi) = r'/r = i'/(i*(1 + w*i))``: rounding, that of the
-    driver angle where psi changes fast, that which the ratio's slope shows, and what the expansion
-    of a Python function misses.
+    Parameters
+    ----------
+    rolling : Rolling
+        The centrodes.
+    phi : (n,) array, rad
+        Driver angles.
+
+    Returns
+    -------
+    (n,) array
+        Of the slope psi of the radius, ``tan(psi) = r'/r = i'/(i*(1 + w*i))``: rounding, that of
+        the driver angle where psi changes fast, that which the ratio's slope shows, and what the
+        expansion of a Python function misses.
     """
     law = rolling.law
     r, dr, ddr = rolling.radii(phi, 2)
