@@ -35,7 +35,7 @@ _FILL = 0.955
 _UNEVEN = 0.05
 """Change of curvature along a chord above which its error is measured."""
 
-_MARGIN = 0.97
+MARGIN = 0.97
 """Share of the tolerance that a measured error may take: between its places it may be larger."""
 
 _FEW = 0.12
@@ -154,7 +154,7 @@ class Sampler(Brief):
         ends = self._ends(vertices)
         errors, rough = self._errors(vertices, ends)
         for _ in range(_ROUNDS):
-            if np.mean(errors > _MARGIN * self.tolerance) <= _FEW:
+            if np.mean(errors > MARGIN * self.tolerance) <= _FEW:
                 break
             # The error that a chord has, not the one that its J promised, says how long it may be.
             effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + _RISING)])
@@ -164,7 +164,7 @@ class Sampler(Brief):
             errors, rough = self._errors(vertices, ends)
         points = ends[0]
         for _ in range(_ROUNDS):
-            bad = errors > _MARGIN * self.tolerance
+            bad = errors > MARGIN * self.tolerance
             if not bad.any():
                 break
             middles = 0.5 * (vertices[:-1] + vertices[1:])[bad]

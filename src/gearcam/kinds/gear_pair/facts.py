@@ -18,6 +18,7 @@ from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.numerals import shown
+from gearcam.numeric.sampling import MARGIN
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
@@ -266,5 +267,6 @@ def _part(result: GearPairResult, gear: Gear) -> Tree:
 def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
     """Error estimates, and how each was made."""
     rows = estimates(result.subject)
-    chord = max(gear.profile.chord_error for gear in result.gears)
+    # between the places at which it is measured a chord may be off by more
+    chord = max(gear.profile.chord_error for gear in result.gears) / MARGIN
     return accuracy(rows, chord, result.design.output.kerf, measured)
