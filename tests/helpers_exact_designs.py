@@ -120,11 +120,12 @@ def _phases(add: Add) -> None:
     add("phases", given, (61, 61), phases(given, 1))
     three = Phases(knots=(0.0, 2.0, 4.1, TURN), ratios=(1.2, 0.7, "solve", 1.2))
     add("phases", three, (61, 61), phases(three, 1))
-    for shape, knots, ratios in (
+    ways: tuple[tuple[str, Any, Any], ...] = (
         ("cosine", (0.0, 0.2, 1.0, "solve"), (1.0, 1.0, 2.0, 2.0)),
         ("sine", (0.0, 1.0, "solve"), (1.0, 2.0, 2.0)),
         ("quintic", (0.0, 1.0, 2.0, 4.0), (1.0, 1.5, "solve", 0.8)),
-    ):
+    )
+    for shape, knots, ratios in ways:
         way = Phases(shape=shape, knots=knots, ratios=ratios, driven_travel=4.0)
         add("phases", way, (40, 40), phases(way, 1))
     sharp = Phases(knots=(0.0, 0.02, 3.0, TURN), ratios=(1.0, 0.9, "solve", 1.0))
@@ -162,7 +163,7 @@ def _shapes(add: Add) -> None:
         (Fourier(of="phi2", cosines=(3.0, 0.5), sines=(-4.0, 0.2)), (60, 90), (2, 3), 1),
         (Fourier(cosines=(0.1,) * 3, sines=(-0.05,) * 3), (30, 60), (1, 2), 1),
         (Fourier(cosines=(0.1,), sines=(0.1,)), RING_TEETH, (1, 3), -1),
-        (Fourier(cosines=(0.001,) * 40, sines=(0.002,) * 40), (61, 61), (1, 1), 1),
+        (Fourier(cosines=(0.004,) * 12, sines=(0.008,) * 12), (61, 61), (1, 1), 1),
     ):
         add("fourier", law, teeth, fourier(law, n, mate), mate)
     for radii, teeth, n, mate in (
@@ -278,8 +279,9 @@ def _formulas() -> list[Case]:
         def function(x: Any, written: Written = written) -> Any:
             return written(x, np)
 
-        for kind, given in (("formula", text), ("function", function)):
-            made.append(Case(f"{kind}-{number}", Formula(**{what: given}), teeth, ex, mate))
+        for kind, one in (("formula", text), ("function", function)):
+            given: dict[str, Any] = {what: one}
+            made.append(Case(f"{kind}-{number}", Formula(**given), teeth, ex, mate))
     for number, (what, text, radius) in enumerate(
         (
             ("r1", "1 + 0.2*cos(phi1)", lambda x: 1 + of(0.2) * exact.cos(x)),
@@ -339,6 +341,7 @@ def _tables() -> list[Case]:
         if kind == "phi2":
             values = angles + 0.2 * (np.sin(angles + 0.7) - math.sin(0.7))
             values[-1] = TURN
-        law = TableLaw(phi1=tuple(angles.tolist()), **{kind: tuple(values.tolist())})
+        given: dict[str, Any] = {kind: tuple(values.tolist())}
+        law = TableLaw(phi1=tuple(angles.tolist()), **given)
         made.append(Case(f"table-{number}", law, teeth, table(law, n, mate), mate))
     return made

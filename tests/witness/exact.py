@@ -100,7 +100,7 @@ def _gauss(count: int) -> list[tuple[Number, Number]]:
     """Places and weights on [0, 1]: roots of a Legendre polynomial by Newton's method."""
     found = []
     for k in range(count):
-        x = mp.cos(mp.pi * (k + mp.mpf(3) / 4) / (count + mp.mpf(1) / 2))
+        x, rise = mp.cos(mp.pi * (k + mp.mpf(3) / 4) / (count + mp.mpf(1) / 2)), mp.mpf(0)
         for _ in range(8):
             before, value = mp.mpf(1), x
             for n in range(2, count + 1):
