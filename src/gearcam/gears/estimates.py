@@ -49,6 +49,8 @@ def estimates(subject: Subject) -> Estimates:
     rolling, law = pair.rolling, pair.law
     steepest = [place for place, _ in subject.pressure_angles.values()]
     function = ", and the Python function against its expansion" if law.function_error else ""
+    far, rounding = size_of(rolling)
+    reaches, thicknesses = zip(*(tip_errors(gear, rounding) for gear in gears), strict=True)
     return {
         "law": (
             law.error,
@@ -57,7 +59,7 @@ def estimates(subject: Subject) -> Estimates:
         "closure_rad": (abs(law.closure_error), "miss of the driven angle over a lobe"),
         "ratio": (
             ratio_error(rolling),
-            "rounding where the radius nears the distance, and closure",
+            "closure, and rounding as it shows and where the radius nears the distance",
         ),
         "arc_length_mm": (
             rolling.arc_error,
@@ -65,7 +67,7 @@ def estimates(subject: Subject) -> Estimates:
         ),
         "size": (size_error(rolling), "share of module and centre distance: the arc length's"),
         "flank_mm": (
-            flank_error(pair),
+            flank_error(pair, far, rounding),
             "arc length, driven angle and directions, with the rounding of the driver angle",
         ),
         "pressure_angle_deg": (
@@ -73,11 +75,11 @@ def estimates(subject: Subject) -> Estimates:
             "directions of the centrode, with the rounding of the driver angle",
         ),
         "contact_ratio": (
-            sum(reach_error(gear) for gear in gears) / pair.toothings[0].pitch,
+            sum(reaches) / pair.toothings[0].pitch,
             "flanks at their tips, by the angle at which they end",
         ),
         "tip_thickness_mm": (
-            max(thickness_error(gear) for gear in gears),
+            max(thicknesses),
             "both flanks of the thinnest tooth at its tip",
         ),
         "backlash_mm": (_FEW * _EPS * pair.toothings[0].pitch, "rounding of the pitch"),
@@ -133,7 +135,22 @@ def direction_error(rolling: Rolling, phi: Array) -> Array:
     return _EPS * (_FEW + law.period * np.abs(ddr * r - dr * dr) / square) + own
 
 
-def own_error(pair: GearPair, phi: Array) -> Array:
+def size_of(rolling: Rolling) -> tuple[float, float]:
+    """Return how far the centrodes go from their shafts, mm, and how points on them are rounded.
+
+    By what they are as far off as, as long as the centrode, and as fast as it runs with the driver
+    angle, mm.
+    """
+    law = rolling.law
+    extremes = [places for places, _ in rolling.curvature_extremes]
+    phi = np.concatenate([np.linspace(0.0, law.period, _PLACES), *extremes])
+    frames = [track.frames(phi, curved=False) for track in rolling.tracks]
+    far = max(float(np.abs(frame.p).max()) for frame in frames)
+    long = 0.5 * rolling.tracks[0].length + law.period * float(frames[0].speed.max())
+    return far, _EPS * (_FEW * far + long)
+
+
+def own_error(pair: GearPair, phi: Array, rounding: float) -> Array:
     """Return errors of points on flanks against their own wheel's teeth and tips, mm.
 
     Parameters
@@ -142,58 +159,69 @@ def own_error(pair: GearPair, phi: Array) -> Array:
         The pair.
     phi : (n,) array, rad
         Driver angles in the first lobe.
+    rounding : float, mm
+        Of points on the centrode.
 
     Returns
     -------
     (n,) array
-        The direction of the normal along the way to the flank, and rounding of what is as far off
-        as the wheel, as long as the centrode and as fast as it runs with the driver angle.
+        That, and of the direction of the normal along the way to the flank.
     """
-    rolling, law, cutter = pair.rolling, pair.law, pair.toothings[0].cutter
-    frames = [track.frames(phi, curved=False) for track in rolling.tracks]
-    far = max(float(np.abs(frame.p).max()) for frame in frames)
-    long = 0.5 * rolling.tracks[0].length + law.period * float(frames[0].speed.max())
+    law, cutter = pair.law, pair.toothings[0].cutter
     way = max(cutter.addendum, cutter.dedendum) / math.sin(cutter.alpha)
-    turned = _EPS * law.period + direction_error(rolling, phi)
-    return way * turned + _EPS * (_FEW * far + long)
+    turned = _EPS * law.period + direction_error(pair.rolling, phi)
+    return way * turned + rounding
 
 
-def flank_error(pair: GearPair) -> float:
+def flank_error(pair: GearPair, far: float, rounding: float) -> float:
     """Return the error of points on flanks, mm, in the wheels' frames.
 
-    That of their own teeth's, of arc lengths, and of the driven wheel's angle.
+    Parameters
+    ----------
+    pair : GearPair
+        The pair.
+    far, rounding : float, mm
+        As `size_of` returns them.
+
+    Returns
+    -------
+    float
+        That of their own teeth's, of arc lengths, and of the driven wheel's angle.
     """
     rolling, law = pair.rolling, pair.law
     extremes = [places for places, _ in rolling.curvature_extremes]
     phi = np.concatenate([np.linspace(0.0, law.period, _PLACES), *extremes])
-    phi = phi[(phi >= 0.0) & (phi <= law.period)]
-    far = max(float(np.abs(t.frames(phi, curved=False).p).max()) for t in rolling.tracks)
+    own = own_error(pair, phi[(phi >= 0.0) & (phi <= law.period)], rounding)
     lever = rolling.center_distance if pair.on_rack else far
-    away = rolling.arc_error + lever * law.integral_error
-    return away + float(own_error(pair, phi).max())
+    return float(rolling.arc_error + lever * law.integral_error + own.max())
 
 
-def thickness_error(gear: Gear) -> float:
-    """Return the error of the thinnest tip, mm: that of both flanks."""
-    tips = gear.toothing.of_teeth(gear.profile.flanks.tips.phi)
-    thinnest = tips[:, gear.profile.tip_thickness.argmin()]
-    return float(own_error(gear.pair, _in_lobe(gear, thinnest)).sum())
+def tip_errors(gear: Gear, rounding: float) -> tuple[float, float]:
+    """Return the errors of the reach of flanks at their tips and of the thinnest tip, mm.
 
+    Parameters
+    ----------
+    gear : Gear
+        The wheel.
+    rounding : float, mm
+        Of points on the centrode.
 
-def reach_error(gear: Gear) -> float:
-    """Return the error of the reach of flanks at their tips, mm.
-
-    More where points hardly move along the flank, if it ends where it crosses another curve.
+    Returns
+    -------
+    reach : float, mm
+        More where points hardly move along a flank, if it ends where it crosses another curve.
+    thickness : float, mm
+        That of both flanks of the thinnest tooth.
     """
     flanks, toothing = gear.profile.flanks, gear.toothing
+    own = own_error(gear.pair, _in_lobe(gear, flanks.tips.phi), rounding)
+    thinnest = gear.profile.tip_thickness.argmin()
+    thickness = float(toothing.of_teeth(own)[:, thinnest].sum())
     high, low = np.split(flanks.tips.foot, 2)
-    crossed = (flanks.tips.full | np.tile(high <= low, 2))[toothing.whole_flanks]
-    phi, sf, sigma = (
-        values[toothing.whole_flanks] for values in (flanks.tips.phi, flanks.sf, flanks.sigma)
-    )
-    regular = toothing.regularity(toothing.frames(phi), sf, sigma)
+    crossed = flanks.tips.full | np.tile(high <= low, 2)
+    regular = toothing.regularity(toothing.frames(flanks.tips.phi), flanks.sf, flanks.sigma)
     run = np.where(crossed, np.maximum(regular, math.sqrt(_EPS)), 1.0)
-    return float((own_error(gear.pair, _in_lobe(gear, phi)) / run).max())
+    return float((own / run)[toothing.whole_flanks].max()), thickness
 
 
 def _in_lobe(gear: Gear, phi: Array) -> Array:

@@ -130,7 +130,7 @@ class Rolling(Brief):
         """Estimated error of the centrodes' length, mm, and of arc lengths along them.
 
         That of a lobe is measured against another quadrature, twice that since both are rounded;
-        the law's misses of closing and of a Python function change the radius; and rounding.
+        the law's miss of a Python function, which changes the radius; and rounding.
         """
         arc, law = self.arc, self.law
         measured = 2.0 * missed(arc.unit, arc.speed, arc.unit.knots) + law.function_error
