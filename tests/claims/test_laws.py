@@ -139,7 +139,8 @@ def test_the_error_estimate_covers_what_is_missed(claim: LawClaim) -> None:
     law = built(claim)
     for phi, driven in claim.driven.items():
         assert abs(float(law.phi2(phi)) - driven) <= law.error + np.spacing(driven)
-    assert law.error < 1e-13
+    # no driven angle is known better than the last digit of the lap that it is a part of
+    assert np.spacing(law.advance) < law.error < 1e-13
 
 
 @pytest.mark.parametrize("claim", CLAIMS)
