@@ -141,6 +141,7 @@ def _speeds(add: Add) -> None:
         (0.3, "cosine", 0.99),
         (0.1, "quintic", 0.995),
         (0.1, "cubic", 0.99),
+        (0.1, "quintic", 0.99999),
     ):
         t = math.radians(width)
         speeds = Multispeed(
