@@ -164,7 +164,7 @@ def true_tip(
     one = complex(toothing.flank_motion(frames, np.array([float(sf)] * 2), sigma)[0])
     slide = frames.speed[1] * (1.0 + frames.kappa[1] * float(height)) * frames.t[1]
     matrix = np.array([[one.real, -slide.real], [one.imag, -slide.imag]])
-    x, y = (mp.mpf(value) for value in near)
+    (x, y), miss = (mp.mpf(value) for value in near), mp.inf
     for _ in range(4):
         point = exact.flank_point(toothing.wheel, x, size, sf, sigma, alpha)
         miss = point - exact.tip_point(toothing.wheel, y, size, height)
