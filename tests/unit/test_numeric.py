@@ -12,6 +12,7 @@ from gearcam.numeric import jets
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
 from gearcam.numeric.piecewise import Piece, extremes, integrate, piecewise
+from gearcam.numeric.quadrature import missed
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
 POINTS = np.array([0.21, 0.47, 0.83])
@@ -72,10 +73,38 @@ def test_an_expansion_reaches_rounding_however_sharp_the_function(eccentricity: 
     assert middle == pytest.approx(float(mpmath.ellipe(e * e)), rel=4e-15)
 
 
-def test_an_expansion_reports_an_error_that_holds() -> None:
-    made = expand(lambda x: 1.0 / (1.01 + np.cos(x)), [0.0, 2 * math.pi], 1e-15)
-    exact = 2 * math.pi / math.sqrt(1.01**2 - 1.0)
-    assert abs(made.antiderivative().last - exact) <= max(10 * made.error, 1e-13 * exact)
+def test_what_an_integral_misses_is_measured() -> None:
+    """Between knots too, where an expansion is off most, and whatever the constant is."""
+
+    def wave(x: np.ndarray) -> np.ndarray:
+        return np.cos(40.0 * x)
+
+    made = expand(wave, [0.0, 6.0], np.inf, degree=4, cuts=64).antiderivative()
+    x = np.linspace(0.0, 6.0, 4999)
+    true = np.abs(made(x) - np.sin(40.0 * x) / 40.0).max()
+    for integral in (made, made.shifted(3.0)):
+        assert true <= 1.5 * missed(integral, wave, made.knots) <= 1.55 * true
+    knots = np.linspace(0.0, 6.0, 257)
+    assert missed(lambda x: np.sin(40.0 * x) / 40.0, wave, knots) < 1e-16
+
+
+@pytest.mark.parametrize("sharp", [20.0, 400.0])
+def test_extremes_are_found_where_a_slope_is_rounded_to_zero(sharp: float) -> None:
+    """On plateaus no slope changes its sign: tanh is 1 in all its digits there."""
+
+    def step(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        wave = np.tanh(sharp * np.sin(x))
+        return wave, sharp * np.cos(x) * (1.0 - wave * wave)
+
+    _, values = extremes(step, [0.0, 2.0 * math.pi])
+    assert values.min() == -1.0
+    assert values.max() == 1.0
+
+
+def test_extremes_at_knots_are_those_at_the_knots_themselves() -> None:
+    places, values = extremes(lambda x: (np.exp(x), np.exp(x)), [0.0, 20.0])
+    assert places.shape == (2,)
+    np.testing.assert_allclose(values, np.exp([0.0, 20.0]), rtol=1e-14, atol=0)
 
 
 @pytest.mark.parametrize("place", [0.3, math.pi / 3])

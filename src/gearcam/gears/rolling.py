@@ -26,6 +26,7 @@ from gearcam.laws.ratio.span import RACK, RING, WHEEL, angle_text
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.piecewise import extremes_of_each
+from gearcam.numeric.quadrature import missed
 from gearcam.tolerances import Tolerances
 
 _MARGIN = 2.0
@@ -137,9 +138,16 @@ class Rolling(Brief):
 
     @cached_property
     def arc_error(self) -> float:
-        """Estimated error of arc lengths, mm: truncated expansions, and rounding over a turn."""
-        longest = max(track.length for track in self.tracks)
-        return self.center_distance * self.arc.unit.error + 4.0 * np.finfo(float).eps * longest
+        """Estimated error of the centrodes' length, mm, and of arc lengths along them.
+
+        That of a lobe is measured against another quadrature, twice that since both are rounded;
+        the law's miss of a Python function, which changes the radius; and rounding.
+        """
+        arc, law = self.arc, self.law
+        measured = 2.0 * missed(arc.unit, arc.speed, arc.unit.knots) + law.function_error
+        rounding = 4.0 * np.finfo(float).eps * arc.unit_length
+        lobes = max(track.length for track in self.tracks) / arc.length
+        return float(self.center_distance * (measured + rounding) * lobes)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

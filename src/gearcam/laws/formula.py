@@ -72,7 +72,7 @@ def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
     return lambda x: expression.evaluate(x, FUNCTIONS)
 
 
-def function_of(given: Given, axis: Axis, tolerance: float) -> tuple[Callable[[Jet], Jet], float]:
+def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], Jet]:
     """Return a formula as a function of jets, and the estimated error of its values.
 
     Parameters
@@ -86,10 +86,8 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> tuple[Callable[[J
 
     Returns
     -------
-    function : callable
-        ``function(jet) -> jet``.
-    error : float
-        Zero for a text, which is exact.
+    callable
+        ``function(jet) -> jet``; how exact it is `errors_of` tells.
 
     Raises
     ------
@@ -97,15 +95,17 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> tuple[Callable[[J
         Where a function is not finite or smooth, or fails.
     """
     if isinstance(given, str):
-        return compiled(given, axis.variable), 0.0
+        return compiled(given, axis.variable)
     from gearcam.laws.functions import expanded  # which a text does not need
 
-    made = expanded(given, axis, tolerance)
-    return made, made.error
+    return expanded(given, axis, tolerance)
 
 
 def errors_of(function: Callable[[Jet], Jet]) -> tuple[float, ...]:
-    """Return estimated errors of what `function_of` gives, and of its first three derivatives."""
+    """Return estimated errors of what `function_of` gives, and of its first three derivatives.
+
+    A text is exact: zeros.
+    """
     return getattr(function, "errors", EXACT)
 
 

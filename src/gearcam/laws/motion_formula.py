@@ -96,7 +96,7 @@ class MotionFormula:
         InfeasibleError
             Where the formula is not finite or not smooth, does not repeat or does not move.
         """
-        function, _ = function_of(self.lift, _AXIS, tolerances.expansion)
+        function = function_of(self.lift, _AXIS, tolerances.expansion)
         scale, unit = (math.degrees(1.0), "deg") if oscillating else (1.0, "mm")
         theta = np.linspace(0.0, TURN, _PLACES + 1)
         first = values_of(function)(theta)

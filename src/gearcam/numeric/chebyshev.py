@@ -24,7 +24,7 @@ FIRST_CUTS = 128
 """Intervals to begin with, so that a bump of a degree cannot slip between the samples."""
 
 _NOISE = 1e-11
-"""Rounding that a function may have, relative to its largest value; the error estimate tells it."""
+"""Rounding that a function may have, relative to its largest value."""
 
 _FINEST = 2**18
 """Most intervals: 5 arc seconds of a turn are enough to call a function not smooth."""
@@ -56,13 +56,10 @@ class Expansion(Brief):
         Ends of the intervals, rising.
     coefficients : (m, n) array
         Coefficients of T_0, T_1, ... on each interval.
-    error : float
-        Estimated error of the integral over all intervals: last coefficients times widths.
     """
 
     knots: Array
     coefficients: Array
-    error: float
 
     def __call__(self, x: ArrayLike) -> Array:
         """Return the values at the points `x` (beyond the ends the end intervals are continued)."""
@@ -104,7 +101,7 @@ class Expansion(Brief):
         signs = (-1.0) ** np.arange(len(integral))
         starts = np.concatenate([[0.0], np.cumsum(integral.sum(axis=0) - signs @ integral)])
         integral[0] = starts[:-1] - signs @ integral
-        return Expansion(knots=self.knots, coefficients=integral, error=self.error)
+        return Expansion(knots=self.knots, coefficients=integral)
 
     def derivative(self) -> Expansion:
         """Return the derivative; at the ends of an interval it loses most digits."""
@@ -178,7 +175,7 @@ def expand(
     low = grid[:-1].repeat(parts) + number * (np.diff(grid) / parts).repeat(parts)
     high = np.append(low[1:], grid[-1])
     done: list[tuple[Array, Array, Array]] = []
-    scale = error = 0.0
+    scale = 0.0
     before = np.full(low.shape, np.inf)
     for halving in range(halvings + 1):
         x = 0.5 * (low + high) + 0.5 * (high - low) * nodes[:, None]
@@ -194,7 +191,6 @@ def expand(
         noise = (last <= _NOISE * scale) & (last >= 0.75 * before)
         good = (last <= allowed) | noise
         if good.any():
-            error += float(last[good] @ (high - low)[good])
             done.append((low[good], high[good], coefficients[:, good]))
         if good.all():
             break
@@ -206,6 +202,5 @@ def expand(
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     lows, highs, columns = (np.concatenate(part, axis=-1) for part in zip(*done, strict=True))
     order = np.argsort(lows)
-    return Expansion(
-        knots=np.append(lows[order], highs[order[-1]]), coefficients=columns[:, order], error=error
-    )
+    knots = np.append(lows[order], highs[order[-1]])
+    return Expansion(knots=knots, coefficients=columns[:, order])

@@ -346,11 +346,21 @@ def _extremes_among(
         (slopes[which, piece, cell], slopes[which, piece, cell + 1]),
     )
     tops = functions(roots)[0, which, number] if roots.size else roots
+    ends = [0, -1]
+    # the outermost places keep from the knots, the values are those at them
+    inset = _INSET / (1.0 - 2.0 * _INSET) * (x[:, -1:] - x[:, :1]) * [-1.0, 1.0]
+    sides = values[..., ends] + slopes[..., ends] * inset
+    # a slope that is rounded to 0 changes no sign: where it begins and ends to be
+    flat = slopes == 0.0
+    edge = flat.copy()
+    edge[..., 1:-1] &= ~(flat[..., :-2] & flat[..., 2:])
+    edge[..., ends] = False
     found = []
-    for k, own in enumerate(values):
-        places = np.append(x[:, [0, -1]], roots[which == k])
+    for k, own in enumerate(sides):
+        places = np.concatenate([x[:, ends].ravel(), roots[which == k], x[edge[k]]])
         order = np.argsort(places, kind="stable")
-        found.append((places[order], np.append(own[:, [0, -1]], tops[which == k])[order]))
+        own = np.concatenate([own.ravel(), tops[which == k], values[k][edge[k]]])
+        found.append((places[order], own[order]))
     return found
 
 

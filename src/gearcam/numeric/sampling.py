@@ -35,7 +35,7 @@ _FILL = 0.955
 _UNEVEN = 0.05
 """Change of curvature along a chord above which its error is measured."""
 
-_MARGIN = 0.97
+MARGIN = 0.97
 """Share of the tolerance that a measured error may take: between its places it may be larger."""
 
 _FEW = 0.12
@@ -183,7 +183,7 @@ class Sampler(Brief):
             made = anew
         vertices, points, errors, rough = made.vertices, made.points, made.errors, made.rough
         for _ in range(_ROUNDS):
-            bad = errors > _MARGIN * self.tolerance
+            bad = errors > MARGIN * self.tolerance
             if not bad.any():
                 break
             middles = 0.5 * (vertices[:-1] + vertices[1:])[bad]
@@ -215,7 +215,7 @@ class Sampler(Brief):
         vertices[np.cumsum(counts)[:-1]] = self.corners[1:]
         at = self._ends(vertices)
         errors, rough = self._errors(vertices, at)
-        bad = float(np.mean(errors > _MARGIN * self.tolerance))
+        bad = float(np.mean(errors > MARGIN * self.tolerance))
         return _Chords(counts, vertices, at[0], errors, rough, bad)
 
     def _ends(self, vertices: Array) -> Plane:

@@ -12,11 +12,13 @@ import numpy as np
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
+from gearcam.gears.estimates import estimates
 from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.numerals import shown
+from gearcam.numeric.sampling import MARGIN
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
@@ -264,23 +266,7 @@ def _part(result: GearPairResult, gear: Gear) -> Tree:
 
 def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
     """Error estimates, and how each was made."""
-    rolling, law = result.pair.rolling, result.law
-    reach = max(float(np.hypot(*gear.outline.T).max()) for gear in result.gears)
-    rounding = 8.0 * np.finfo(float).eps * reach
-    how = "rad of the driven angle: against Gauss-Legendre quadrature"
-    if law.function_error:
-        how += ", and the Python function against its expansion"
-    rows = {
-        "law": (law.error, how),
-        "closure_rad": (abs(law.closure_error), "miss of the driven angle over a lobe"),
-        "arc_length_mm": (
-            rolling.arc_error,
-            "last Chebyshev coefficients over all intervals, and rounding",
-        ),
-        "flank_mm": (
-            rolling.arc_error + reach * law.error + rounding,
-            "arc length, and the law's error and rounding at the largest radius",
-        ),
-    }
-    chord = max(gear.profile.chord_error for gear in result.gears)
+    rows = estimates(result.subject)
+    # between the places at which it is measured a chord may be off by more
+    chord = max(gear.profile.chord_error for gear in result.gears) / MARGIN
     return accuracy(rows, chord, result.design.output.kerf, measured)

@@ -154,9 +154,10 @@ class LogSpiral(Brief):
             key = f"law.ratios[{int(end > start)}]"
             ways = (Way(near={key: 1.0}, far={key: min(start, end)}),)
             demand_below_one(max(start, end), key, ways=ways)
-        first, turn = start / (1.0 + w * start), (1.0 + w * end) / (1.0 + w * start)
-        growth = w * math.log(turn) / self.driven_travel
-        travel = math.log(end / start / turn) / growth
+        first, rise = start / (1.0 + w * start), end - start
+        # logarithms of (1 + w*u)'s and of u's quotient, exact for nearly equal ratios too
+        growth = w * math.log1p(w * rise / (1.0 + w * start)) / self.driven_travel
+        travel = math.log1p(rise / (start * (1.0 + w * end))) / growth
 
         solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
         span = Travel(travel, self.driven_travel, w)

@@ -39,11 +39,14 @@ class Ellipse:
         count, e = demand_lobes(self.lobes, lobes), self.eccentricity
         k, w = lobes.n2 / lobes.n1, lobes.mate
         # A^2*(1 - e^2) - 2*w*A + 1 - k^2 = 0: the positive root
-        distance = (w + math.sqrt(e * e + (1.0 - e * e) * k * k)) / (1.0 - e * e)
+        flat = (1.0 - e) * (1.0 + e)
+        distance = (w + math.sqrt(e * e + flat * k * k)) / flat
         b, swing = distance - w, distance * e
+        least = k * k / (b + swing)  # b - swing, which are nearly equal in long ellipses
 
         def ratio(x: Jet) -> Jet:
-            return 1.0 / (swing * cos(count * x) + b)
+            half = cos((0.5 * count) * x)
+            return 1.0 / (2.0 * swing * half * half + least)
 
         def phi2(x: Jet) -> Jet:
             # tan(n2*phi2/2) = sqrt((b - A*e)/(b + A*e))*tan(n1*phi1/2) without its poles

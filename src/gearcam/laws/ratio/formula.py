@@ -15,6 +15,7 @@ from gearcam.laws.formula import (
     Axis,
     Given,
     derivative,
+    errors_of,
     formula_problems,
     function_of,
     values_of,
@@ -87,11 +88,12 @@ class Formula(Brief):
         span = span_of(lobes, self.driver_travel, self.driven_travel)
         if self.phi2 is not None:
             axis = axis_of("phi2", span.period)
-            phi2, error = function_of(self.phi2, axis, tolerances.expansion)
-            return replace(from_phi2(phi2, span, tolerances), function_error=error)
+            phi2 = function_of(self.phi2, axis, tolerances.expansion)
+            law = from_phi2(phi2, span, tolerances)
+            return replace(law, function_errors=errors_of(phi2)[:3])
         name = "ratio" if self.ratio is not None else "r1"
         axis = axis_of(name, span.n1 * span.period)
-        function, error = function_of(getattr(self, name), axis, tolerances.expansion)
+        function = function_of(getattr(self, name), axis, tolerances.expansion)
         demand_positive(values_of(function), name, span)
         _demand_repeats(function, name, span)
         if self.ratio is None:
@@ -100,14 +102,20 @@ class Formula(Brief):
             ratio = law.ratio(np.linspace(0.0, span.period, _PLACES_OF_LOBE))
             rate = float(((1.0 + law.mate * ratio) ** 2).mean())
             rate /= law.solved["center_distance_over_scale"]
-            return replace(law, function_error=rate * error * span.period)
+            return _of_ratio(law, rate, function)
         with demand_smooth(name):
             total = expand(values_of(function), [0.0, span.period], tolerances.expansion)
         factor = span.advance / total.antiderivative().last
         piece = Piece(lambda x: factor * function(x))
         solved = {"ratio_factor": factor}
         law = make_law(span, [0.0, span.period], [piece], tolerances, solved)
-        return replace(law, function_error=factor * error * span.period)
+        return _of_ratio(law, factor, function)
+
+
+def _of_ratio(law: RatioLaw, factor: float, function: Callable[[Jet], Jet]) -> RatioLaw:
+    """Return a law with the errors of a function that its ratio is in proportion to."""
+    ratio, slope = (factor * each for each in errors_of(function)[:2])
+    return replace(law, function_errors=(law.period * ratio, ratio, slope))
 
 
 def axis_of(name: str, high: float) -> Axis:
@@ -222,17 +230,18 @@ class RackLaw(Brief):
         turn = 2.0 * math.pi
         name = "r1" if self.travel is None else "travel"
         axis = Axis(name=name, high=turn, place=angle_text)
-        function, error = function_of(getattr(self, name), axis, tolerances.expansion)
-        if self.travel is None:
-            piece, error = Piece(function), turn * error
-        else:
-            piece = Piece(derivative(function), function)
+        function = function_of(getattr(self, name), axis, tolerances.expansion)
+        piece = (
+            Piece(derivative(function), function) if self.travel is not None else Piece(function)
+        )
         places = np.linspace(0.0, turn, PLACES)
         demand_radii("r1", places, values_of(piece.function)(places))
         with demand_smooth("r1"):
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
-        return replace(law, function_error=error)
+        if self.travel is None:
+            return _of_ratio(law, 1.0, function)
+        return replace(law, function_errors=errors_of(function)[:3])
 
 
 LAWS.register(

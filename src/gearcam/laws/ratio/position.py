@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import Axis, Given, formula_problems, function_of, values_of
+from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of, values_of
 from gearcam.laws.formula_syntax import VARIABLE
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
@@ -91,7 +91,7 @@ class MotionLaw(Brief):
             place=lambda x: f"x = {shown(x, 10)}",
             variable="x",
         )
-        shape, error = function_of(self.y or "", axis, tolerances.expansion)
+        shape = function_of(self.y or "", axis, tolerances.expansion)
         ends = values_of(shape)(np.array([start, end]))
         rise = float(ends[1] - ends[0])
         if not math.isfinite(rise) or rise == 0.0:
@@ -106,7 +106,9 @@ class MotionLaw(Brief):
             "k2_deg_per_y": math.degrees(scale),
         }
         law = from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
-        return replace(law, function_error=abs(scale) * error)
+        y, slope, bend = (abs(scale) * each for each in errors_of(shape)[:3])
+        errors = y, abs(per_angle) * slope, per_angle**2 * bend
+        return replace(law, function_errors=errors)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         if lobes.n2 != 1:
@@ -119,7 +121,7 @@ class MotionLaw(Brief):
                 "the pair is external",
             )
         axis = replace(axis_of("slide", lobes.period), series=True)
-        shape, error = function_of(self.slide or "", axis, tolerances.expansion)
+        shape = function_of(self.slide or "", axis, tolerances.expansion)
         slide, radius = make_slide(shape, float(self.rod or 0.0), lobes.period)
         knots, pieces, start = crank_angle(slide)
         solved = {
@@ -127,7 +129,8 @@ class MotionLaw(Brief):
             "crank_angle_at_start_deg": math.degrees(start),
         }
         law = make_law(lobes, knots, pieces, tolerances, solved)
-        return replace(law, function_error=error / (radius * NARROWEST))
+        angle, ratio, slope = (each / (radius * NARROWEST) for each in errors_of(shape)[:3])
+        return replace(law, function_errors=(angle, ratio, slope))
 
 
 LAWS.register(

@@ -53,7 +53,7 @@ class FormulaRise(Brief):
         InfeasibleError
             Where the formula is not finite or not smooth, or does not go from 0 to 1.
         """
-        shape, _ = function_of(self.formula, _AXIS, tolerances.expansion)
+        shape = function_of(self.formula, _AXIS, tolerances.expansion)
         cuts = demand_smooth(shape, self.formula, _AXIS, _NAMES, tolerances)
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
