@@ -7,10 +7,11 @@ def main() -> int:
     """Run the command line of this process and return its exit code."""
     try:
         from gearcam.cli import main as run
-    except KeyboardInterrupt:  # while it is loaded
-        sys.stderr.write("interrupted: nothing was done\n")
+
+        return run()
+    except KeyboardInterrupt:  # before the command line answers it, or after
+        sys.stderr.write("interrupted\n")
         return 130
-    return run()
 
 
 if __name__ == "__main__":

@@ -43,7 +43,9 @@ class Ended:
 
     def code(self, code: int) -> int:
         """Return the exit code: that of the signal, or `code`, which knows of Ctrl-C itself."""
-        return code if self.number in (None, signal.SIGINT) else _BASE + self.number
+        if self.number is None or self.number == signal.SIGINT:
+            return code
+        return _BASE + self.number
 
 
 @contextmanager
@@ -71,12 +73,13 @@ def unbroken() -> Iterator[None]:
     """Have signals that end the program wait until what is done within is done.
 
     Threads and processes that begin within answer none of them.
+
+    Yields
+    ------
+    None
     """
-    if not _is_main():
-        yield
-        return
     came: list[int] = []
-    before = {number: signal.getsignal(number) for number in SIGNALS}
+    before = {number: signal.getsignal(number) for number in SIGNALS} if _is_main() else {}
     waiting = {number: one for number, one in before.items() if one not in (signal.SIG_IGN, None)}
     try:
         for number in waiting:  # one may come by another thread, which no mask keeps back

@@ -56,6 +56,18 @@ def test_it_rises_where_the_points_rise(steps: list[float], data: st.DataObject)
         assert slope.min() >= -1e-9 * float((np.diff(y) / np.diff(x)).max())
 
 
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 6.4e-6])
+@pytest.mark.parametrize("step", [1e-3, 0.1])
+def test_two_points_close_to_each_other_do_not_throw_the_curve_off(gap: float, step: float) -> None:
+    """Beside an extreme a curvature that suits the narrow interval is none for its neighbours."""
+    x = np.linspace(0.0, 2.0 * math.pi, 37)
+    y = 1.0 + 0.2 * np.cos(x)
+    x, y = np.insert(x, 6, x[5] + gap), np.insert(y, 6, y[5] + step)
+    found = values(x, quintics(x, y, 0.0), np.linspace(0.0, x[-1], 20001))
+    assert found.min() >= y.min() - 0.5 * step
+    assert found.max() <= y.max() + 0.5 * step
+
+
 def test_points_at_a_step_do_not_overshoot() -> None:
     x = np.arange(12.0)
     y = np.array([0.0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1])

@@ -2,6 +2,7 @@
 
 All lengths of a design are scaled, its tolerances too: outlines and facts scale with them, areas
 and volumes by their powers. Lengths are told against the size of the pair: places are rounded so.
+Edges are sharp: along outlines without a corner rounding tells where vertices lie.
 """
 
 from __future__ import annotations
@@ -26,7 +27,6 @@ EDGES = {
     "bore_diameter_mm": [0.08, 0.1],
     "density_kg_m3": 7850,
     "clearance_mm": 5e-5,
-    "tip_rounding_mm": 8e-5,
     "timing_marks": False,
 }
 SPIRAL = {"type": "formula", "ratio": "exp(phi1/3)", "driver_travel_deg": 200}
@@ -107,7 +107,9 @@ def differs(name: str, one: Any, other: Any, scale: float, size: float) -> bool:
     if re.search(r"tool\.(slot_)?at_mm", name):
         return False  # of places that are alike rounding tells which is named
     p = power(name)
-    about = max(abs(one), size**p) if p > 0 else abs(one)
+    if name.endswith("_deg"):
+        return not abs((other - one + 180.0) % 360.0 - 180.0) <= SAME * 360.0
+    about = max(abs(one), size**p if p > 0 else 0.0)
     return not abs(other / scale**p - one) <= SAME * about
 
 

@@ -177,13 +177,18 @@ def test_a_writer_that_does_not_end_is_not_waited_for_for_ever(
     write_all(tmp_path, files_of("new"))
 
 
-def test_a_disk_that_knows_no_locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("call", "error"), [("fcntl.flock", OSError(errno.ENOTSUP, "")), ("os.open", PermissionError())]
+)
+def test_a_disk_that_knows_no_locks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str, error: OSError
+) -> None:
     """Nobody knows whose the temporary files are, then."""
 
     def none(*_: object) -> None:
-        raise OSError(errno.ENOTSUP, "Operation not supported")
+        raise error
 
-    monkeypatch.setattr("fcntl.flock", none)
+    monkeypatch.setattr(call, none)
     left = tmp_path / f".gearcam-{os.urandom(16).hex()}.tmp"
     left.write_bytes(b"")
     write_all(tmp_path, files_of("new"))

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
+import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from gearcam import build, load
+from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, FromFile, read_rows, tables_in
+from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.laws.ratio.table import TableLaw
 from gearcam.laws.rises.points import TableRise
@@ -57,6 +62,8 @@ def test_separators_that_are_clear_are_read_and_told(tmp_path: Path, text: str, 
         ("x;y\n0;0\n0,5;0.5\n1;1\n", "line 3: '0,5' is not a number; use a decimal point"),
         ("x;y\n0;0\n1.000,5;0\n1;1\n", "line 3: '1.000,5' is not a number"),
         ("x;y,z\n0;0,1\n", "line 1: the columns are x;y, z"),
+        ("x,y\n0,0\n0.5,1_0\n1,1\n", "line 3: '1_0' is not a number"),
+        ("x,y\n0,0\n0.5,\u0661\n1,1\n", "line 3: '\u0661' is not a number"),
     ],
 )
 def test_what_is_not_clear_is_refused(tmp_path: Path, text: str, message: str) -> None:
@@ -105,3 +112,64 @@ def test_rows_are_found_wherever_their_parameters_stand(tmp_path: Path) -> None:
     assert rows.file == law.file
     assert isinstance(law, FromFile)
     assert TableLaw(phi1=(0.0,), ratio=(1.0,)).rows is None
+
+
+def test_a_million_rows_are_refused_before_they_are_taken_apart(tmp_path: Path) -> None:
+    """In a fifth of the time that reading them would take."""
+    few = written(tmp_path, "phi1_deg,ratio\n" + "1.5,2.5\n" * 10_000)
+    start = time.process_time()
+    read_rows(few).columns(("phi1_deg", "ratio"))
+    taken = time.process_time() - start
+    many = written(tmp_path, "phi1_deg,ratio\n" + "1,2\n" * 1_000_000)
+    start = time.process_time()
+    with pytest.raises(ColumnsError, match="has 1000000 rows; up to 20000 are read"):
+        read_rows(many)
+    assert time.process_time() - start < 20.0 * taken
+
+
+ANGLES = tuple(math.radians(30.0 * k) for k in range(13))
+WAVE = tuple(1.0 + 0.2 * math.cos(angle) for angle in ANGLES)
+
+
+@pytest.mark.parametrize(
+    ("phi1", "message"),
+    [
+        ({4: 60.0}, "60 deg follows 90 deg"),
+        ({4: 90.0}, "90 deg stands twice"),
+        ({4: 90.0003}, "90.0003 deg follows 90 deg"),
+        ({4: 90.0004}, ""),
+    ],
+)
+def test_angles_of_a_ratio_rise_by_a_second_of_arc(
+    tmp_path: Path, phi1: dict[int, float], message: str
+) -> None:
+    angles = [math.radians(phi1.get(k, 30.0 * k)) for k in range(13)]
+    told = [one[:3] for one in TableLaw(phi1=tuple(angles), ratio=WAVE).problems()]
+    assert told == ([("phi1", 4, message)] if message else [])
+    lines = (
+        f"{math.degrees(angle)!r},{value!r}\n" for angle, value in zip(angles, WAVE, strict=True)
+    )
+    file = written(tmp_path, "phi1_deg,ratio\n" + "".join(lines))
+    said = [one[2] for one in TableLaw(file=file).problems()]
+    assert [message in one for one in said] == [True] * bool(message)
+
+
+@pytest.mark.parametrize("name", ["ratio", "r1"])
+@pytest.mark.parametrize("scale", [1e-320, 1e-101, 1e-99, 1e99, 1e101, 1e307])
+@pytest.mark.filterwarnings("error")
+def test_ratios_and_radii_at_any_scale_that_has_a_square(name: str, scale: float) -> None:
+    """Beyond it they are refused; within it the law is that of scale 1."""
+    values = tuple(scale * value for value in WAVE)
+    given: list[Any] = [{name: values, "phi1": ANGLES}, {name: f"{scale!r}*(1 + 0.2*cos(phi1))"}]
+    for law, plain in zip(given, (TableLaw, Formula), strict=True):
+        if not 1e-100 < scale < 1e100:
+            size = "small" if scale < 1.0 else "large"
+            with pytest.raises(InfeasibleError, match=f"{name} is too {size} for computing"):
+                plain(**law).build(ONE_LOBE, DEFAULT)
+            continue
+        one: dict[str, Any] = (
+            {name: WAVE, "phi1": ANGLES} if "phi1" in law else {name: "1 + 0.2*cos(phi1)"}
+        )
+        found, right = (plain(**each).build(ONE_LOBE, DEFAULT) for each in (law, one))
+        places = np.linspace(0.0, 6.0, 31)
+        np.testing.assert_allclose(found.phi2(places), right.phi2(places), atol=1e-12)

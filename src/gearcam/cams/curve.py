@@ -129,6 +129,42 @@ class CamCurve(Brief):
             return a, m.arm * (1.0 + ds) - m.pivot * np.cos(position), theta + position
         return position, ds - m.offset, theta
 
+    def jump_of(self, theta: Array, s: Array, ds: Array) -> Array:
+        """Return what the velocities of a jump are in the parameter that draws it evenly.
+
+        The direction of a round follower's centre, of a swinging face where along it is touched;
+        it rises with the velocity.
+
+        Parameters
+        ----------
+        theta, s, ds : (n,) arrays
+            Cam angles, rad, lift and velocity there.
+
+        Returns
+        -------
+        (n,) array
+            rad, or in the distance of the pivot; of a sliding face the velocity itself.
+        """
+        m = self.mechanism
+        if m.flat:
+            return ds / (1.0 + ds) if m.oscillating else ds
+        a, b, _ = self.velocity(theta, s, ds)
+        return np.arctan(b / np.abs(a))
+
+    def velocity_of(self, theta: Array, s: Array, jump: Array) -> Array:
+        """Return the velocities of a jump.
+
+        Parameters
+        ----------
+        theta, s, jump : (n,) arrays
+            Cam angles, rad, lift there, and the parameter of the jump (see `jump_of`).
+        """
+        m = self.mechanism
+        if m.flat:
+            return jump / (1.0 - jump) if m.oscillating else jump
+        a, b, _ = self.velocity(theta, s, np.zeros_like(s))
+        return (np.abs(a) * np.tan(jump) - b) / m.lever
+
     def _flat(self, theta: Array, s: Array, ds: Array) -> tuple[Plane, Plane]:
         m = self.mechanism
         position = m.start + s
@@ -154,7 +190,7 @@ class ProfileSegments(Brief):
     piece : (n,) array of int
         Smooth piece of the lift that a sweep belongs to, or that begins at a jump.
     start, end : (n,) arrays
-        theta of a sweep, rad; velocity of a jump, mm or rad per rad.
+        theta of a sweep, rad; of a jump what is even where it is drawn (see `CamCurve.jump_of`).
     jump : (n,) array of bool
         Which are jumps.
     corner : (n,) array of bool
@@ -205,14 +241,16 @@ class ProfileSegments(Brief):
         index : (n,) array of int
             Numbers of the segments.
         parameter : (n,) array
-            theta or velocity, within them.
+            Within them.
         order : int
             Of the last derivative.
         """
         jump, program = self.jump[index], self.curve.program
         theta = np.where(jump, program.knots[self.piece[index]], parameter)
         s, ds, *more = program.lift.on_pieces(self.piece[index], theta, order)
-        return theta, s, np.where(jump, parameter, ds), *more
+        if jump.any():
+            ds[jump] = self.curve.velocity_of(theta[jump], s[jump], parameter[jump])
+        return theta, s, ds, *more
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points and unit tangents in the direction of drawing; backwards where undercut.
@@ -222,7 +260,7 @@ class ProfileSegments(Brief):
         index : (n,) array of int
             Numbers of the segments.
         parameter : (n,) array
-            theta or velocity, within them.
+            Within them.
         """
         theta, s, ds = self.states(index, parameter)
         return self.curve.trace(theta, s, ds, self.inset)
@@ -235,7 +273,7 @@ class ProfileSegments(Brief):
         index : (n,) array of int
             Numbers of the segments.
         parameter : (n,) array
-            theta or velocity, within them.
+            Within them.
 
         Returns
         -------
@@ -253,12 +291,9 @@ class ProfileSegments(Brief):
     def _rolling(self, theta: Array, s: Array, ds: Array) -> Array:
         """Return how fast a jump draws: a roller about its centre, or along a flat face."""
         m = self.curve.mechanism
-        position = m.start + s
         if m.flat:
-            swings = m.pivot * np.cos(position) / (1.0 + ds) ** 2
-            return swings if m.oscillating else np.ones_like(s)
-        a, b, _ = self.curve.velocity(theta, s, ds)
-        return self.inset * a * (m.arm or 1.0) / (a * a + b * b)
+            return m.pivot * np.cos(m.start + s) if m.oscillating else np.ones_like(s)
+        return self.inset * np.sign(self.curve.velocity(theta, s, ds)[0])
 
 
 def segments(curve: CamCurve, inset: float) -> ProfileSegments:
@@ -283,7 +318,9 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
     for piece, (low, high) in enumerate(pairwise(program.knots.tolist())):
         jump = hard.get(low)
         if jump and drawn:
-            rows.append((piece, jump.before, jump.after, True, False))
+            theta, lift = np.array([low, low]), program.lift.side(piece, 1, 0)[0] + np.zeros(2)
+            ends = curve.jump_of(theta, lift, np.array([jump.before, jump.after])).tolist()
+            rows.append((piece, *ends, True, False))
         rows.append((piece, low, high, False, jump is not None and not drawn))
     return ProfileSegments(curve, inset, *map(np.array, zip(*rows, strict=True)))
 

@@ -131,12 +131,12 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         return found
     places, values = extremes_among(speed, survey.places, *seen)
     sweep = np.searchsorted(cuts, places, side="right")
-    cells = places[:-1], places[1:]
     before, after = values[:-1] < 0.0, values[1:] < 0.0
     whole = sweep[:-1] == sweep[1:]  # not across a knot
-    low, high = (_at_knots(ends, knots) for ends in cells)
+    low, high = _at_knots(places[:-1], knots), _at_knots(places[1:], knots)
     turns = whole & (before != after)
-    roots = bracketed_root(lambda t: speed(t)[0], *(ends[turns] for ends in cells), _ROOT)
+    ends = places[:-1][turns], places[1:][turns]
+    roots = bracketed_root(lambda t: speed(t)[0], ends[0], ends[1], _ROOT)
     low[turns & after] = roots[after[turns]]
     high[turns & before] = roots[before[turns]]
     kept = whole & (before | after) & (low < high)

@@ -250,10 +250,13 @@ def swing(pivot: float, arm: float, size: float) -> float:
         From the axis to the pivot, from there to the arm's end, from this to the axis: sides of a
         triangle.
     """
-    # half the angle from the sides: exact where the triangle is nearly flat
+    # half the angle from the sides, with parentheses (after Kahan) that keep all digits where the
+    # triangle is nearly flat
+    small, large = sorted([pivot, arm])
+    apart = large - small
     half = math.atan2(
-        math.sqrt((size - pivot + arm) * (size + pivot - arm)),
-        math.sqrt((pivot + arm - size) * (pivot + arm + size)),
+        math.sqrt((size - apart) * (size + apart)),
+        math.sqrt((small - (size - large)) * (small + (size + large))),
     )
     return 2.0 * half
 

@@ -110,7 +110,9 @@ class Moved(Brief):
     def lift(self) -> list[float]:
         """Errors of the lift, mm or rad, and of its first three derivatives, per rad and so on."""
         own, *others = self._turn
-        return np.max([np.abs(one.found - own.found).max(axis=1) for one in others], axis=0).tolist()
+        return np.max(
+            [np.abs(one.found - own.found).max(axis=1) for one in others], axis=0
+        ).tolist()
 
     def error(self, curve: CamCurve, quantity: Quantity) -> float:
         """Return the error of a quantity, the largest of the turn.

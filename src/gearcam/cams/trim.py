@@ -52,7 +52,7 @@ _OVERLAP = 1e-12
 _MISS = 1e-12
 """Distance of two curves at their crossing, in sizes of the cam: rounding of points."""
 
-_ROUNDING = 16.0 * np.finfo(float).eps
+_ROUNDING = 4.0 * np.finfo(float).eps
 """Part of an angle by which it is rounded where two curves cross: a steep curve moves far by it."""
 
 
@@ -163,8 +163,12 @@ def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
     """Return whether curves meet at the crossings of a ring, as near as rounding allows."""
     places = [place for branch in ring.branches for place in branch]
     index, parameter = (np.array(values) for values in zip(*places, strict=True))
-    way = np.abs(parameter * segments.moving(index, parameter)[1])
-    return ring.gap <= _MISS * size + _ROUNDING * float(way.max())
+    rounding = _ROUNDING * np.abs(parameter)
+    ends = np.sort([segments.start[index], segments.end[index]], axis=0)
+    # a curve that stands at its beginning may be fast within the rounding of an angle
+    beside = (np.clip(parameter + shift, *ends) for shift in (-rounding, 0.0, rounding))
+    ways = [rounding * np.abs(segments.moving(index, place)[1]) for place in beside]
+    return ring.gap <= _MISS * size + float(np.max(ways))
 
 
 def _about_axis(ring: Ring) -> bool:

@@ -24,7 +24,7 @@ LARGEST: Final = 2_000_000
 
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _TWICE = re.compile(r"Cannot declare \((.*)\) twice")
-_LONG = re.compile(r"[0-9_]{1000,}")
+_LONG = re.compile(r"(?<![0-9_])[0-9_]{1000,}")
 """Digits that are, or may be, too many for a whole number."""
 
 _DEEP_KEY = re.compile(

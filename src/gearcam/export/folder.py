@@ -112,16 +112,17 @@ def lock(folder: Path) -> Iterator[bool]:
     """
     try:
         import fcntl
-    except ImportError:  # not on Windows
+
+        handle = os.open(folder, os.O_RDONLY)
+    except (ImportError, PermissionError):  # on Windows, and where one may write but not look
         yield False
         return
-    handle = os.open(folder, os.O_RDONLY)
     try:
-        end, held = time.monotonic() + _PATIENCE, False
-        while not held:
+        end, locked = time.monotonic() + _PATIENCE, False
+        while not locked:
             try:
                 fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                held = True
+                locked = True
             except BlockingIOError as error:
                 if time.monotonic() > end:
                     words = f"another gearcam has been writing to it for {_PATIENCE:.0f} s"
@@ -129,7 +130,7 @@ def lock(folder: Path) -> Iterator[bool]:
                 time.sleep(_PAUSE)
             except OSError:  # a disk of another computer may know no locks
                 break
-        yield held
+        yield locked
     finally:
         os.close(handle)
 

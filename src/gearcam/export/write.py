@@ -74,13 +74,18 @@ def write_all(
     folder = Path(directory) / name
     demand_name(folder)
     try:
-        if name and folder.is_symlink():
-            words = "it is a link, and may lead elsewhere: remove it, or choose another folder"
-            raise OSError(errno.ELOOP, words, str(folder))
+        if name:
+            _demand_no_link(folder)
         return _write(folder, make, keep)
     except OSError as error:
         place = error.filename2 or error.filename or folder
         raise WriteError(f"cannot write to {place}: {error.strerror or error}") from error
+
+
+def _demand_no_link(folder: Path) -> None:
+    if folder.is_symlink():
+        words = "it is a link, and may lead elsewhere: remove it, or choose another folder"
+        raise OSError(errno.ELOOP, words, str(folder))
 
 
 def _write(folder: Path, make: Make, keep: bool) -> tuple[str, ...]:

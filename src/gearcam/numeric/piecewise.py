@@ -134,10 +134,12 @@ class Piecewise(Brief):
         result = np.empty((order + 1, x.size))
         for begin in range(0, x.size, _BLOCK):
             part = slice(begin, begin + _BLOCK)
-            result[:, part] = self._some(index[part], x[part], order)
+            result[:, part] = self._some(index[part], x[part], order, moved)
         return result
 
-    def _some(self, index: Ints, x: Array, order: int) -> Array:
+    def _some(
+        self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None
+    ) -> Array:
         """Return what `on_pieces` does, at once."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))

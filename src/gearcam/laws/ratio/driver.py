@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.ratio.base import RatioLaw, make_law
-from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, demand_radii, demand_smooth
+from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, angle_text, demand_smooth
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
@@ -22,6 +22,9 @@ _APART = 1e-9
 
 _LAST_DIGIT = 1e-15
 """To which a centre distance is solved, in the largest possible: its rounding."""
+
+_SMALLEST, _LARGEST = 1e-100, 1e100
+"""Ratios and radii at any scale: their squares are finite."""
 
 LOBES = "lobes of driver and driven wheel; in lowest terms as the tooth counts when left out"
 """What the key ``lobes`` means."""
@@ -89,6 +92,38 @@ def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) 
     """
     angles = np.linspace(0.0, lobes.period, PLACES)
     demand_radii(name, angles, function(angles))
+
+
+def demand_radii(name: str, angles: Array, values: Array, place: str = "") -> None:
+    """Refuse ratios or radii, at any scale, that are not finite, not positive or out of range.
+
+    Parameters
+    ----------
+    name : str
+        What they are.
+    angles : (n,) array, rad
+        Where they are.
+    values : (n,) array
+        The ratios or radii.
+    place : str
+        Words before the angle that is wrong.
+
+    Raises
+    ------
+    InfeasibleError
+        Naming the first place.
+    """
+    wrongs = {
+        "is not finite": (~np.isfinite(values), None),
+        "is not positive": (values <= 0.0, 0.0),
+        "is too small for computing": (values < _SMALLEST, _SMALLEST),
+        "is too large for computing": (values > _LARGEST, _LARGEST),
+    }
+    for state, (wrong, limit) in wrongs.items():
+        for row in np.flatnonzero(wrong)[:1].tolist():
+            value = None if limit is None else float(values[row])
+            where = place + angle_text(float(angles[row]))
+            raise InfeasibleError(f"{name} {state}", where=where, value=value, limit=limit)
 
 
 def _ratio(shape: Callable[..., Jet], center: float, mate: int) -> Callable[..., Jet]:

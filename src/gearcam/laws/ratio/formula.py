@@ -20,7 +20,7 @@ from gearcam.laws.formula import (
     values_of,
 )
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
+from gearcam.laws.ratio.driver import demand_positive, demand_radii, law_of_centrode
 from gearcam.laws.ratio.span import (
     PLACES,
     RING,
@@ -28,7 +28,6 @@ from gearcam.laws.ratio.span import (
     RackTravel,
     Span,
     angle_text,
-    demand_radii,
     demand_smooth,
     open_travel,
     span_of,

@@ -24,9 +24,6 @@ from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece, Piecewise
 from gearcam.quantities import ANGLE, param
 
-SMALLEST, LARGEST = 1e-100, 1e100
-"""Ratios and radii at any scale: their squares are finite."""
-
 _FLAT = 1e-9
 """Growth of the radius in a radian below which the continued centrode is a circle: rounding."""
 
@@ -281,38 +278,6 @@ def demand_smooth(name: str) -> Iterator[None]:
         nearest = NO_JUMPS if error.finite else ""
         where = angle_text(error.place)
         raise InfeasibleError(f"{name} {state}", where=where, nearest=nearest) from error
-
-
-def demand_radii(name: str, angles: Array, values: Array, place: str = "") -> None:
-    """Refuse ratios or radii, at any scale, that are not finite, not positive or out of range.
-
-    Parameters
-    ----------
-    name : str
-        What they are.
-    angles : (n,) array, rad
-        Where they are.
-    values : (n,) array
-        The ratios or radii.
-    place : str
-        Words before the angle that is wrong.
-
-    Raises
-    ------
-    InfeasibleError
-        Naming the first place.
-    """
-    wrongs = {
-        "is not finite": (~np.isfinite(values), None),
-        "is not positive": (values <= 0.0, 0.0),
-        "is too small for computing": (values < SMALLEST, SMALLEST),
-        "is too large for computing": (values > LARGEST, LARGEST),
-    }
-    for state, (wrong, limit) in wrongs.items():
-        for row in np.flatnonzero(wrong)[:1].tolist():
-            value = None if limit is None else float(values[row])
-            where = place + angle_text(float(angles[row]))
-            raise InfeasibleError(f"{name} {state}", where=where, value=value, limit=limit)
 
 
 def open_travel(wheel: str) -> Any:

@@ -15,8 +15,8 @@ from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.driver import law_of_centrode
-from gearcam.laws.ratio.span import Lobes, Span, Travel, demand_equal, demand_radii, open_travel
+from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
+from gearcam.laws.ratio.span import Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
