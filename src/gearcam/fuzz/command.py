@@ -120,5 +120,5 @@ def _saved(found: Catch, folder: Path) -> Path:
         name: ((head if name == first else "") + text).encode()
         for name, text in found.files.items()
     }
-    write_all(folder, contents, keep=True)
+    write_all(folder, lambda _: contents, keep=True)
     return folder / first
