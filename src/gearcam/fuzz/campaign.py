@@ -156,14 +156,10 @@ class Campaign:
     @property
     def refused(self) -> float:
         """Share of the designs drawn to be built that were refused."""
-        whole = {end: n for (_, drawn, end), n in self._by_end() if drawn == _WHOLE}
-        return (whole.get(REFUSED, 0) + whole.get(WRONG, 0)) / max(sum(whole.values()), 1)
-
-    def _by_end(self) -> Iterator[tuple[tuple[str, str, str], int]]:
-        summed: Counter[tuple[str, str, str]] = Counter()
+        ends: Counter[str] = Counter()
         for (_, drawn, end), count in self.counts.items():
-            summed["", drawn, end] += count
-        yield from summed.items()
+            ends[end] += count if drawn == _WHOLE else 0
+        return (ends[REFUSED] + ends[WRONG]) / max(ends.total(), 1)
 
     @property
     def good(self) -> bool:
@@ -178,7 +174,8 @@ class Campaign:
             counts = [self.counts[kind, drawn, end] for end in ends]
             rows.append((f"{kind}, {drawn}", *map(str, (sum(counts), *counts))))
         yield from lined_up(rows)
-        yield f"refused of those {_WHOLE}: {100 * self.refused:.1f} %"
+        shares = (f"{100 * share:.1f} %" for share in (self.refused, MOST_REFUSED))
+        yield f"refused of those {_WHOLE}: {' of at most '.join(shares)}"
         for reason, count in self.reasons.most_common(_REASONS):
             yield f"  {count:>6}  {reason}"
         yield f"studied by other means: {self.doubted}, suggestions built: {self.followed}"
