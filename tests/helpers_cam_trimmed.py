@@ -1,8 +1,9 @@
-"""What undercut costs and what lies between two walls, beside the truth (see `helpers_cam_truth`)."""
+"""What undercut costs and what lies between two walls, beside the truth."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import mpmath
@@ -25,13 +26,17 @@ def inside(pieces: list[Piece], theta: float) -> bool:
     return all(min(abs(theta - one.low), abs(theta - one.high)) > _AT_KNOT for one in pieces)
 
 
+def _room(touch: Touch, piece: Piece, theta: Number) -> Number:
+    return touch.room(theta, piece.shape(theta))
+
+
 def trimming(result: Any, own: Any, touch: Touch, pieces: list[Piece]) -> Iterator[Row]:
     """Yield ends of undercut stretches, the lift that corners cost, and what sizes they leave."""
     driver, (scale, unit) = result.mechanism.driver, result.mechanism.outward
     for end in np.unique(own.undercut).tolist():
         if inside(pieces, end):
             piece = exact.piece_at(pieces, end)
-            root = mp.findroot(lambda t, p=None, of=piece: touch.room(t, of.shape(t)), mp.mpf(end))
+            root = mp.findroot(partial(_room, touch, piece), mp.mpf(end))
             yield f"undercut_{driver.unit}", driver.scale * end, driver.scale * root, driver.turn
     told = [(corner.before, corner.after) for corner in own.corners]
     if not told or own.program.hard or not all(inside(pieces, t) for pair in told for t in pair):
@@ -40,7 +45,7 @@ def trimming(result: Any, own: Any, touch: Touch, pieces: list[Piece]) -> Iterat
         exact.crossing(touch, tuple(exact.piece_at(pieces, t) for t in pair), pair)  # type: ignore[arg-type]
         for pair in told
     ]
-    size = max(map(abs, exact.piece_at(pieces, 0).shape(0)[:1])) + own.program.range[1]
+    size = own.program.range[1] - own.program.range[0]
     for loss, (_, _, point) in zip(own.lost, true, strict=True):
         piece = exact.piece_at(pieces, loss.theta)
 
@@ -70,4 +75,5 @@ def play(result: Any, motion: Touch, walls: list[Touch], pieces: list[Piece]) ->
         return exact.lost_between(motion, pieces, t, insets)
 
     true = exact.best(between, lost.theta, (mp.mpf(-1), mp.mpf(8)))
-    yield f"lost_motion_{unit}", scale * lost.value, scale * true, scale * lost.value
+    size = cam.motions[0].total_lift.value
+    yield f"lost_motion_{unit}", scale * lost.value, scale * true, size

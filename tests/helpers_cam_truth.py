@@ -1,4 +1,4 @@
-"""What a cam tells of itself beside the truth: by family, the estimate, the true error, the size."""
+"""What a cam tells of itself beside the truth, by families of numbers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from witness.lifts import Piece, lift
 mp: Any = mpmath.mp
 Number = Any
 Row = tuple[str, float, Number, Number]
-"""Name of an estimate, what is told, the truth, and what the size of the quantity is measured by."""
+"""Name of an estimate, what is told, the truth, and the size of such quantities."""
 
 _NOTHING = 1e-20
 """Part of the largest slope that is rounding."""
@@ -39,9 +39,18 @@ def extremes(pieces: list[Piece], order: int = 0) -> tuple[Number, Number]:
         slopes = [one.shape(t)[order + 1] for t in places]
         for a, b, low, high in zip(places, places[1:], slopes, slopes[1:], strict=False):
             if low * high < 0 and min(abs(low), abs(high)) > _NOTHING * max(map(abs, slopes)):
-                root = mp.findroot(partial(_slope, one, order + 1), (a, b), solver="illinois", verify=False)
+                root = _root(partial(_slope, one, order + 1), a, b)
                 found.append(one.shape(root)[order])
     return min(found), max(found)
+
+
+def _root(function: Any, low: Number, high: Number) -> Number:
+    """Where a function changes its sign, by halving."""
+    falls = function(low) > 0
+    for _ in range(70):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (function(middle) > 0) == falls else (low, middle)
+    return low
 
 
 def _slope(piece: Piece, order: int, theta: Number) -> Number:
@@ -73,7 +82,11 @@ def touches(design: Mapping[str, Any], pieces: list[Piece]) -> tuple[list[Touch]
             return [own], [own]
         wide = radius + mp.mpf(cam.get("roller_clearance_mm", 0)) / 2
         return [own], [replace(own, radius=wide), replace(own, radius=-wide)]
-    size = mp.mpf(cam["prime_radius_mm"]) if "prime_radius_mm" in cam else cam["base_radius_mm"] + radius
+    size = (
+        mp.mpf(cam["prime_radius_mm"])
+        if "prime_radius_mm" in cam
+        else cam["base_radius_mm"] + radius
+    )
     e, face = mp.mpf(given.get("offset_mm", 0)), mp.mpf(given.get("face_offset_mm", 0))
     if not swings:
         start = size if flat else mp.sqrt(size**2 - e**2)
@@ -109,7 +122,10 @@ def _second(design: Mapping[str, Any], own: Touch, highest: Number) -> Touch:
             apart = mp.mpf(given["roller_distance_mm"]) + preload
         below = apart - own.start - highest
     return replace(
-        own, start=-highest - below, radius=mp.mpf(given["roller2_radius_mm"]), arm=arm
+        own,
+        start=-highest - below,
+        radius=mp.mpf(given.get("roller2_radius_mm", own.radius)),
+        arm=arm,
     )
 
 
@@ -131,7 +147,7 @@ def rows(result: Any, design: Mapping[str, Any], seed: int = 0) -> Iterator[Row]
     pieces = lift(design)
     motions, walls = touches(design, pieces)
     theta = places(pieces, seed)
-    told, (scale, unit) = result.motion_at(np.array(theta)), result.mechanism.outward
+    told, unit = result.motion_at(np.array(theta)), result.mechanism.outward[1]
     driver = result.mechanism.driver
     states = [exact.at(pieces, mp.mpf(t)) for t in theta]
     factor, rate = (mp.degrees(1) if unit == "deg" else mp.mpf(1)), mp.mpf(1)
@@ -149,7 +165,7 @@ def rows(result: Any, design: Mapping[str, Any], seed: int = 0) -> Iterator[Row]
         yield from _of_motion(own, touch, (theta, states), told)
         yield from _extremes_of(own, touch, pieces)
     for own, touch in zip(result.cam.walls, walls, strict=True):
-        yield from _of_wall(result, own, touch, (theta, states))
+        yield from _of_wall(own, touch, (theta, states))
         yield from trimming(result, own, touch, pieces)
         if not own.corners and not own.undercut:
             yield from _sizes(own, touch, pieces)
@@ -176,7 +192,12 @@ def _extremes_of(own: Any, touch: Touch, pieces: list[Piece]) -> Iterator[Row]:
     for kind in ("rise", "return"):
         if (told := own.pressure(kind)) is not None:
             degrees = replace_values(told)
-            yield from found("pressure_angle_deg", degrees, lambda one, t: mp.degrees(touch.pressure(one.shape(t))), mp.mpf(90))
+            yield from found(
+                "pressure_angle_deg",
+                degrees,
+                lambda one, t: mp.degrees(touch.pressure(one.shape(t))),
+                mp.mpf(90),
+            )
     if touch.flat:
         told = own.face_radius
         size = max(abs(told.low.value), abs(told.high.value))
@@ -184,7 +205,9 @@ def _extremes_of(own: Any, touch: Touch, pieces: list[Piece]) -> Iterator[Row]:
     else:
         told = own.pitch_curvature()
         size = max(abs(told.low.value), abs(told.high.value))
-        yield from found("curvature_per_mm", told, lambda one, t: touch.curvature(t, one.shape(t)), size)
+        yield from found(
+            "curvature_per_mm", told, lambda one, t: touch.curvature(t, one.shape(t)), size
+        )
 
 
 def replace_values(told: Any) -> Any:
@@ -209,7 +232,7 @@ def _of_motion(own: Any, touch: Touch, at: Any, told: Any) -> Iterator[Row]:
         yield "curvature_per_mm", 1.0 / value, bend, size
 
 
-def _of_wall(result: Any, own: Any, touch: Touch, at: Any) -> Iterator[Row]:
+def _of_wall(own: Any, touch: Touch, at: Any) -> Iterator[Row]:
     theta = at[0]
     left, points, _ = own.places_at(np.array(theta))
     size = mp.mpf(float(np.abs(own.outline).max()))
@@ -241,6 +264,22 @@ def judged(found: Iterator[Row]) -> dict[str, tuple[float, float]]:
     """The largest true error of each family, and its size."""
     made: dict[str, tuple[float, float]] = {}
     for name, value, true, size in found:
-        off = float(abs(mp.mpf(value) - true))
-        made[name] = max(off, made.get(name, (0.0, 0.0))[0]), max(float(size), made.get(name, (0.0, 0.0))[1])
+        off, before = float(abs(mp.mpf(value) - true)), made.get(name, (0.0, 0.0))
+        made[name] = max(off, before[0]), max(float(size), before[1])
+    return made
+
+
+def faults(
+    told: Mapping[str, float], found: Mapping[str, tuple[float, float]], most: float = 100.0
+) -> list[str]:
+    """What is not honest: estimates below the true error, or above so many times it.
+
+    Where both are rounding, below 1e-13 of the size, only the first counts.
+    """
+    made = []
+    for name, (true, size) in found.items():
+        estimate = told[name]
+        idle = max(estimate, true) <= 1e-13 * size
+        if not (true <= estimate and (idle or estimate <= most * true)):
+            made.append(f"{name}: {estimate:.3g} told, {true:.3g} true, of {size:.3g}")
     return made

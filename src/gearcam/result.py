@@ -74,6 +74,7 @@ class Result(Displayed):
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
         self.sizes: dict[str, int] = {}  # bytes of the files of a build so far
+        self.sought: dict[float, Any] = {}  # remedies, by the patience of the search
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.design, self.tolerances)  # computed again where it is read
@@ -111,7 +112,7 @@ class Result(Displayed):
 
     @cached_property
     def meshes(self) -> dict[str, Mesh]:
-        """The same as plain arrays, which files are made from."""
+        """The parts as closed meshes of plain arrays by name, mm: what files are made from."""
         from gearcam.solids import solid
 
         return {part.name: solid(part) for part in self.parts}

@@ -263,6 +263,27 @@ def test_a_second_call_is_seen() -> None:
     assert (work.again["roll"], work.again["contacts"]) == (0, 1)
 
 
+def test_remedies_are_sought_once_for_the_page_and_the_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from gearcam.advice import Search
+    from gearcam.cli import main
+
+    begun, old = [], Search.__init__
+
+    def begin(search: Search, *given: Any) -> None:
+        begun.append(given)
+        old(search, *given)
+
+    monkeypatch.setattr(Search, "__init__", begin)
+    text = (PROFILES / "ellipse.toml").read_text().replace('["csv"]', '["report"]')
+    file = tmp_path / "low.toml"
+    file.write_text(text + "[rack]\naddendum = 0.5\n")
+    assert main(["build", str(file), "-o", str(tmp_path)]) == 1
+    assert "pair" in capsys.readouterr().out
+    assert len(begun) == 1
+
+
 @pytest.fixture(scope="module", params=[24, 240])
 def ellipse(request: pytest.FixtureRequest) -> Any:
     """A pair of few and of many teeth."""

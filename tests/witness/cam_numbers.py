@@ -183,6 +183,7 @@ def integral(lift: Sequence[Piece], function: Callable[[Number, list[Number]], N
 def sizes(touch: Touch, lift: Sequence[Piece]) -> tuple[Number, Number]:
     """Perimeter and area of a profile that is not undercut; of a sliding cam the length alone."""
     if touch.flat:
+
         def face(_: Number, found: list[Number]) -> Number:
             h, g, _, spin = touch.support(found)
             return mp.mpc(h, (h * h - g * g) / 2) * spin
@@ -197,7 +198,10 @@ def sizes(touch: Touch, lift: Sequence[Piece]) -> tuple[Number, Number]:
     both = integral(lift, drawn)
     length, area, r = both.real, both.imag, touch.radius
     if touch.slide:
-        ends = [touch.pitch(t, one.shape(t))[1] for one, t in ((lift[0], lift[0].low), (lift[-1], lift[-1].high))]
+        ends = [
+            touch.pitch(t, one.shape(t))[1]
+            for one, t in ((lift[0], lift[0].low), (lift[-1], lift[-1].high))
+        ]
         return length - r * mp.arg(ends[0] / ends[1]), mp.mpf(0)
     return length - 2 * mp.pi * r, area - r * length + mp.pi * r * r
 
@@ -256,7 +260,9 @@ def lost_between(
     return outer - inner
 
 
-def crossing(touch: Touch, pair: tuple[Piece, Piece], told: tuple[float, float]) -> tuple[Number, ...]:
+def crossing(
+    touch: Touch, pair: tuple[Piece, Piece], told: tuple[float, float]
+) -> tuple[Number, ...]:
     """Where two pieces of a profile cross: both cam angles near those told, and the point."""
 
     def curve(k: int, t: Number) -> Number:

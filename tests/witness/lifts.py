@@ -7,6 +7,7 @@ equations that define them. Numbers of a design are taken as the doubles that th
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -14,6 +15,8 @@ from math import comb, factorial
 from typing import Any
 
 import mpmath
+
+from witness.series import Series, cos, exp, sin
 
 mp: Any = mpmath.mp
 Number = Any
@@ -47,26 +50,25 @@ def polynomial(coefficients: Sequence[Number], place: Number = 0) -> Shape:
     return shape
 
 
-def differences(function: Callable[[Number], Number]) -> Shape:
-    """A function with derivatives by differences in more digits."""
-    return lambda x: [function(x), *(mp.diff(function, x, k) for k in (1, 2, 3))]
-
-
-def formula(text: str, variable: str) -> Callable[[Number], Number]:
-    """A formula as a function."""
-    names = {name: getattr(mp, name) for name in ("sin", "cos", "tanh", "exp", "sqrt", "pi")}
+def formula(text: str, variable: str) -> Callable[[Any], Any]:
+    """A formula as a function of numbers, or of power series."""
+    names = {"sin": sin, "cos": cos, "exp": exp, "pi": mp.pi, "mpf": mp.mpf}
     numbers = _exact_numbers(text)
-    return lambda x: eval(numbers, {"__builtins__": {}}, {**names, "mpf": mp.mpf, variable: x})
+    code = compile(numbers, text, "eval")
+    return lambda x: eval(code, {"__builtins__": {}}, {**names, variable: x})  # noqa: S307  (a test's own text)
+
+
+def expanded(function: Callable[[Any], Any]) -> Shape:
+    """A function of power series with its derivatives."""
+    return lambda x: function(Series.variable(x)).derivatives
 
 
 def _exact_numbers(text: str) -> str:
     """Wrap decimal numbers, so that they are the doubles that they are read as."""
-    import re
-
     return re.sub(r"(?<![\w.])(\d+\.\d*(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)", r"mpf(\1)", text)
 
 
-# --- rises by their accelerations ------------------------------------------------------------------
+# --- rises by their accelerations -----------------------------------------------------------------
 
 
 def _sectors(rows: Sequence[tuple[Number, str, Number, Number]]) -> list[Piece]:
@@ -164,7 +166,10 @@ def _spline(x: Sequence[Number], y: Sequence[Number], start: Any, end: Any) -> l
     width = x[-1] - x[-2]
     for order in (1, 2):
         tell({order: mp.mpf(factorial(order))}, mp.mpf(start[order - 1]))
-        slopes = {last + j: factorial(order) * comb(j, order) * width ** (j - order) for j in range(order, 6)}
+        slopes = {
+            last + j: factorial(order) * comb(j, order) * width ** (j - order)
+            for j in range(order, 6)
+        }
         tell(slopes, mp.mpf(end[order - 1]))
     found = mp.lu_solve(rows, right)
     return [
@@ -209,6 +214,27 @@ def _b_spline(control: Sequence[float], degree: int) -> list[Piece]:
     return [Piece(mp.mpf(n) / spans, mp.mpf(n + 1) / spans, on_span(n)) for n in range(spans)]
 
 
+_WIDTHS = {"modified-trapezoid": (0.25, 0.5, 0.25), "modified-sine": (0.25, 0, 0.75)}
+_SECTORS: dict[str, Callable[[Number, Number, Number], Any]] = {
+    "harmonic": lambda _, h, o: [(h, "quarter", 1, mp.pi / 2), (h, "quarter", -1, o)],
+    "cycloidal": lambda _, h, o: [(h, "half", 1, o), (h, "half", -1, o)],
+    "constant-acceleration": lambda q, *_: [
+        (q, "line", 1 / q, 1 / q), (1 - q, "line", -1 / (1 - q), -1 / (1 - q))
+    ],
+    "trapezoidal-velocity": lambda q, *_: [
+        (q, "line", 1, 1), (1 - 2 * q, "line", 0, 0), (q, "line", -1, -1)
+    ],
+    "sine-trapezoidal-velocity": lambda q, _, o: [
+        (q, "half", 1, o), (1 - 2 * q, "line", 0, 0), (q, "half", -1, o)
+    ],
+    "trapezoidal-acceleration": lambda q, h, _: [
+        (q, "line", 0, 1), (h - 2 * q, "line", 1, 1), (2 * q, "line", 1, -1),
+        (h - 2 * q, "line", -1, -1), (q, "line", -1, 0),
+    ],
+}  # fmt: skip
+"""Widths and accelerations by the share q, a half, and zero."""
+
+
 def rise(phase: Mapping[str, Any]) -> list[Piece]:
     """S over 0 to 1 of the law of a phase."""
     name = phase["law"]
@@ -220,47 +246,25 @@ def rise(phase: Mapping[str, Any]) -> list[Piece]:
     }  # fmt: skip
     if name in powers:
         return _whole(*powers[name])
-    q = mp.mpf(phase.get("q", 0.5 if name == "constant-acceleration" else 0.125))
-    half = mp.mpf(1) / 2
-    match name:
-        case "harmonic":
-            return _sectors([(half, "quarter", 1, mp.pi / 2), (half, "quarter", -1, mp.mpf(0))])
-        case "cycloidal":
-            return _sectors([(half, "half", 1, mp.mpf(0)), (half, "half", -1, mp.mpf(0))])
-        case "constant-acceleration":
-            return _sectors([(q, "line", 1 / q, 1 / q), (1 - q, "line", -1 / (1 - q), -1 / (1 - q))])
-        case "trapezoidal-velocity":
-            return _sectors([(q, "line", 1, 1), (1 - 2 * q, "line", 0, 0), (q, "line", -1, -1)])
-        case "sine-trapezoidal-velocity":
-            zero = mp.mpf(0)
-            return _sectors([(q, "half", 1, zero), (1 - 2 * q, "line", 0, 0), (q, "half", -1, zero)])
-        case "trapezoidal-acceleration":
-            flat = half - 2 * q
-            return _sectors([
-                (q, "line", 0, 1), (flat, "line", 1, 1), (2 * q, "line", 1, -1),
-                (flat, "line", -1, -1), (q, "line", -1, 0),
-            ])  # fmt: skip
-        case "modified-trapezoid":
-            return _scca(mp.mpf(1) / 4, half, mp.mpf(1) / 4)
-        case "modified-sine":
-            return _scca(mp.mpf(1) / 4, mp.mpf(0), mp.mpf(3) / 4)
-        case "scca":
-            return _scca(*(mp.mpf(phase[key]) for key in "bcd"))
-        case "polynomial":
-            return _two_ended(phase["start"], phase["end"])
-        case "b-spline":
-            return _b_spline(phase["control"], phase.get("degree", 4))
-        case "table":
-            x, y = ([mp.mpf(value) for value in phase[key]] for key in "xy")
-            return _spline(x, y, phase.get("start", (0, 0)), phase.get("end", (0, 0)))
-        case _:
-            given = formula(phase["formula"], "x")
-            low, high = given(mp.mpf(0)), given(mp.mpf(1))
-            whole = _scaled(differences(lambda x: given(x) - low), 1 / (high - low))
-            return [Piece(mp.mpf(0), mp.mpf(1), whole)]
+    if name in _SECTORS:
+        q = mp.mpf(phase.get("q", 0.5 if name == "constant-acceleration" else 0.125))
+        return _sectors(_SECTORS[name](q, mp.mpf(1) / 2, mp.mpf(0)))
+    if name in _WIDTHS or name == "scca":
+        return _scca(*map(mp.mpf, _WIDTHS.get(name) or [phase[key] for key in "bcd"]))
+    if name == "polynomial":
+        return _two_ended(phase["start"], phase["end"])
+    if name == "b-spline":
+        return _b_spline(phase["control"], phase.get("degree", 4))
+    if name == "table":
+        x, y = ([mp.mpf(value) for value in phase[key]] for key in "xy")
+        return _spline(x, y, phase.get("start", (0, 0)), phase.get("end", (0, 0)))
+    given = formula(phase["formula"], "x")
+    low, high = given(mp.mpf(0)), given(mp.mpf(1))
+    whole = _scaled(expanded(lambda x: given(x) - low), 1 / (high - low))
+    return [Piece(mp.mpf(0), mp.mpf(1), whole)]
 
 
-# --- a turn ----------------------------------------------------------------------------------------
+# --- a turn ---------------------------------------------------------------------------------------
 
 
 def _placed(piece: Piece, origin: Number, width: Number, base: Number, scale: Number) -> Piece:
@@ -269,8 +273,8 @@ def _placed(piece: Piece, origin: Number, width: Number, base: Number, scale: Nu
         rates = (scale * one / width**k for k, one in enumerate(slopes, 1))
         return [base + scale * value, *rates]
 
-    ends = sorted(origin + width * end for end in (piece.low, piece.high))
-    return Piece(*ends, shape)
+    low, high = sorted(origin + width * end for end in (piece.low, piece.high))
+    return Piece(low, high, shape)
 
 
 def _quintic(start: list[Number], end: list[Number], width: Number) -> list[Number]:
@@ -289,7 +293,8 @@ def lift(design: Mapping[str, Any]) -> list[Piece]:
     unit, scale = ("deg", mp.pi / 180) if swings else ("mm", mp.mpf(1))
     turn = 2 * mp.pi
     if not isinstance(motion, list):
-        return [Piece(mp.mpf(0), turn, differences(formula(motion["lift"], "theta")))]
+        shape = expanded(formula(motion["lift"], "theta"))
+        return [Piece(turn * k / 16, turn * (k + 1) / 16, shape) for k in range(16)]
     sliding = design["cam"].get("form") == "translating"
     phases, key = list(motion), "way_mm" if sliding else "angle_deg"
     for name, place in (("run_in_mm", 0), ("run_out_mm", len(phases) + 1)):

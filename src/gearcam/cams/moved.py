@@ -28,7 +28,7 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet
 
-_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2))
+_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2.5))
 """By what part of themselves numbers are moved, as many roundings as they may be the work of: sizes
 of the follower; cam angles, which knots are sums of; coefficients of the lift."""
 
@@ -98,7 +98,7 @@ class Moved(Brief):
         for _ in range(_TRIES):
             places = moved(theta, _ANGLES)
             found = lift.on_pieces(index, places, 3, moved)
-            found += off * signs(found.shape)
+            found += off * np.sign(signs(found.shape))
             made.append(_State(places, found, moved(np.ones(count), _SIZES)))
         return made
 
@@ -114,60 +114,85 @@ class Moved(Brief):
             [np.abs(one.found - own.found).max(axis=1) for one in others], axis=0
         ).tolist()
 
-    def error(self, curve: CamCurve, quantity: Quantity) -> float:
+    def error(self, curve: CamCurve, quantity: str) -> float:
         """Return the error of a quantity, the largest of the turn.
 
         Parameters
         ----------
         curve : CamCurve
             Of the cam, with the lift.
-        quantity : callable
-            What is told (see `Quantity`); where it has no value it does not count.
+        quantity : str
+            A name in `QUANTITIES`; where it has no value it does not count.
 
         Returns
         -------
         float
         """
-        return float(np.nanmax(_changes(self._turn, curve, quantity), initial=0.0))
+        return float(_changes(self._turn, curve, QUANTITIES[quantity]).max())
 
     def errors_at(self, theta: Array, curve: CamCurve, quantity: Quantity) -> Array:
-        """Return the errors of a quantity at cam angles `theta`, (n,) rad (see `error`)."""
+        """Return the errors of a quantity at cam angles.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        curve : CamCurve
+            Of the cam, with the lift.
+        quantity : callable
+            ``quantity(curve, theta, found)``, of lift and derivatives.
+
+        Returns
+        -------
+        (n,) array
+        """
         index = np.searchsorted(self.program.knots[1:-1], theta, side="right")
         return _changes(self._states(index, theta), curve, quantity)
 
 
 def _changes(states: list[_State], curve: CamCurve, quantity: Quantity) -> Array:
-    """Return the largest change of a quantity at each place."""
+    """Return the largest change of a quantity at each place, 0 where it has no value."""
     with np.errstate(divide="ignore", invalid="ignore"):
         own, *others = (one.of(curve, quantity) for one in states)
-        return np.max([np.abs(one - own) for one in others], axis=0)
+        changes = np.max([np.abs(one - own) for one in others], axis=0)
+    return np.where(np.isfinite(changes), changes, 0.0)
 
 
-def pressure(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return the pressure angle, rad (a `Quantity`)."""
+def _pressure(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the pressure angle, rad."""
     return _array(curve.contact_of(found, 0).pressure, theta)
 
 
-def pitch_curvature(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return the pitch curve's curvature, 1/mm (a `Quantity`)."""
+def _pitch_curvature(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the pitch curve's curvature, 1/mm."""
     contact = curve.contact_of(found, 0)
     return _array(contact.turning / contact.pitch_speed, theta)
 
 
-def face_radius(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return the radius of curvature of what a face envelops, mm (a `Quantity`)."""
+def _face_radius(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the radius of curvature of what a face envelops, mm."""
     contact = curve.contact_of(found, 0)
     return _array(contact.speed / contact.turning, theta)
 
 
-def contact_place(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return where a face is touched, mm (a `Quantity`)."""
+def _contact_place(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return where a face is touched, mm."""
     return _array(curve.contact_of(found, 0).place, theta)
 
 
-def profile(curve: CamCurve, theta: Array, found: Array) -> Plane:
-    """Return points of the profile, mm (a `Quantity`)."""
+def _profile(curve: CamCurve, theta: Array, found: Array) -> Plane:
+    """Return points of the profile, mm."""
     return curve.trace(theta, found[0], found[1], curve.mechanism.radius)[0]
+
+
+QUANTITIES: Final[dict[str, Quantity]] = {
+    "pressure angle": _pressure,
+    "pitch curvature": _pitch_curvature,
+    "face radius": _face_radius,
+    "contact place": _contact_place,
+    "profile": _profile,
+}
+"""What is told over the turn: rad, 1/mm, mm."""
 
 
 def _speed(curve: CamCurve, theta: Array, found: Array) -> Array:
@@ -221,7 +246,9 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
         off = misses[np.abs(points - corner.point).argmin()]
         theta = Jet([np.array([loss.theta])])
         lifts = [
-            resting(wall.mechanism, complex(point), wall.curve.mechanism.away)(theta).c[0]
+            resting(wall.mechanism, complex(point), wall.curve.mechanism.away)(theta).derivatives()[
+                0
+            ]
             for point in (corner.point, *(corner.point + off), *(corner.point - off))
         ]
         change = float(np.nanmax(np.abs(np.subtract(lifts[1:], lifts[0])), initial=0.0))
@@ -241,18 +268,18 @@ def _corner_errors(moved: Moved, wall: Wall) -> tuple[Plane, Plane]:
         drawn.at(number - 1, drawn.end[number - 1]),
     )
     theta = drawn.states(number, drawn.start[number])[0]
-    off = np.abs(points - ends) + 2.0 * normal_errors(moved, wall, theta)
+    off = np.abs(points - ends) + 2.0 * _normal_errors(moved, wall, theta)
     crossing = np.maximum(np.abs((np.conj(before) * after).imag), off / wall.size.perimeter)
     return points, (off / crossing * [before, after]).T
 
 
-def normal_errors(moved: Moved, wall: Wall, theta: Array) -> Array:
+def _normal_errors(moved: Moved, wall: Wall, theta: Array) -> Array:
     """Return the errors of a wall's place at cam angles (n,), rad, along its normal, mm."""
     s, ds = wall.program.derivatives(theta, 1)
     normals = -1j * wall.curve.trace(theta, s, ds, wall.curve.mechanism.radius)[1]
 
     def height(curve: CamCurve, places: Array, found: Array) -> Array:
-        return (np.conj(normals) * profile(curve, places, found)).real
+        return (np.conj(normals) * _profile(curve, places, found)).real
 
     return moved.errors_at(theta, wall.curve, height)
 
@@ -277,6 +304,6 @@ def play_error(moved: Moved, motion: PitchMotion, walls: tuple[Wall, ...], theta
         What the walls' points may be off there, as the follower feels it.
     """
     place = np.array([theta])
-    off = sum(float(normal_errors(moved, wall, place)[0]) for wall in walls)
-    slant = float(motion.curve.contact(place, 0).pressure.c[0][0])
+    off = sum(float(_normal_errors(moved, wall, place)[0]) for wall in walls)
+    slant = float(motion.curve.contact(place, 0).pressure.derivatives()[0][0])
     return off / (math.cos(slant) * motion.mechanism.lever)

@@ -22,10 +22,11 @@ from gearcam.laws.phases_of_lift import (
     TURN_MISS,
     DwellPhase,
     Phase,
+    PlacedPhase,
     angles_of,
     levels,
 )
-from gearcam.laws.program import PlacedPhase, Program
+from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, extremes, piecewise

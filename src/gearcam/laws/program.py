@@ -25,6 +25,7 @@ from gearcam.laws.phases_of_lift import (
     TURN,
     DwellPhase,
     Phase,
+    PlacedPhase,
     ReturnPhase,
     RisePhase,
     SegmentPhase,
@@ -47,15 +48,6 @@ _KNOT = 4.0 * np.finfo(float).eps * TURN
 """Rounding of a knot, rad."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class PlacedPhase:
-    """A phase in its place: its `kind` (rise, return or dwell), `start` and `end` in rad."""
-
-    kind: str
-    start: float
-    end: float
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Survey(Brief):
     """A lift and its derivatives to the fourth, all at once: most questions need no more.
@@ -63,7 +55,7 @@ class Survey(Brief):
     Parameters
     ----------
     places : (n, k) array, rad
-        In every stretch between cuts, both ends just inside.
+        In every stretch between cuts, both ends among them, seen from inside.
     found : (5, n, k) array
         Lift and derivatives there.
     before, after : (m, 5) arrays
@@ -90,6 +82,11 @@ class Program(Brief, Displacement):
         The knots, and more places where a law bends sharply: between them extremes are sought.
     errors : (float, float, float, float)
         Estimated errors of the lift, mm or rad, and of its first three derivatives beyond rounding.
+    rough : tuple of Piecewise
+        Curves of the same knots through fewer rows: what is integrated of them differs by more than
+        the lift's own errors make, by as much as `fall` says.
+    fall : float
+        By what errors of the rough curves are larger.
     deviation : Deviation, optional
         What smoothing took off rows.
     open : bool
@@ -100,6 +97,8 @@ class Program(Brief, Displacement):
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
     errors: tuple[float, ...] = EXACT
+    rough: tuple[Piecewise, ...] = ()
+    fall: float = 1.0
     deviation: Deviation | None = None
     open: bool = False
 
@@ -134,7 +133,7 @@ class Program(Brief, Displacement):
         return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
 
     def sides(self, cuts: Sequence[Array]) -> tuple[Array, Array]:
-        """Return the ends of all stretches between `cuts`, rad, and lift, s' and s'' within there."""
+        """Return the ends of stretches between `cuts`, rad, and lift, s' and s'' from within."""
         low, high = np.hstack([[own[:-1], own[1:]] for own in cuts])
         periods, middle = self.within(0.5 * (low + high))
         index = np.tile(np.searchsorted(self.knots[1:-1], middle), 2)
@@ -161,6 +160,7 @@ class Program(Brief, Displacement):
         places, pieces = places_between(self.cuts), np.arange(len(self.knots) - 1)
         owner = np.repeat(np.searchsorted(self.knots, places[:, 0]) - 1, places.shape[1])
         index = np.concatenate([pieces, pieces, owner])
+        places[:, 0], places[:, -1] = self.cuts[:-1], self.cuts[1:]
         theta = np.concatenate([self.knots[1:], self.knots[:-1], places.ravel()])
         found = self.lift.on_pieces(index, theta, 4)
         before, after, inside = np.split(found, [len(pieces), 2 * len(pieces)], axis=1)

@@ -26,8 +26,8 @@ import numpy as np
 
 from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
-from gearcam.laws.phases_of_lift import TURN
-from gearcam.laws.program import PlacedPhase, Program
+from gearcam.laws.phases_of_lift import TURN, PlacedPhase
+from gearcam.laws.program import Program
 from gearcam.laws.rises.pieces import from_both_ends
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
@@ -55,9 +55,9 @@ _ORDER: Final = 6
 _SHARES: Final = np.array([0.0, 0.25, 0.5, 0.75])
 """Places of a step at which derivatives are compared."""
 
-_BESIDE: Final = 2.0
+_BESIDE: Final = np.array([2.0, 4.0, 4.0, 4.0])
 """A miss is seen in the middle between rows; beside it, where a derivative jumps near a row, it may
-be twice as large."""
+be twice as large. Derivatives are held against a curve that misses them too."""
 
 
 def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
@@ -91,11 +91,15 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
         deviation = Deviation(theta=float(theta[far]), value=value)
     curve = _curve(theta[::step], values[::step])
     level = max(tolerance, TYPED * float(np.ptp(lift)))
+    errors, fall = _errors(theta[::step], values[::step])
+    pair = 2 * step
     return Program(
         lift=curve,
         stretches=stretches_of(curve, theta, values, level, cutoff),
         cuts=curve.knots,
-        errors=_errors(theta[::step], values[::step]),
+        errors=errors,
+        rough=tuple(_rough(curve.knots, theta[k::pair], values[k::pair]) for k in (0, step)),
+        fall=fall,
         deviation=deviation,
     )
 
@@ -159,14 +163,23 @@ def _curve(theta: Array, lift: Array) -> Piecewise:
     return piecewise(np.concatenate([[0.0], theta, [TURN]]), [over, *pieces])
 
 
-def _errors(theta: Array, lift: Array) -> tuple[float, ...]:
-    """Estimate the errors of the curve between rows, and of its derivatives, by curves through fewer.
+def _rough(knots: Array, theta: Array, lift: Array) -> Piecewise:
+    """Return the curve through rows with the knots of a finer one, which are among its own."""
+    curve = _curve(theta, lift)
+    owner = np.searchsorted(curve.knots[1:-1], 0.5 * (knots[:-1] + knots[1:]))
+    return piecewise(knots, [curve.pieces[k] for k in owner.tolist()])
+
+
+def _errors(theta: Array, lift: Array) -> tuple[tuple[float, ...], float]:
+    """Estimate errors of the curve between rows, and of its derivatives, by curves through fewer.
 
     Curves through every second row miss the rows between by so much, those through every fourth by
     more. By what it falls between these, which the smoothness of the motion decides, it is taken to
     fall again. The worst of all choices of rows counts, as a jump of a derivative may lie anywhere.
     Of derivatives, which rows do not tell, the curve through all of them takes their place: what
     curves through fewer miss of it is seen between the rows as well.
+
+    Returns the errors, and by what that of the lift falls from rows twice as far apart.
     """
     two, four = (
         np.max([_missed(theta, lift, step, first) for first in range(step)], axis=0)
@@ -175,7 +188,7 @@ def _errors(theta: Array, lift: Array) -> tuple[float, ...]:
     narrowest = float(np.diff(theta, append=theta[0] + TURN).min())
     rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max()) / narrowest ** np.arange(4)
     falls = np.clip(four / np.maximum(two, rounding), 1.0, 2.0 ** (_ORDER - np.arange(4)))
-    return tuple((_BESIDE * two / falls + rounding).tolist())
+    return tuple((_BESIDE * two / falls + rounding).tolist()), float(falls[0])
 
 
 def _missed(theta: Array, lift: Array, step: int, first: int) -> Array:

@@ -12,7 +12,7 @@ Refused: runs that do not join to a closed chain, tolerances that are not positi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -49,13 +49,20 @@ NEAR = 0.02
 WIDEST = np.tan(1.0)
 """Tangent of the largest half of the angle through which one arc may turn."""
 
+_BLOCK = 64
+"""Points of a long run that are looked at as one, for how far the tangent turns."""
+
 
 @dataclass(frozen=True, eq=False)
 class _Curves:
-    """Points, the angle that the tangent has `turned` so far, and where distances are taken."""
+    """Points, the angle that the tangent has `turned` so far, and where distances are taken.
+
+    `ranges` holds the least and the largest angle of each `_BLOCK` points, (2, n).
+    """
 
     rows: RunPoints
     turned: Array
+    ranges: Array
     checks: Checks
 
 
@@ -148,17 +155,43 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
 
 def _curves(rows: RunPoints, tolerance: float) -> _Curves:
     turned = np.append(0.0, np.cumsum(turns(rows.tangents)))
-    return _Curves(rows, turned, checks_of(rows, tolerance, even=True))
+    blocks = np.arange(0, len(turned), _BLOCK)
+    ranges = np.stack([end.reduceat(turned, blocks) for end in (np.minimum, np.maximum)])
+    return _Curves(rows, turned, ranges, checks_of(rows, tolerance, even=True))
 
 
 def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
-    """Return the last indices to which the tangent turns by no more than `MAX_TURN`."""
+    """Return the last indices to which the tangent turns by no more than `MAX_TURN`.
+
+    The first that is beyond is sought among the next few points, then among blocks of them, and
+    then in its block: the way to it may be as long as the run.
+    """
+    begin = curves.turned[start]
+
+    def point(index: Ints, of: Ints) -> Mask:
+        return np.abs(curves.turned[index] - begin[of]) > MAX_TURN
+
+    def block(index: Ints, of: Ints) -> Mask:
+        low, high = curves.ranges[:, index]
+        return np.maximum(high - begin[of], begin[of] - low) > MAX_TURN
+
+    beyond = last + 1
+    edge = np.minimum(_BLOCK * (start // _BLOCK + 1), beyond)
+    near = _first(point, start + 1, edge)
+    sought = (near == edge) & (edge < beyond)
+    number = _first(block, edge // _BLOCK, np.where(sought, last // _BLOCK + 1, 0))
+    inside = np.where(sought, np.minimum(_BLOCK * number, beyond), beyond)
+    far = _first(point, inside, np.minimum(inside + _BLOCK, beyond))
+    return np.maximum(np.where(sought, far, near) - 1, start + 1)
+
+
+def _first(is_it: Callable[[Ints, Ints], Mask], low: Ints, high: Ints) -> Ints:
+    """Return the first numbers in ranges of which it is true, the upper end where of none."""
 
     def short(index: Ints, of: Ints) -> Array:
-        over = np.abs(curves.turned[index] - curves.turned[start[of]]) > MAX_TURN
-        return np.where(over, last[of] + 1 - index, 0)
+        return np.where(is_it(index, of), high[of] - index, 0)
 
-    return np.maximum(last - largest(short, start + 1, last + 1).astype(np.int64), start + 1)
+    return high - largest(short, low, high).astype(np.int64)
 
 
 def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:

@@ -119,7 +119,7 @@ def _(part: Part) -> tuple[Moments, float]:
     return total, height
 
 
-def volume_error(part: Part) -> float:
+def quadrature_error(part: Part) -> float:
     """Return the error of a part's volume, mm^3: cubics through fewer points, by their order."""
     return sum(
         layer.height * _area_error(edge)

@@ -6,18 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from gearcam.cams.moved import (
-    Moved,
-    contact_place,
-    face_radius,
-    lost_lift_error,
-    pitch_curvature,
-    play_error,
-    pressure,
-    profile,
-    undercut_error,
-)
-from gearcam.parts.mass import volume_error
+from gearcam.cams.moved import Moved, lost_lift_error, play_error, undercut_error
+from gearcam.parts.mass import quadrature_error
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
@@ -48,7 +38,7 @@ def error_rows(result: CamResult) -> Rows:
     cam, program = result.cam, result.program
     moved, how = Moved(program), _UNKNOWN if any(program.errors) else _ROUNDED
     rows = {name: (value, how) for name, value in _motion(result, moved)}
-    rows |= {name: (value, how) for name, value in _shape(cam, moved) if value is not None}
+    rows |= {name: (value, how) for name, value in _shape(cam, moved)}
     rows |= dict(_trimming(result, moved))
     rows |= dict(_sizes(result))
     return rows
@@ -66,13 +56,16 @@ def _shape(cam: Cam, moved: Moved) -> Iterator[tuple[str, float]]:
     """Yield the errors of what is told of the contact and of curves, the largest of all walls."""
     curves = [motion.curve for motion in cam.motions]
     walls = [wall.curve for wall in cam.walls]
-    yield "pressure_angle_deg", math.degrees(max(moved.error(one, pressure) for one in curves))
+    yield (
+        "pressure_angle_deg",
+        math.degrees(max(moved.error(one, "pressure angle") for one in curves)),
+    )
     if curves[0].mechanism.flat:
-        yield "radius_mm", max(moved.error(one, face_radius) for one in walls)
-        yield "contact_mm", max(moved.error(one, contact_place) for one in walls)
+        yield "radius_mm", max(moved.error(one, "face radius") for one in walls)
+        yield "contact_mm", max(moved.error(one, "contact place") for one in walls)
     else:
-        yield "curvature_per_mm", max(moved.error(one, pitch_curvature) for one in curves)
-    yield "profile_mm", max(moved.error(one, profile) for one in walls)
+        yield "curvature_per_mm", max(moved.error(one, "pitch curvature") for one in curves)
+    yield "profile_mm", max(moved.error(one, "profile") for one in walls)
 
 
 def _trimming(result: CamResult, moved: Moved) -> Iterator[tuple[str, tuple[float, str]]]:
@@ -100,6 +93,6 @@ def _sizes(result: CamResult) -> Iterator[tuple[str, tuple[float, str]]]:
             if wall.program.closed:
                 yield f"{prefix}area_mm2", (size.area_error, _GAUSS)
     if result.ordered and result.design.blank.density is not None:
-        off = max(volume_error(part) for part in result.parts)
+        off = max(quadrature_error(part) for part in result.parts)
         how = "cubics through every second dense point of all edges, over their order, and rounding"
         yield "volume_mm3", (off, how)

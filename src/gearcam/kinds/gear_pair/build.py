@@ -264,7 +264,8 @@ class GearPairResult(PairStages):
             return self
         design = self.design.with_({f"meshing.{key}": value for key, value in settings.items()})
         other = type(self)(design, self.tolerances)
-        vars(other).update(vars(self) | {"design": design, "timings": dict(self.timings)})
+        own = {"design": design, "timings": dict(self.timings), "sought": {}}
+        vars(other).update(vars(self) | own)
         return other
 
 

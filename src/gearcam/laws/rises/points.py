@@ -28,7 +28,7 @@ _MOVES: Final = (1, 2)
 """How values of a table are moved to see what rounding does: every one, or every two the other
 way."""
 
-_ROUNDING: Final = 40.0 * float(np.finfo(float).eps)
+_ROUNDING: Final = 24.0 * float(np.finfo(float).eps)
 """By what part."""
 
 _SHARES: Final = np.array([[0.0], [0.25], [0.5], [0.75]])
