@@ -112,15 +112,18 @@ class Campaign:
     def run(self, progress: Callable[[str, int, int], None] | None) -> Iterator[Catch]:
         """Try all and yield failures as they are found, `progress` told."""
         start = time.monotonic()
-        for done, (number, outcome) in enumerate(self._outcomes(), start=1):
-            self._take(self.cases[number], outcome)
-            if progress is not None:
-                progress(f"{len(self.found)} failures", done, len(self.cases))
-            if outcome.failure is not None:
+        try:
+            for done, (number, outcome) in enumerate(self._outcomes(), start=1):
                 case = self.cases[number]
-                self.found.append(Catch(case=case, failure=outcome.failure, files=case.drawn.files))
-                yield self.found[-1]
-        self.clock = time.monotonic() - start
+                self._take(case, outcome)
+                if progress is not None:
+                    progress(f"{len(self.found)} failures", done, len(self.cases))
+                if outcome.failure is not None:
+                    files = case.drawn.files
+                    self.found.append(Catch(case=case, failure=outcome.failure, files=files))
+                    yield self.found[-1]
+        finally:
+            self.clock = time.monotonic() - start
 
     def _outcomes(self) -> Iterator[tuple[int, Outcome]]:
         """Yield how trials ended; what took too long is tried once more, as machines may pause."""
@@ -179,7 +182,7 @@ class Campaign:
         for reason, count in self.reasons.most_common(_REASONS):
             yield f"  {count:>6}  {reason}"
         yield f"studied by other means: {self.doubted}, suggestions built: {self.followed}"
-        count = len(self.cases)
+        count = self.counts.total()
         each = self.seconds / max(count, 1)
         yield (
             f"processor time {self.seconds:.1f} s, {1 / each if each else 0:.1f} designs a second "
