@@ -24,7 +24,7 @@ _ROUNDING: Final = 1e-9
 """Part of a part's reach that coordinates in files are rounded by, at most."""
 
 _DENSE: Final = 1.0 / 32.0
-"""Part of the tolerance by which the dense points that files are measured against miss the curve."""
+"""Part of the tolerance by which the dense points that are measured against miss the curve."""
 
 
 def look_at(result: Any, written: Written) -> Iterator[Failure]:
