@@ -235,6 +235,12 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
         ]},
         {"cam.prime_radius_mm", "motion[0].to_mm"},
     ),
+    "drawn beyond a plate's way": (
+        plate() | {"output": {"files": ["svg"], "u_mm": 5000}}, {"output.u_mm"}
+    ),
+    "drawn beyond a travel": (
+        pair(DOOR, [30, 30], output={"files": ["svg"], "phi1_deg": -20}), {"output.phi1_deg"}
+    ),
     "bolts beyond a plate": (plate(bolt_spacing_mm=230), {"blank.bolt_spacing_mm"}),
     "bolts on the edge of a plate": (plate(bolt_height_mm=2), {"blank.bolt_height_mm"}),
     "bolts in each other": (plate(bolt_spacing_mm=5), {"blank.bolt_spacing_mm"}),

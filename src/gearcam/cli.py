@@ -173,8 +173,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 
 
 def _command_help(docs: Mapping[str, str]) -> str:
-    rows = (f"  {name:<10}{doc}\n" for name, doc in docs.items())
-    return "commands:\n" + "".join(rows) + "\n"
+    return "\n".join(["commands:", *(f"  {name:<10}{doc}" for name, doc in docs.items()), "\n"])
 
 
 def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -> None:
@@ -189,11 +188,7 @@ def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -
 
 def _check(files: list[str], output: str, debug: bool) -> None:
     """Check designs and write nothing but DIR/<name>/summary.json."""
-
-    def action(result: Result, progress: Progress | None) -> Written:  # noqa: ARG001
-        return result.check(output)
-
-    _each_result(files, "checked", action, debug=debug)
+    _each_result(files, "checked", lambda result, _: result.check(output), debug=debug)
 
 
 def _view(file: str, port: int, no_browser: bool) -> None:
@@ -246,9 +241,7 @@ def _laws() -> None:
     from gearcam.designs.listing import law_groups
 
     for heading, laws in law_groups():
-        say(f"{heading}\n")
-        for law in laws:
-            say("\n".join(law_lines(law)))
+        say("\n".join([f"{heading}\n", *(line for law in laws for line in law_lines(law))]))
 
 
 def _new(kind: str, file: str | None, process: str | None) -> None:

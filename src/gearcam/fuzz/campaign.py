@@ -112,15 +112,18 @@ class Campaign:
     def run(self, progress: Callable[[str, int, int], None] | None) -> Iterator[Catch]:
         """Try all and yield failures as they are found, `progress` told."""
         start = time.monotonic()
-        for done, (number, outcome) in enumerate(self._outcomes(), start=1):
-            self._take(self.cases[number], outcome)
-            if progress is not None:
-                progress(f"{len(self.found)} failures", done, len(self.cases))
-            if outcome.failure is not None:
+        try:
+            for done, (number, outcome) in enumerate(self._outcomes(), start=1):
                 case = self.cases[number]
-                self.found.append(Catch(case=case, failure=outcome.failure, files=case.drawn.files))
-                yield self.found[-1]
-        self.clock = time.monotonic() - start
+                self._take(case, outcome)
+                if progress is not None:
+                    progress(f"{len(self.found)} failures", done, len(self.cases))
+                if outcome.failure is not None:
+                    files = case.drawn.files
+                    self.found.append(Catch(case=case, failure=outcome.failure, files=files))
+                    yield self.found[-1]
+        finally:
+            self.clock = time.monotonic() - start
 
     def _outcomes(self) -> Iterator[tuple[int, Outcome]]:
         """Yield how trials ended; what took too long is tried once more, as machines may pause."""
@@ -156,14 +159,10 @@ class Campaign:
     @property
     def refused(self) -> float:
         """Share of the designs drawn to be built that were refused."""
-        whole = {end: n for (_, drawn, end), n in self._by_end() if drawn == _WHOLE}
-        return (whole.get(REFUSED, 0) + whole.get(WRONG, 0)) / max(sum(whole.values()), 1)
-
-    def _by_end(self) -> Iterator[tuple[tuple[str, str, str], int]]:
-        summed: Counter[tuple[str, str, str]] = Counter()
+        ends: Counter[str] = Counter()
         for (_, drawn, end), count in self.counts.items():
-            summed["", drawn, end] += count
-        yield from summed.items()
+            ends[end] += count if drawn == _WHOLE else 0
+        return (ends[REFUSED] + ends[WRONG]) / max(ends.total(), 1)
 
     @property
     def good(self) -> bool:
@@ -178,11 +177,12 @@ class Campaign:
             counts = [self.counts[kind, drawn, end] for end in ends]
             rows.append((f"{kind}, {drawn}", *map(str, (sum(counts), *counts))))
         yield from lined_up(rows)
-        yield f"refused of those {_WHOLE}: {100 * self.refused:.1f} %"
+        shares = (f"{100 * share:.1f} %" for share in (self.refused, MOST_REFUSED))
+        yield f"refused of those {_WHOLE}: {' of at most '.join(shares)}"
         for reason, count in self.reasons.most_common(_REASONS):
             yield f"  {count:>6}  {reason}"
         yield f"studied by other means: {self.doubted}, suggestions built: {self.followed}"
-        count = len(self.cases)
+        count = self.counts.total()
         each = self.seconds / max(count, 1)
         yield (
             f"processor time {self.seconds:.1f} s, {1 / each if each else 0:.1f} designs a second "

@@ -95,18 +95,25 @@ def fuzz(
     ][: None if only else number]
     with Pool(tried, min(whole("--jobs", processes, 1), len(cases))) as pool:
         campaign = Campaign(cases=cases, pool=pool)
-        with progress_bar("fuzz") as progress:
-            for found in campaign.run(progress):
-                complain(f"{found.case.name}: {found.failure.kind}: {found.failure.words}")
-        told: list[Catch] = []
-        for found in campaign.found:
-            if not any(found.failure.same(one.failure) for one in told):
-                campaign.shrink(found)
-                told.append(found)
-            say(f"{_saved(found, Path(output))}: {found.failure.kind}; {found.case.command}")
-    for line in campaign.lines():
-        say(line)
+        try:
+            with progress_bar("fuzz") as progress:
+                for found in campaign.run(progress):
+                    complain(f"{found.case.name}: {found.failure.kind}: {found.failure.words}")
+            _save(campaign, Path(output))
+        finally:  # of a campaign that was interrupted, too
+            for line in campaign.lines():
+                say(line)
     return campaign.good if only is None else not campaign.found
+
+
+def _save(campaign: Campaign, folder: Path) -> None:
+    """Write what has failed, the first of each kind of failure made small."""
+    told: list[Catch] = []
+    for found in campaign.found:
+        if not any(found.failure.same(one.failure) for one in told):
+            campaign.shrink(found)
+            told.append(found)
+        say(f"{_saved(found, folder)}: {found.failure.kind}; {found.case.command}")
 
 
 def _saved(found: Catch, folder: Path) -> Path:
@@ -120,5 +127,5 @@ def _saved(found: Catch, folder: Path) -> Path:
         name: ((head if name == first else "") + text).encode()
         for name, text in found.files.items()
     }
-    write_all(folder, contents, keep=True)
+    write_all(folder, lambda _: contents, keep=True)
     return folder / first

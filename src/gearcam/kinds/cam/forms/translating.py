@@ -87,6 +87,7 @@ class Translating(Form):
         """Return the cam."""
         cam, blank = design.cam, _blank(design)
         way = math.fsum(float(one.angle) for one in _phases(design))
+        _demand_reached(design.output.place or 0.0, way)
         return make_sliding(
             program,
             make_sliding_mechanism(design.follower, way),
@@ -147,16 +148,6 @@ class Translating(Form):
         from gearcam.kinds.cam.drawn import follower
 
         place, (motion,) = result.design.output.place or 0.0, result.cam.motions
-        if place > (way := _cam(result).way):
-            raise InfeasibleError(
-                "the cam does not slide so far",
-                where="output.u_mm",
-                value=place,
-                limit=way,
-                unit="mm",
-                nearest="the limit is its whole way, included",
-                ways=(Way(near={"output.u_mm": way}),),
-            )
         reach = 0.5 * float(np.ptp(result.profile.vertices))
         shapes = follower(motion, place / motion.mechanism.slide, reach)
         return _drawing(result, shapes, place)
@@ -343,3 +334,17 @@ def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0
 
 
 FORMS.register(Translating())
+
+
+def _demand_reached(place: float, way: float) -> None:
+    """Refuse to draw a cam at a place, mm, that it never reaches."""
+    if place > way:
+        raise InfeasibleError(
+            "the cam does not slide so far",
+            where="output.u_mm",
+            value=place,
+            limit=way,
+            unit="mm",
+            nearest="the limit is its whole way, included",
+            ways=(Way(near={"output.u_mm": way}),),
+        )
