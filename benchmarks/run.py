@@ -5,18 +5,19 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-# the sweep is the witness of the tests
+# the sweep is the witness of the tests; what each output needs is found by a tool
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
 
 import before_cases
 import cam_cases
 import cases
 import law_cases
+import needs
 import ring_cases
 from gearcam.numeric.memory import keep_freed_memory
-from measuring import ROOT, Result, environment
+from measuring import Result, environment
 
-PAGE = ROOT / "docs" / "performance.md"
 HEAD = """# Performance
 
 Written by `make bench`; medians decide, of ratios of samples taken in turns where there are such,
@@ -61,9 +62,7 @@ def main() -> int:
             results.append(result)
             print(f"{result.verdict}  {result.title}: {result.found}", flush=True)
     results.sort(key=lambda result: result.title)
-    PAGE.parent.mkdir(exist_ok=True)
-    PAGE.write_text(page(results), encoding="utf-8")
-    print(f"wrote {PAGE.relative_to(ROOT)}")
+    needs.write(page(results))
     return 0 if all(result.verdict != "fail" for result in results) else 1
 
 

@@ -23,10 +23,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-import random_designs
 from compare_files import MORE, Difference, called, folders, told
-from compare_sides import GALLERY, Side, tree_of
-from random_draw import ROOT, toml
+from compare_sides import GALLERY, ROOT, Side, tree_of
+from gearcam.draws.designs import design, drawn_kinds
+from gearcam.draws.toml import toml
 
 SHOWN: Final = 30
 """Places of differences that are listed."""
@@ -218,7 +218,7 @@ class Comparison:
         try:
             if not self.given.only and not self.given.no_gallery:
                 self._each(self._gallery())
-            for kind in self.given.kind or random_designs.KINDS:
+            for kind in self.given.kind or drawn_kinds():
                 self.built = 0
                 self._each(self._drawn(kind))
         finally:
@@ -245,10 +245,14 @@ class Comparison:
         for index in wanted:
             if self.built >= self.given.count:
                 return
-            file = random_designs.write(self.sides[1].folder, kind, self.given.seed, index)
-            for name in random_designs.design(kind, self.given.seed, index):
-                text = (self.sides[1].folder / name).read_text(encoding="utf-8")
-                text = renamed(text, self.renames) if name == file.name and self.renames else text
+            drawn = design(kind, self.given.seed, index)
+            file = drawn.write(self.sides[1].folder)
+            for name, text in drawn.files.items():
+                text = (
+                    renamed(text, self.renames)
+                    if name == file.name and self.renames and not drawn.broken
+                    else text
+                )
                 (self.sides[0].folder / name).write_text(text, encoding="utf-8")
             yield Task(kind, f"{kind}/{index}", (self.sides[0].folder / file.name, file))
 
@@ -287,7 +291,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Compare a commit with this tree.")
     parser.add_argument("base", help="a commit, or a folder with src and profiles")
     parser.add_argument("--tree", type=Path, default=ROOT, help="instead of this tree")
-    parser.add_argument("--kind", action="append", choices=random_designs.KINDS)
+    parser.add_argument("--kind", action="append", choices=drawn_kinds())
     parser.add_argument("--count", type=int, default=50, help="built designs of each kind")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", action="append", metavar="KIND/NUMBER", help="this design only")

@@ -10,13 +10,12 @@ import tarfile
 import tempfile
 from collections import deque
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
-from random_draw import ROOT
-
+ROOT: Final = Path(__file__).resolve().parents[1]
 WORKER: Final = Path(__file__).with_name("compare_worker.py")
 GALLERY: Final = "profiles"
 
@@ -91,7 +90,7 @@ class Side:
 
     def stop(self) -> None:
         """End the process."""
-        with self.process:
+        with suppress(BrokenPipeError), self.process:  # what it was asked last goes nowhere
             self.process.kill()
 
 

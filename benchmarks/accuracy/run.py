@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from itertools import chain
 from pathlib import Path
 
 # how the other measurements measure, and the sweeps, which are the witnesses of the tests
@@ -10,8 +11,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
 import cam_profiles
+import contacts
 import gearcam
 import integrals
+import solids
 import wheels
 from gearcam.console import quieten
 from gearcam.numeric.memory import keep_freed_memory
@@ -60,7 +63,8 @@ def main() -> int:
         (FIGURES / f"{name}.svg").write_bytes(picture)
         print(f"{name}: {', '.join(found.ladders)}", flush=True)
     text, behind = [*environment(), ""], []
-    for case in (*integrals.cases(), *wheels.cases(), *cam_profiles.cases()):
+    rooms = (integrals, wheels, contacts, cam_profiles, solids)
+    for case in chain.from_iterable(room.cases() for room in rooms):
         found = climb(case, REPEATS)
         (FIGURES / f"{case.name}.svg").write_bytes(log_charts(case.title, [found.chart]))
         text += section(found)

@@ -1,5 +1,18 @@
-"""``python -m gearcam``: the command line."""
+"""``python -m gearcam``, and the command: interrupted well even while it is loaded."""
 
-from gearcam.cli import main
+import sys
 
-raise SystemExit(main())
+
+def main() -> int:
+    """Run the command line of this process and return its exit code."""
+    try:
+        from gearcam.cli import main as run
+
+        return run()
+    except KeyboardInterrupt:  # before the command line answers it, or after
+        sys.stderr.write("interrupted\n")
+        return 130
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -112,8 +112,17 @@ def remedies(
     Returns
     -------
     Remedies
-        Empty where the design is not refused and has no error.
+        Empty where the design is not refused and has no error. Searched for once.
     """
+    if refusal is not None:
+        return _sought(result, refusal, patience)
+    if patience not in result.sought:
+        result.sought[patience] = _sought(result, None, patience)
+    return result.sought[patience]
+
+
+def _sought(result: Result, refusal: InfeasibleError | None, patience: float) -> Remedies:
+    """Return what a search finds (see `remedies`)."""
     errors: list[Finding] = []
     if refusal is None:
         try:

@@ -2,20 +2,18 @@
 
 Every command ends in an exit code: 0 good (warnings included), 1 built but with findings at error
 level, 2 wrong by reading the file or refused by the disk, 3 found impossible by computing, 4 a
-fault of the program, 130 interrupted. Several files are all tried; the largest code is returned.
-What was done goes to stdout, what went wrong to stderr; progress is drawn on a terminal only.
+fault of the program, 130 interrupted (143 by SIGTERM, 129 by SIGHUP). Several files are all tried;
+the largest code is returned. What was done goes to stdout, what went wrong to stderr; progress is
+drawn on a terminal only.
 """
 
 from __future__ import annotations
 
 import argparse
-import contextlib
 import os
-import shlex
 import sys
 import textwrap
 import time
-import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -34,12 +32,14 @@ from gearcam.console import (
     refusal_text,
     remedy_lines,
     say,
+    streams,
 )
 from gearcam.designs import KINDS, Design, load
 from gearcam.designs.faults import unknown_word
-from gearcam.designs.kind import all_formats
+from gearcam.designs.kind import all_formats, rooms
 from gearcam.designs.outputs import FORMATS
 from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
+from gearcam.interrupts import interruptible
 
 if TYPE_CHECKING:
     from gearcam.commands import Command
@@ -57,7 +57,7 @@ _ABOUT: Final = "Non-circular gears and cams from a description of the motion."
 _FILES: Final = "design files (TOML)"
 _CODES: Final = (
     "exit codes: 0 good, 1 findings at error level, 2 wrong by reading, 3 impossible, "
-    "4 a fault of the program, 130 interrupted"
+    "4 a fault of the program, 130 interrupted (143 by SIGTERM, 129 by SIGHUP)"
 )
 
 
@@ -74,19 +74,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         The exit code.
     """
-    for stream in (sys.stdout, sys.stderr):
-        # a name that the terminal cannot show must not end the program
-        with contextlib.suppress(AttributeError, ValueError):
-            stream.reconfigure(errors="backslashreplace")  # pyright: ignore[reportAttributeAccessIssue]
+    with interruptible() as ended:
+        return ended.code(_run(arguments))
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    """Run the command line and return its exit code, that of Ctrl-C for every interruption."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     if arguments is None and not (sys.warnoptions or "--debug" in words or os.environ.get(DEBUG)):
         quieten()
     try:
-        _dispatch(words)
-    except SystemExit as stop:
-        return stop.code if isinstance(stop.code, int) else GOOD
+        with streams():
+            try:
+                _dispatch(words)
+            except SystemExit as stop:
+                return stop.code if isinstance(stop.code, int) else GOOD
     except KeyboardInterrupt:
         return _interrupted()
+    except WriteError as error:
+        complain(str(error))
+        return WRONG
     except Exception as error:
         return _fault(error, debug="--debug" in words)
     return GOOD
@@ -94,7 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Find the command of the first word and run it on the others."""
-    functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema)
+    functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema, _fuzz)
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
     if word in own:
@@ -102,12 +109,12 @@ def _dispatch(words: list[str]) -> None:
         parser = _parser(word, own[word], formats)
         own[word](**vars(parser.parse_intermixed_args(words[1:])))
         return
-    others = {command.name: command for command in _commands_of_kinds()}
-    if word in others:
-        _of_kind(others[word], words[1:])
+    other = next((command for command in _commands_of_kinds() if command.name == word), None)
+    if other is not None:
+        _of_kind(other, words[1:])
         return
     docs = {name: function.__doc__ or "" for name, function in own.items()}
-    docs |= {name: command.doc for name, command in others.items()}
+    docs |= {command.name: command.doc for command in _commands_of_kinds()}
     top = argparse.ArgumentParser(
         prog="gearcam",
         description=_ABOUT,
@@ -130,11 +137,10 @@ def _dispatch(words: list[str]) -> None:
 
 def _commands_of_kinds() -> Iterator[Command]:
     """Yield the commands that kinds of design add, and those of studies of any kind."""
+    for room in rooms("commands"):
+        yield from room.COMMANDS
     from gearcam.studies.commands import COMMANDS
 
-    for kind in KINDS.values():
-        with contextlib.suppress(ModuleNotFoundError):
-            yield from kind.room("commands").COMMANDS
     yield from COMMANDS
 
 
@@ -145,9 +151,9 @@ def _parser(
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
     if command in (_build, _check, _migrate):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
-    if command in (_build, _check, _compare):
+    if command in (_build, _check, _compare, _fuzz):
         _add_common(parser)
-    if command in (_compare, _view):
+    if command in (_compare, _view, _fuzz):
         import_module(f"gearcam.{name}.command").arguments(parser)
     if command is _build:
         words = f"write only these: {','.join(formats)}"
@@ -207,6 +213,12 @@ def _compare(files: list[str], debug: bool, **options: Any) -> None:
     _each([" ".join(files)], "compared", work, debug=debug)
 
 
+def _fuzz(debug: bool, **options: Any) -> None:
+    """Try random designs, in processes of their own; those at which it fails go into DIR."""
+    fuzz = import_module("gearcam.fuzz.command").fuzz
+    _each(["fuzz"], "tried", lambda _: GOOD if fuzz(**options) else FINDINGS, debug=debug)
+
+
 def _of_kind(command: Command, words: list[str]) -> None:
     """Run a command that a kind of design adds."""
     parser = argparse.ArgumentParser(prog=f"gearcam {command.name}", description=command.doc)
@@ -252,6 +264,8 @@ def _new(kind: str, file: str | None, process: str | None) -> None:
     if file is None:
         say(text.rstrip("\n"))
         return
+    import shlex
+
     try:
         write_new(file, text)
     except WriteError as error:
@@ -293,12 +307,8 @@ def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
         _refuse([Problem("nothing is listed", key="--only", allowed=", ".join(all_formats()))])
     strange = [kind for kind in kinds if kind not in FORMATS and kind not in all_formats()]
     if strange:
-        _refuse(
-            [
-                unknown_word(kind, "is not a kind of file", all_formats(), "--only")
-                for kind in strange
-            ]
-        )
+        words = "is not a kind of file"
+        _refuse([unknown_word(kind, words, all_formats(), "--only") for kind in strange])
     return tuple(dict.fromkeys(kinds))
 
 
@@ -383,6 +393,8 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
 def _fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
     """Say that the program is at fault; the traceback only where it is asked for."""
     if debug or os.environ.get(DEBUG):
+        import traceback
+
         complain("".join(traceback.format_exception(error)).rstrip())
     complain(fault_text(error, file))
     return FAULT

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
+import re
 import sys
 import textwrap
 import warnings
@@ -15,7 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.errors import DesignError, InfeasibleError, WriteError
 from gearcam.facts import lined_up
 from gearcam.numerals import size_of, with_unit
 
@@ -29,6 +30,12 @@ DEBUG: Final = "GEARCAM_DEBUG"
 """The variable that asks for tracebacks."""
 
 _WIDTH: Final = 96
+
+_MOST: Final = 100
+"""Problems of a file that are told at once."""
+
+_STEERING: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+"""Characters that are no text: of control, but for the end of a line, and of direction."""
 
 
 def law_lines(law: Listed) -> Iterator[str]:
@@ -105,7 +112,9 @@ def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> 
     if isinstance(error, InfeasibleError):
         return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
     count = len(error.problems)
-    told = textwrap.indent(str(error), "  ")
+    lines = [str(problem) for problem in error.problems[:_MOST]]
+    lines += [f"and {count - _MOST} more"] if count > _MOST else []
+    told = textwrap.indent("\n".join(lines), "  ")
     return f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}\n{told}"
 
 
@@ -155,15 +164,30 @@ def progress_bar(file: str) -> Iterator[Callable[[str, int, int], None] | None]:
         yield None
         return
     from rich.console import Console
+    from rich.markup import escape
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(file, total=None)
+        name = escape(visible(file))
+        task = bar.add_task(name, total=None)
 
         def advance(stage: str, done: int, total: int) -> None:
-            bar.update(task, description=f"{file}: {stage}", completed=done, total=total)
+            bar.update(task, description=f"{name}: {stage}", completed=done, total=total)
 
         yield advance
+
+
+@contextlib.contextmanager
+def streams() -> Iterator[None]:
+    """Have streams that take any text: closed ones forget it, poor terminals get escapes."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
+        with contextlib.suppress(AttributeError, ValueError):
+            getattr(sys, name).reconfigure(errors="backslashreplace")
+    yield
+    for stream in (sys.stdout, sys.stderr):
+        _write("", stream, end="")  # what others, such as argparse, have left
 
 
 def quieten() -> None:
@@ -182,10 +206,17 @@ def complain(text: str) -> None:
     _write(text, sys.stderr)
 
 
-def _write(text: str, stream: TextIO) -> None:
+def visible(text: str) -> str:
+    """Return a `text` with escapes for what steers a terminal, or turns the order of letters."""
+    return _STEERING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+
+
+def _write(text: str, stream: TextIO, end: str = "\n") -> None:
     """Print; a reader that has gone (such as ``head``) is no reason to stop building."""
     try:
-        print(text, file=stream, flush=True)
-    except BrokenPipeError:
+        print(visible(text), file=stream, end=end, flush=True)
+    except OSError as error:
         # what is still buffered goes nowhere, and the flush at the end finds nothing broken
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        if not isinstance(error, BrokenPipeError) and stream is sys.stdout:
+            raise WriteError(f"cannot write to the standard output: {error.strerror}") from error

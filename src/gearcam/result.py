@@ -25,7 +25,7 @@ from gearcam.findings import Finding
 from gearcam.numerals import tree
 from gearcam.numeric.arguments import one_of
 from gearcam.tolerances import DEFAULT, Tolerances
-from gearcam.written import Written, demand_formats, versions
+from gearcam.written import Written, demand_formats, put, versions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from gearcam.charts import Chart
     from gearcam.parts.body import Part
+    from gearcam.solids import Mesh
 
 FORMAT: Final = 3
 """Version of the summary's layout."""
@@ -65,12 +66,15 @@ class Result(Displayed):
 
     stages: ClassVar[Mapping[str, str]]
     """The attributes that a build computes before its files, by what they are called."""
+    before_output: ClassVar[Sequence[str]] = ()
+    """Those of them that the table ``[output]`` of a design does not change."""
 
     def __init__(self, design: Any, tolerances: Tolerances = DEFAULT) -> None:
         self.design = design
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
         self.sizes: dict[str, int] = {}  # bytes of the files of a build so far
+        self.sought: dict[float, Any] = {}  # remedies, by the patience of the search
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.design, self.tolerances)  # computed again where it is read
@@ -103,9 +107,15 @@ class Result(Displayed):
         From z = 0 to the width, hubs beyond; what cannot be made raises `InfeasibleError`.
         """
         from gearcam.export.mesh import trimeshes
-        from gearcam.export.shared import meshes
 
-        return trimeshes(meshes(self.parts, {}))
+        return trimeshes(self.meshes)
+
+    @cached_property
+    def meshes(self) -> dict[str, Mesh]:
+        """The parts as closed meshes of plain arrays by name, mm: what files are made from."""
+        from gearcam.solids import solid
+
+        return {part.name: solid(part) for part in self.parts}
 
     def picture(self) -> str:
         """Return the picture of the file kind ``svg``, or a refusal; none without it."""
@@ -330,8 +340,7 @@ class Result(Displayed):
                 contents |= self.files(kind, measured)
             self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
-        there: dict[str, str | None] = dict.fromkeys(contents)
-        return self._write_all(directory, contents, there, measured, self.findings)
+        return put(self, directory, contents, measured, self.findings)
 
     def keep(
         self,
@@ -357,43 +366,5 @@ class Result(Displayed):
         -------
         Written
         """
-        from gearcam.export.write import previous_files
-
-        there = previous_files(Path(directory) / self.design.name)
         found = self.findings if findings is None else findings
-        there |= dict.fromkeys(contents)
-        return self._write_all(directory, contents, there, measured, found, keep=True)
-
-    def _write_all(
-        self,
-        directory: str | Path,
-        contents: Mapping[str, bytes],
-        there: Mapping[str, str | None],
-        measured: Mapping[str, Any],
-        findings: Sequence[Finding],
-        *,
-        keep: bool = False,
-    ) -> Written:
-        """Write files with the summary of all that will be there, all or none."""
-        import json
-
-        from gearcam.export.write import SUMMARY, write_all
-
-        facts = self.facts_with(measured) if measured else self.facts
-        made = self.design_hash
-        hashes = {name: made if name in contents else old for name, old in there.items()}
-        stale = {name: old for name, old in hashes.items() if old != made}
-        about = {"files": {name: made for name in hashes if name not in stale}}
-        summary = self.document(facts, findings, {**about, **({"stale": stale} if stale else {})})
-        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-        everything = {**contents, SUMMARY: (text + "\n").encode()}
-        folder = Path(directory) / self.design.name
-        removed = write_all(folder, everything, keep=keep)
-        return Written(
-            directory=folder,
-            files=tuple(everything),
-            removed=tuple(removed),
-            summary=summary,
-            facts=facts,
-            findings=tuple(findings),
-        )
+        return put(self, directory, contents, measured, found, keep=True)

@@ -31,8 +31,12 @@ if TYPE_CHECKING:
 OVERSHOOT: Final = 1.0
 """How far a pocket's cutter stands out of the face, in its depths: faces must not coincide."""
 
-ROUNDING: Final = 1e-8
-"""The library keeps flat outlines on a grid of this step, mm."""
+_FILLED: Final = 18
+"""Powers of 2 up to which flat outlines are made larger, or smaller, while the library has them:
+it keeps them on a grid of 1e-8, whatever their size, in whole numbers of 64 bits."""
+
+ROUNDING: Final = 1e-8 * 2.0 ** (1 - _FILLED)
+"""What that grid is of the reach of an outline, at most."""
 
 
 class SolidError(GearcamError, RuntimeError):
@@ -162,8 +166,10 @@ def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
     """Return a layer: its edge pulled up along z, less its openings, which run clockwise."""
     holes = [opening.shape.points(tolerance)[::-1] for opening in layer.openings]
     loops = [np.ascontiguousarray(loop) for loop in (layer.edge.points(tolerance), *holes)]
-    section = manifold3d.CrossSection(loops)
-    return manifold3d.Manifold.extrude(section, layer.height).translate((0.0, 0.0, layer.low))
+    times = math.ldexp(1.0, _FILLED - math.frexp(layer.edge.reach)[1])
+    section = manifold3d.CrossSection([times * loop for loop in loops])
+    slab = manifold3d.Manifold.extrude(section, layer.height).scale((1.0 / times, 1.0 / times, 1.0))
+    return slab.translate((0.0, 0.0, layer.low))
 
 
 def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:
@@ -210,5 +216,6 @@ def _(part: Part) -> float:
     for layer in (*part.layers, *part.pockets):
         for edge in (layer.edge, *(opening.shape for opening in layer.openings)):
             error = edge.chord_error if isinstance(edge, Contour) else part.tolerance
-            total += edge.length * (error + ROUNDING) * layer.height
+            error += ROUNDING * edge.reach
+            total += edge.length * error * layer.height
     return total

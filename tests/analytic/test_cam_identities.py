@@ -61,7 +61,7 @@ def test_contact_by_differences(kind: str) -> None:
     made = cam(kind, law, 9.0, DEGREES)
     exact = Exact(witness_of(kind), Motion(law, 9.0, DEGREES, made.mechanism.oscillating))
     theta = samples(3, 5)
-    found = made.motion(theta)
+    found, radii = made.motion(theta), made.radii(theta)
     contact: Any = made.curve.contact(theta, 0)
     for k, at in enumerate(theta):
         t = mp.mpf(float(at))
@@ -70,7 +70,7 @@ def test_contact_by_differences(kind: str) -> None:
         if not made.mechanism.flat:
             close(1.0 / found["rho_pitch"][k], exact.curvature(exact.pitch, t))
             close(contact.pitch_speed.c[0][k], abs(mp.diff(exact.pitch, t)))
-        close(1.0 / found["rho_profile"][k], exact.curvature(exact.contact, t))
+        close(1.0 / radii[k], exact.curvature(exact.contact, t))
         if made.mechanism.radius or made.mechanism.flat:
             close(contact.speed.c[0][k], abs(mp.diff(exact.contact, t)))
 
@@ -106,7 +106,7 @@ def test_undercut_has_a_negative_radius(kind: str, changed: dict[str, Any]) -> N
         witness_of(kind, **changed), Motion("cycloidal", 14.0, steep, made.mechanism.oscillating)
     )
     theta = np.radians(np.linspace(1.0, 59.0, 14))
-    radii = made.motion(theta)["rho_profile"]
+    radii = made.radii(theta)
     assert (radii > 0.0).any()
     assert (radii < 0.0).any()
     for at, radius in zip(theta, radii, strict=True):
@@ -138,7 +138,7 @@ def test_the_textbook_formulas_of_a_sliding_roller() -> None:
         * np.sign(height**2 - e * (ds - e))
     )
     np.testing.assert_allclose(found["rho_pitch"], radius, rtol=1e-12)
-    np.testing.assert_allclose(found["rho_profile"], radius - 6.0, rtol=1e-12)
+    np.testing.assert_allclose(made.radii(theta), radius - 6.0, rtol=1e-12)
 
 
 def test_the_textbook_formulas_of_a_swinging_roller() -> None:
@@ -168,7 +168,7 @@ def test_a_flat_face_by_the_textbook() -> None:
     theta = angles(300)
     found, contact = made.motion(theta), made.curve.contact(theta, 0)
     np.testing.assert_allclose(contact.place.c[0], found["ds"], atol=1e-13)
-    np.testing.assert_allclose(found["rho_profile"], 40.0 + found["s"] + found["d2s"], rtol=1e-13)
+    np.testing.assert_allclose(made.radii(theta), 40.0 + found["s"] + found["d2s"], rtol=1e-13)
     assert np.all(found["pressure"] == 0.0)
 
 
@@ -233,7 +233,7 @@ def test_an_eccentric_circle_under_every_follower(kind: str, clockwise: bool) ->
     assert np.abs(np.abs(points - middle) / RADIUS - 1.0).max() < 1e-12
     assert made.size.perimeter == pytest.approx(TURN * RADIUS, rel=1e-12)
     assert made.size.area == pytest.approx(math.pi * RADIUS**2, rel=1e-12)
-    radii = made.motion(angles(90))["rho_profile"]
+    radii = made.radii(angles(90))
     np.testing.assert_allclose(radii, RADIUS, rtol=1e-10)
     assert made.undercut == []
     convex, concave = made.profile_radius

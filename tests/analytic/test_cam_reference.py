@@ -152,7 +152,7 @@ def test_the_profile_is_a_parallel_of_the_pitch_curve(kind: str) -> None:
     made = cam(kind, lift=6.0)
     theta, radius = angles(200), made.mechanism.radius
     found = made.motion(theta)
-    np.testing.assert_allclose(found["rho_pitch"], found["rho_profile"] + radius, rtol=1e-13)
+    np.testing.assert_allclose(found["rho_pitch"], made.radii(theta) + radius, rtol=1e-13)
     assert np.ptp(found["rho_pitch"]) > 1.0
     points = made.places(200)[1]
     centres = made.curve.pitch(

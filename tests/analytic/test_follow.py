@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gearcam.cams.follow import Followed, follow
 from gearcam.cams.mechanism import Mechanism
 from gearcam.numeric.bulges import as_complex, as_pairs, flatten_bulges
+from helpers_few import few
 from witness.cam_sweep import Follower
 from witness.follower import Rest, rest
 
@@ -112,7 +113,7 @@ def in_mm(follower: Mechanism, found: Followed | Rest, lift: Array) -> float:
 
 
 @pytest.mark.parametrize("uneven", [False, True])
-@pytest.mark.parametrize("name", FOLLOWERS)
+@pytest.mark.parametrize("name", few(FOLLOWERS, 3))
 def test_a_smooth_circle_is_followed_to_rounding(name: str, uneven: bool) -> None:
     follower = FOLLOWERS[name]
     points = MIDDLE + RADIUS * np.exp(1j * turns(DENSE, uneven))
@@ -316,7 +317,7 @@ MADE = [
 
 @pytest.mark.parametrize("follower", MADE)
 @pytest.mark.parametrize("rise", [parabolas, polynomial])
-@pytest.mark.parametrize("uneven", [False, True])
+@pytest.mark.parametrize("uneven", few([True, False]))
 def test_a_cam_gives_the_lift_it_was_made_for(
     rise: Rise, follower: Mechanism, uneven: bool
 ) -> None:

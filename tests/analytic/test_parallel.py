@@ -237,6 +237,27 @@ def test_a_disc_that_is_too_large_for_a_fillet_leaves_a_corner(by: float) -> Non
     demand_true(made)
 
 
+def test_arcs_of_the_disc_s_own_radius_become_corners() -> None:
+    """The smooth outline of a rounded square is one run; moved by its radius it has four."""
+    smooth = rounded(square_contour(40.0), 3.0)
+    points = np.vstack([run.points[:-1] for run in smooth.runs] + [smooth.runs[0].points[:1]])
+    tangents = np.vstack([run.tangents[:-1] for run in smooth.runs] + [smooth.runs[0].tangents[:1]])
+    whole = Run(points=points, tangents=tangents)
+    one = Contour(
+        dense=lambda: (whole,),
+        vertices=smooth.vertices,
+        tolerance=smooth.tolerance,
+        chord_error=smooth.chord_error,
+    )
+    made = moved(one, -3.0)
+    assert len(made.runs) in (4, 5)  # the first corner may be where it begins
+    for run in made.runs:
+        way = np.diff(run.points, axis=0)
+        way /= np.hypot(*way.T)[:, None]
+        assert np.abs(run.tangents[:-1] - way).max() < 1e-9
+        assert np.abs(run.tangents[1:] - way).max() < 1e-9
+
+
 @pytest.mark.parametrize("by", [0.6, 0.9, 3.0])
 def test_a_slot_narrower_than_the_disc_closes(by: float) -> None:
     """Of a slot 1 mm wide and 9 mm deep only the dent between the arcs of its mouth is left."""

@@ -135,6 +135,21 @@ def test_its_cubics_are_the_spline(name: str) -> None:
         assert np.abs(curve - other).max() < 1e-9
 
 
+@pytest.mark.parametrize("radius", [500.0, 1500.0, 5000.0])
+@pytest.mark.parametrize("length", [60.0, 400.0])
+def test_it_stays_near_a_long_step_beside_a_bend(radius: float, length: float) -> None:
+    """A gentle bend, densely drawn, runs into a straight piece that has its two ends only."""
+    tolerance = 3e-3
+    for count in (20, 60, 200):
+        angle = np.linspace(-160.0 / radius, 0.0, count)
+        points = np.append(radius * (np.exp(1j * (angle - np.pi / 2)) + 1j), length)
+        tangents = np.append(np.exp(1j * angle), 1.0)
+        run = Run(points=as_pairs(points), tangents=as_pairs(tangents))
+        made = drawn(fit_splines([run], tolerance)[0])
+        straight = made.real > 0.0
+        assert np.abs(made[straight].imag).max() <= tolerance
+
+
 def test_pieces_follow_the_fourth_root_of_the_tolerance() -> None:
     tolerances = 10.0 ** np.arange(-2, -9, -1.0)
     run = run_of(ellipse_piece, 20000)

@@ -19,6 +19,7 @@ from gearcam.meshing.numbers import harmonics, numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, study
 from gearcam.parts.blank import Blank
+from helpers_few import few
 from helpers_pairs import job, profile
 
 MADE = ["nail_machine_two_phase", "nail_machine_three_phase", "ellipse", "shop_order"]
@@ -53,7 +54,7 @@ def test_common_normals_and_the_gap_agree(name: str, more: float, side: int) -> 
 
 
 @pytest.mark.parametrize("name", MADE)
-@pytest.mark.parametrize("more", MORE)
+@pytest.mark.parametrize("more", few(MORE))
 @pytest.mark.parametrize("side", SIDES)
 def test_arcs_end_where_an_edge_begins_to_touch(name: str, more: float, side: int) -> None:
     """A hundred-thousandth of a degree inside a pair shares a tangent, outside its end touches."""

@@ -33,6 +33,7 @@ from helpers_cams import (
     stiffness,
     witness_of,
 )
+from helpers_few import few
 from witness.cam_sweep import Exact, Follower, Motion, dot, mp
 from witness.follower import rest
 
@@ -52,7 +53,7 @@ def missing(made: DiscCam, follower: Follower, theta: Array, **changed: float) -
 
 
 @pytest.mark.parametrize("clockwise", [False, True])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", few(KINDS))
 def test_the_exact_profile_gives_the_lift_asked_for(kind: str, clockwise: bool) -> None:
     made = cam(kind, "3-4-5", 8.0, DEGREES, clockwise=clockwise, tolerance=3e-4)
     assert made.corners == ()
@@ -207,7 +208,11 @@ def test_a_velocity_that_falls_undercuts_at_a_point(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "clockwise"),
-    [*((name, False) for name in (*UNDERCUT, *CORNERS)), ("roller", True), ("swinging face", True)],
+    [
+        *few([(name, False) for name in (*UNDERCUT, *CORNERS)], 3),
+        ("roller", True),
+        ("swinging face", True),
+    ],
 )
 def test_a_trimmed_cam_loses_what_it_says(name: str, clockwise: bool) -> None:
     made, case = built(name, clockwise), {**UNDERCUT, **CORNERS}[name]

@@ -306,7 +306,7 @@ def run(family: str, examples: int, most: int = 200) -> list[bool]:
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_few_designs_of_each_family(family: str) -> None:
-    run(family, 4, most=FEW_TEETH)
+    run(family, 2, most=FEW_TEETH)
 
 
 @pytest.mark.slow

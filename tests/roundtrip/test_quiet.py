@@ -47,7 +47,7 @@ def strictly(folder: Path, *words: str) -> None:
 @pytest.mark.parametrize(
     ("name", "files"),
     [
-        ("shop_order", GEARS),
+        pytest.param("shop_order", GEARS, marks=pytest.mark.slow),
         ("log_spiral", GEARS + STEP),
         ("feeder", GEARS),
         ("plate_cam_offset_roller", GEARS + ",tool-path,curvature"),

@@ -366,11 +366,11 @@ def test_coarse_rows_are_told(kind: str, lever: float) -> None:
     table = MotionTable(theta=tuple(theta.tolist()), lift=tuple(lift.tolist()))
     rows = table.program(DEFAULT, oscillating=swings)
     for share, speaks in ((1.0 + 1e-9, False), (1.0 - 1e-9, True)):
-        tolerance = share * lever * rows.error
+        tolerance = share * lever * rows.errors[0]
         made = make_cam(rows, mechanism(kind), tolerance=tolerance)
         found = findings(made, "coarse-rows")
         assert bool(found) is speaks
-    assert found[0].value == pytest.approx(lever * rows.error)
+    assert found[0].value == pytest.approx(lever * rows.errors[0])
     assert (found[0].limit, found[0].unit, found[0].severity) == (tolerance, "mm", "warning")
     assert found[0].where == "motion"
 

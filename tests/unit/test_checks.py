@@ -263,6 +263,15 @@ def test_a_pair_that_does_not_drive_is_an_error() -> None:
     assert codes(overlap_of(1.01))["contact-ratio"].severity == "warning"
 
 
+def test_flanks_that_carry_long_enough_but_not_everywhere_are_held_against_nothing() -> None:
+    found = codes(job(Ellipse(eccentricity=0.8), (24, 24)))["contact-ratio"]
+    assert found.severity == "error"
+    assert found.value is not None
+    assert found.value > 1.1
+    assert found.held == ""
+    assert "No flanks touch" in found.message
+
+
 def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:
     made = job(Constant(), (17, 60))
     subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))

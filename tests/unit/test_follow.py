@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -268,6 +269,19 @@ def test_a_roller_within_a_wall_of_circles(mechanism: Mechanism) -> None:
     assert np.all(np.abs(seen.lift - (expected - m.start)) <= 1.1 * seen.error)
     np.testing.assert_allclose(np.abs(seen.contact - middle), size, atol=2e-6)
     np.testing.assert_allclose(seen.theta, theta)
+
+
+@pytest.mark.parametrize("radius", [0.0, 4.0])
+def test_an_arm_does_not_rest_on_what_lies_behind_its_pivot(radius: float) -> None:
+    """The end of a plate slides past the pivot, which stands lower: it counts before it only."""
+    m = Mechanism(
+        flat=False, oscillating=True, start=0.0, pivot=66.0, arm=56.0, height=-40.0,
+        radius=radius, slide=30.0,
+    )  # fmt: skip
+    corners = np.array([110.0, -300.0, -300.0 - 120.0j, 110.0 - 120.0j, 110.0])
+    edge = np.concatenate([np.linspace(*ends, 5)[:-1] for ends in pairwise(corners)])
+    seen = follow(edge, m, np.linspace(0.0, 0.3, 9))
+    np.testing.assert_allclose(seen.lift, math.asin((40.0 + radius) / 56.0), atol=1e-12)
 
 
 def test_every_chord_is_in_a_disc_around_its_block() -> None:

@@ -21,6 +21,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
+from helpers_few import few
 from helpers_pairs import Assembly, job
 
 SLOWEST = 5.0
@@ -210,7 +211,7 @@ RACKS = {
 }
 
 
-@pytest.mark.parametrize("rack", RACKS)
+@pytest.mark.parametrize("rack", few(RACKS))
 @pytest.mark.parametrize(
     "law", [Constant(), Ellipse(eccentricity=0.3), Formula(r1="1 + 0.3*cos(2*phi1)")]
 )

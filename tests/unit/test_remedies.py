@@ -22,6 +22,7 @@ from gearcam.gears.bound import contact_bound
 from gearcam.gears.checks import Subject, largest_module
 from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
+from gearcam.laws.ratio.ellipse import Ellipse
 from helpers_documents import followed, job_of, written
 from helpers_pairs import job
 from helpers_remedies import CIRCLE, ERRORS, NAIL, REFUSED, UNDER, WARNED, pair
@@ -227,6 +228,12 @@ def test_flanks_alone_give_circular_wheels_their_contact_ratio(teeth: tuple[int,
     made = job(Constant(), teeth)
     ratio = length / (math.pi * math.cos(alpha))
     assert contact_bound(*made.pair.toothings) == pytest.approx(ratio, abs=1e-9)
+
+
+@pytest.mark.parametrize("x", [-0.9, 0.3, 0.6, 0.9])
+def test_flanks_alone_know_how_far_the_mates_of_shifted_teeth_go(x: float) -> None:
+    made = job(Ellipse(eccentricity=0.3), (41, 41), x=x)
+    assert contact_bound(*made.pair.toothings) == pytest.approx(made.contact_ratio, abs=1e-9)
 
 
 def test_flanks_alone_bound_the_contact_ratio_and_refuse_what_cannot_drive(folder: Path) -> None:

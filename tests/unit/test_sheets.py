@@ -262,7 +262,7 @@ def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.Monke
         return sheet_rows(facts, names)
 
     for kind in KINDS.values():
-        monkeypatch.setattr(kind.room("files"), "sheet_rows", rows)
+        monkeypatch.setattr(kind.room("drawn"), "sheet_rows", rows)
     changes = {
         "stepped_ellipse": {
             "blank.density_kg_m3": 7850.0,

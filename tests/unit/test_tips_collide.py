@@ -39,6 +39,16 @@ def test_it_tells_tooth_angle_and_margin() -> None:
     assert overlap(result, passed.phi1) > 0.0
 
 
+def test_a_wheel_without_room_in_its_ring_is_told_so() -> None:
+    """Its centrode crosses the ring's far from the mesh: no tooth is as wide as the margin."""
+    found = collision(ring({"type": "ellipse", "eccentricity": 0.8}, (24, 48)))
+    assert found is not None
+    assert found.severity == "error"
+    assert found.value is not None
+    assert found.value < -0.5 * math.pi
+    assert "no room in its ring" in found.message
+
+
 def test_a_margin_below_its_limit_is_a_warning() -> None:
     free = ring({"type": "constant"}, (28, 40))
     assert collision(free) is None

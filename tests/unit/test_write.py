@@ -15,11 +15,11 @@ from gearcam.export.write import is_plain, previous_files, write_all
 
 
 def summary(*names: object) -> bytes:
-    return json.dumps({"files": {str(name): "of a design" for name in names}}).encode()
+    return json.dumps({"format": 3, "files": {str(name): "of a design" for name in names}}).encode()
 
 
 def build(folder: Path, files: dict[str, bytes]) -> tuple[str, ...]:
-    return write_all(folder, {"summary.json": summary(*files), **files})
+    return write_all(folder, lambda _: {"summary.json": summary(*files), **files})
 
 
 def state(folder: Path) -> dict[str, bytes]:
@@ -57,12 +57,14 @@ STRANGE = {
     "cut": b"{",
     "list": b"[]",
     "null": b"null",
-    "number": b'{"files": 3}',
-    "mapping": b'{"files": {"mine.txt": 1}}',
+    "number": b'{"format": 3, "files": 3}',
+    "mapping": b'{"format": 3, "files": {"mine.txt": 1}}',
+    "of another program": b'{"files": ["mine.txt"]}',
+    "of another program, mapping": b'{"format": "x", "files": {"mine.txt": "1"}}',
     "no text": b"\xff\xfe",
     "deep": b"[" * 100_000,
     "elsewhere": summary(*ELSEWHERE),
-    "names elsewhere": json.dumps({"files": ELSEWHERE}).encode(),
+    "names elsewhere": json.dumps({"format": 1, "files": ELSEWHERE}).encode(),
     "name too long": summary("a" * 5000),
 }
 
@@ -233,11 +235,12 @@ def test_a_folder_that_may_not_be_written(tmp_path: Path, monkeypatch: pytest.Mo
 def test_names_that_are_not_plain_are_refused(tmp_path: Path, name: str) -> None:
     assert not is_plain(name)
     with pytest.raises(ValueError, match="plain"):
-        write_all(tmp_path, {name: b""})
+        write_all(tmp_path, lambda _: {name: b""})
 
 
 def test_previous_files_are_those_that_are_there(tmp_path: Path) -> None:
     listed = {
+        "format": 3,
         "files": {"a.dxf": "1", "gone.dxf": "1", "summary.json": "1", "wrong.dxf": 1},
         "stale": {"b.dxf": "2", "c.dxf": None, "folder": "2"},
     }

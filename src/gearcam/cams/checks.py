@@ -203,7 +203,7 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     Looks at: the estimated error of the lift between the rows of its table.
     """
     lead = cam.motions[0]
-    error = lead.program.error * lead.mechanism.lever
+    error = lead.program.errors[0] * lead.mechanism.lever
     if error > lead.tolerance:
         yield Remark(
             f"Between the rows of its table the lift is known to {shown(error, 3)} mm, the profile "

@@ -38,7 +38,7 @@ from numpy.typing import ArrayLike
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.profile_points import ProfilePoints, profile_points
 from gearcam.errors import InfeasibleError
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _ROUNDING: Final = 1e-12
 """Lengths over the profile's size that rounding may make different."""
@@ -220,7 +220,7 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
         aside, reach = z.real - mechanism.offset, mechanism.radius + grow
         room = (reach - aside) * (reach + aside)
         rest = z.imag + np.sqrt(np.maximum(room, 0.0))
-        return rest, _on_own_side(mechanism, z, grow, room)
+        return rest, np.where(_on_other_side(mechanism, z, grow), -np.inf, room)
     toward = mechanism.pivot - z
     own, far = -np.angle(toward), np.abs(toward)
     if mechanism.flat:
@@ -232,15 +232,19 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
     # half the angle from the three sides: exact for a small roller too
     rest = np.maximum((far + arm - reach) * (far + arm + reach), 0.0)
     turn = 2.0 * np.arctan2(np.sqrt(np.maximum(room, 0.0)), np.sqrt(rest))
-    if mechanism.slide:  # beyond the pivot, where the arm of a disc cam's follower may stand
-        room = np.where(toward.real + reach < 0.0, -np.inf, room)
-    room = _on_own_side(mechanism, z, grow, room)
+    room = np.where(_on_other_side(mechanism, z, grow), -np.inf, room)
     return np.where(reach > far + arm, np.inf, own + turn), room
 
 
-def _on_own_side(mechanism: Mechanism, z: Plane, grow: Array | float, room: Array) -> Array:
-    """Return the room of discs; one within a profile has none beyond the axis."""
-    return np.where(z.imag - grow > 0.0, -np.inf, room) if mechanism.below else room
+def _on_other_side(mechanism: Mechanism, z: Plane, grow: Array | float) -> Mask:
+    """Return which discs lie where a round follower does not come.
+
+    Beyond the axis within a profile, and beyond the pivot over a cam that slides, where the arm of
+    a disc cam's follower may stand.
+    """
+    if mechanism.slide and mechanism.oscillating:
+        return mechanism.pivot - z.real + mechanism.radius + grow < 0.0
+    return np.full(z.shape, mechanism.below) & (z.imag - grow > 0.0)
 
 
 def _reached(
@@ -279,8 +283,10 @@ def _on_chord(
         aside = mechanism.offset - z.real - reach * unit.imag
         way = np.divide(aside, chord.real, out=np.zeros_like(length), where=between)
     between &= (way >= 0.0) & (way <= 1.0)
-    place = z[between] + way[between] * chord[between]
-    position[between] = _rest(mechanism, place, np.broadcast_to(grow, z.shape)[between])[0]
+    place = z + way * chord
+    between &= ~_on_other_side(mechanism, place, grow)
+    grown = np.broadcast_to(grow, z.shape)[between]
+    position[between] = _rest(mechanism, place[between], grown)[0]
     part[between] = way[between]
     return position, part
 

@@ -144,11 +144,13 @@ def make_groove(
         If it cannot, or the groove would open the blank.
     """
     common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
+    motion = PitchMotion(mechanism=mechanism, **common)
     radius, second = mechanism.radius, mechanism.radius if radius2 is None else radius2
 
     def wall(size: float, side: int, key: str) -> Wall:
         wide = replace(mechanism, radius=size + 0.5 * clearance)
-        return Wall(mechanism=wide, side=side, key=key, called=f"{key} wall", **common)
+        called = f"{key} wall"
+        return Wall(mechanism=wide, side=side, of=motion, key=key, called=called, **common)
 
     relief = None
     if second != radius:
@@ -160,7 +162,7 @@ def make_groove(
     if not clears_axis(program, deepest.mechanism):
         raise _on_axis(program, deepest.mechanism)
     made = GrooveCam(
-        motion=PitchMotion(mechanism=mechanism, **common),
+        motion=motion,
         inner=inner,
         outer=outer,
         radius2=second,

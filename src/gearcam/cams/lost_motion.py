@@ -36,7 +36,7 @@ _STEP = 1e-8
 _ROUNDING = 1e-13
 """Angle, rad: more than rounding makes of one in a turn."""
 
-_FLAT = 1e-6
+_FLAT = 1e-8
 """Width, rad, of a bracket about a largest value, which changes with its square."""
 
 _APART = 1e-9
@@ -173,8 +173,9 @@ class Rest(Brief):
 
         first = np.where(centers.jump[index], 0.5 * (low + high), np.clip(aim, low, high))
         places = newton_in_bracket(function, low, high, first, _STEP, _ROUNDING)
-        _, lift, slope, rise = self._moving(index, places)
+        stands, lift, slope, rise = self._moving(index, places)
         rise = rise / slope
+        lift = lift + rise * (aim - stands)  # what the search has left
         for inside, point in self._on_corners(theta):
             given = resting(self._mechanism, point, self.wall.side)
             lift[inside], rise[inside] = given(Jet.variable(theta[inside], 1)).derivatives()

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes, extremes_among
 from gearcam.numeric.roots import bracketed_root
 
-_INSET = 1e-11
-"""More than the angle that extremes keep from knots, rad."""
+_GAP = 1e-11
+"""Gap, rad, over which two undercut stretches are one."""
 
 _ROOT = 1e-15
 """Width of a root's bracket, rad."""
@@ -33,6 +33,12 @@ _CELLS = 4
 _MOST_CELLS = 1024
 _AGREED = 1e-14
 """Gauss points in each cell of a segment; the cells are halved until sums agree to this part."""
+
+_CANCELLED = 40.0
+"""What a rough curve's integral may miss less than others of its kind: errors cancel in it."""
+
+_ROUNDING = 16.0 * np.finfo(float).eps
+"""Of sums, in parts of them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +60,11 @@ class Range(Brief):
     def largest(self) -> float:
         """The largest absolute value."""
         return max(abs(self.low.value), abs(self.high.value))
+
+    @property
+    def least_radius(self) -> float:
+        """Of a range of curvature: the smallest radius, infinite where all is straight."""
+        return 1.0 / self.largest if self.largest else math.inf
 
 
 def range_of(
@@ -79,10 +90,14 @@ def range_of(
     def function(theta: Array) -> list[Array]:
         return pick(curve.contact(theta)).derivatives()
 
-    found = [extremes(function, curve.program.cuts_between(*ends)) for ends in stretches]
-    if not found:
+    if not stretches:
         return None
-    theta, value = np.concatenate(found, axis=1)
+    cuts = [curve.program.cuts_between(*ends) for ends in stretches]
+    found = [extremes(function, own) for own in cuts]
+    # extremes keep off the knots: what is largest there is taken from each side's own piece
+    ends, states = curve.program.sides(cuts)
+    at_ends = pick(curve.contact_of(states, 0)).c[0] + np.zeros_like(ends)
+    theta, value = np.concatenate([*found, [ends, at_ends]], axis=1)
     low, high = (
         Extreme(theta=float(theta[k]), value=float(value[k]))
         for k in (value.argmin(), value.argmax())
@@ -106,7 +121,7 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     """
     if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
         return []
-    knots, cuts, survey = curve.program.knots, curve.program.cuts, curve.program.survey
+    survey = curve.program.survey
     side, hard = curve.mechanism.away, curve.program.hard
     back = (jump.theta for jump in hard if side * (jump.after - jump.before) < 0.0)
     found = [(theta, theta) for theta in back]
@@ -118,26 +133,17 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     if _stays_positive(survey.places, *seen):
         return found
     places, values = extremes_among(speed, survey.places, *seen)
-    sweep = np.searchsorted(cuts, places, side="right")
     before, after = values[:-1] < 0.0, values[1:] < 0.0
-    whole = sweep[:-1] == sweep[1:]  # not across a knot
-    low, high = _at_knots(places[:-1], knots), _at_knots(places[1:], knots)
+    low, high = places[:-1].copy(), places[1:].copy()
+    whole = low < high  # not across a knot
     turns = whole & (before != after)
-    ends = places[:-1][turns], places[1:][turns]
-    roots = bracketed_root(lambda t: speed(t)[0], ends[0], ends[1], _ROOT)
+    ends, known = (low[turns], high[turns]), (values[:-1][turns], values[1:][turns])
+    roots = bracketed_root(lambda t: speed(t)[0], *ends, _ROOT, known)
     low[turns & after] = roots[after[turns]]
     high[turns & before] = roots[before[turns]]
     kept = whole & (before | after) & (low < high)
     found += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
     return _joined(sorted(found))
-
-
-def _at_knots(theta: Array, knots: Array) -> Array:
-    """Return angles, each the knot that it means where it is as near as extremes keep to it."""
-    after = np.searchsorted(knots, theta).clip(1, len(knots) - 1)
-    before, behind = knots[after - 1], knots[after]
-    nearest = np.where(theta - before < behind - theta, before, behind)
-    return np.where(np.abs(nearest - theta) <= _INSET, nearest, theta)
 
 
 def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
@@ -154,7 +160,7 @@ def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
     """Join stretches that touch."""
     joined: list[tuple[float, float]] = []
     for low, high in stretches:
-        if joined and low - joined[-1][1] <= _INSET:
+        if joined and low - joined[-1][1] <= _GAP:
             joined[-1] = (joined[-1][0], max(joined[-1][1], high))
         else:
             joined.append((low, high))
@@ -202,34 +208,60 @@ class Size(Brief):
     area_error: float
 
 
-def size_of(segments: ProfileSegments) -> Size:
+def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CELLS) -> Size:
     """Return perimeter and area of a closed curve, by Gauss-Legendre quadrature of every segment.
 
     Parameters
     ----------
     segments : ProfileSegments
         Closed; mirrored or not.
+    nodes : int
+        In each cell.
+    most : int
+        Cells of a segment.
 
     Returns
     -------
     Size
-        The errors are differences to half the cells, and rounding.
+        The errors are differences to half the cells, fallen once more as they fell before; what
+        the lift is not known to; and rounding.
     """
-    cells, found = _CELLS, _integrals(segments, _CELLS)
+    cells, found, changes = _CELLS, _integrals(segments, _CELLS, nodes), np.full(2, np.inf)
     while True:
-        cells, before, found = 2 * cells, found, _integrals(segments, 2 * cells)
-        changes = np.abs(found - before)
-        if np.all(changes <= _AGREED * found) or cells >= _MOST_CELLS:
+        cells, before, found = 2 * cells, found, _integrals(segments, 2 * cells, nodes)
+        earlier, changes = changes, np.abs(found - before)
+        if np.all(changes <= _AGREED * found) or cells >= most:
             break
+    falls = np.where(np.isfinite(earlier), np.minimum(1.0, 2.0 * changes / earlier), 1.0)
     perimeter, area = found.tolist()
-    errors = (changes + 16.0 * np.finfo(float).eps * found).tolist()
+    unknown = _unknown(segments, cells, nodes, found)
+    errors = (changes * falls + unknown + _ROUNDING * found).tolist()
     return Size(perimeter=perimeter, area=area, perimeter_error=errors[0], area_error=errors[1])
 
 
-def _integrals(segments: ProfileSegments, cells: int) -> Array:
-    """Return perimeter and area with as many cells for each segment."""
-    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    share = ((np.arange(cells)[:, None] + 0.5 * (nodes + 1.0)) / cells).ravel()
+def _unknown(segments: ProfileSegments, cells: int, nodes: int, found: Array) -> Array:
+    """Return what perimeter and area may be off where the lift is not known better.
+
+    Errors between rows change their signs, and little of them is left in an integral: how much,
+    rough curves tell. Between corners, which move with the lift, the largest error counts
+    everywhere.
+    """
+    program = segments.curve.program
+    if not program.rough or segments.corner[1:].any():
+        off = program.errors[0] * segments.curve.mechanism.lever
+        return off * np.array([2.0 * math.pi, found[0]])
+    rough = [
+        replace(segments, curve=replace(segments.curve, program=replace(program, lift=lift)))
+        for lift in program.rough
+    ]
+    misses = [np.abs(_integrals(one, cells, nodes) - found) for one in rough]
+    return _CANCELLED * np.max(misses, axis=0) / program.fall
+
+
+def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> Array:
+    """Return perimeter and area with as many cells for each segment, and nodes in each."""
+    places, weights = np.polynomial.legendre.leggauss(nodes)
+    share = ((np.arange(cells)[:, None] + 0.5 * (places + 1.0)) / cells).ravel()
     weight = np.tile(0.5 * weights / cells, cells)
     count = len(segments.start)
     index = np.repeat(np.arange(count), len(share))

@@ -181,10 +181,12 @@ def make_sliding(
     wide = replace(mechanism, radius=mechanism.radius + (0.5 * clearance if groove else 0.0))
     plate = _plate(program, wide, height, length, groove)
 
-    def wall(side: int, key: str, called: str) -> SlidingWall:
-        return SlidingWall(mechanism=wide, plate=plate, side=side, key=key, called=called, **common)
-
     motion = PitchMotion(mechanism=mechanism, **common)
+
+    def wall(side: int, key: str, called: str) -> SlidingWall:
+        told = {"side": side, "of": motion, "key": key, "called": called}
+        return SlidingWall(mechanism=wide, plate=plate, **told, **common)
+
     if not groove:
         return SlidingCam(motion=motion, lower=wall(1, "", "profile"))
     lower, upper = (

@@ -14,11 +14,13 @@ Depends on curve, measures, loops, trim, lost and numeric.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments, begun, segments
 from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
@@ -83,9 +85,21 @@ class PitchMotion(Brief):
         scale, unit = self.mechanism.outward
         return Fact(scale * (high - low), "lift", unit=unit)
 
+    @cached_property
+    def _ranges(self) -> dict[tuple[str, str], Range | None]:
+        """The ranges that were asked for, by what is told of and the kind of phase."""
+        return {}
+
+    def _range(self, what: str, pick: Callable[[Contact], Jet], kind: str) -> Range | None:
+        """Return the range of what to `pick` over a turn or all phases of a `kind`, found once."""
+        if (what, kind) not in self._ranges:
+            stretches = self.program.phases(kind) if kind else _TURN
+            self._ranges[what, kind] = range_of(self.curve, pick, stretches)
+        return self._ranges[what, kind]
+
     def pressure(self, kind: str) -> Range | None:
         """Return the signed pressure angles, rad, over all phases of a `kind` (rise, return)."""
-        return range_of(self.curve, lambda contact: contact.pressure, self.program.phases(kind))
+        return self._range("pressure angle", lambda contact: contact.pressure, kind)
 
     def pitch_curvature(self, kind: str = "") -> Range | None:
         """Return the pitch curve's curvature, 1/mm, over a turn or all phases of a `kind`.
@@ -95,11 +109,7 @@ class PitchMotion(Brief):
         """
         if self.mechanism.flat:
             return None
-        return range_of(
-            self.curve,
-            lambda contact: contact.turning / contact.pitch_speed,
-            self.program.phases(kind) if kind else _TURN,
-        )
+        return self._range("curvature", lambda contact: contact.turning / contact.pitch_speed, kind)
 
     @cached_property
     def contact_place(self) -> Range | None:
@@ -159,9 +169,12 @@ class Wall(PitchMotion):
     side : {1, -1}
         Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; then it is
         a follower that is pressed outwards that loses lift.
+    of : PitchMotion or None
+        The motion whose pitch curve it has, where it is not the only one that has it.
     """
 
     side: int = 1
+    of: PitchMotion | None = None
 
     @cached_property
     def curve(self) -> CamCurve:
@@ -169,20 +182,9 @@ class Wall(PitchMotion):
         radius = self.side * self.mechanism.radius
         return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
 
-    def motion(self, theta: Array) -> dict[str, Array]:
-        """Return motion and contact at cam angles (see `PitchMotion.motion`), with own radii.
-
-        Parameters
-        ----------
-        theta : (n,) array, rad
-            Cam angles; at a knot the values after it count.
-
-        Returns
-        -------
-        dict of str to (n,) array
-            Those, and ``rho_profile`` in mm (see `radii`).
-        """
-        return {**super().motion(theta), "rho_profile": self.radii(theta)}
+    def pitch_curvature(self, kind: str = "") -> Range | None:
+        """Return what is promised (see `PitchMotion`)."""
+        return (self.of or super()).pitch_curvature(kind)
 
     def radii(self, theta: Array) -> Array:
         """Return radii of curvature before trimming, mm.
@@ -271,6 +273,11 @@ class Wall(PitchMotion):
         return Sampler(curves=drawn, tolerance=self.tolerance, closed=self.program.closed)
 
     @property
+    def drawn(self) -> ProfileSegments:
+        """What trimming leaves, mirrored if the cam turns clockwise; it begins at a corner."""
+        return self._kept.drawn
+
+    @property
     def corners(self) -> tuple[Corner, ...]:
         """Where trimming has left corners, as the cam turns counter-clockwise."""
         return self._kept.corners
@@ -291,14 +298,14 @@ class Wall(PitchMotion):
     @cached_property
     def size(self) -> Size:
         """Perimeter and area of the profile."""
-        return size_of(self._kept.drawn)
+        return size_of(self.drawn)
 
     @property
     def nearest_flat(self) -> float:
         """Least distance of the axis from the inside of a straight piece, mm; inf without one."""
         if not self.mechanism.flat:
             return math.inf
-        kept = self._kept.drawn
+        kept = self.drawn
         inside = np.flatnonzero(kept.jump & (kept.start < 0.0) & (kept.end > 0.0))
         return float(np.abs(kept.at(inside, np.zeros(len(inside)))[0]).min(initial=math.inf))
 
@@ -362,7 +369,7 @@ class Wall(PitchMotion):
         points, normals : (n,) complex arrays, mm and 1
             Touched at those angles, with the outward normals of the metal.
         """
-        kept = self._kept.drawn
+        kept = self.drawn
         turn = 2.0 * math.pi
         # an open curve ends with its last place
         within = np.minimum(theta, np.nextafter(turn, 0)) if self.program.open else theta % turn

@@ -63,7 +63,8 @@ def compare(files: Sequence[str], settings: Sequence[str], output: str, *, every
     if len(refused) < len(variants):
         designs = dict.fromkeys(one.result.design.name for one in variants)
         title = ", ".join(designs) if len(designs) > 1 else f"{next(iter(designs))}, variants"
-        write_all(output, {PAGE: page(document(variants, title))}, keep=True)
+        made = page(document(variants, title))
+        write_all(output, lambda _: {PAGE: made}, keep=True)
         say(f"written to {Path(output) / PAGE}")
     worst = {found.severity for one in variants if not one.refusal for found in one.result.findings}
     return "refused" if refused else next((s for s in ("error", "warning") if s in worst), "")

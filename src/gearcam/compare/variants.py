@@ -56,7 +56,7 @@ def settings_of(texts: Sequence[str]) -> dict[str, list[Any]]:
     for text in texts:
         key, equals, words = (part.strip() for part in text.partition("="))
         values = _values(words)
-        if not (key and equals):
+        if not (path_of(key) and equals):
             raise _wrong(f"{show(text)} is no key with its values")
         if key in made:
             raise _wrong(f"{key} is set twice", "all values of a key in one list")
@@ -73,14 +73,14 @@ def _values(words: str) -> list[Any]:
     """Return values as a design file would hold them; words may stand without quotes."""
     try:
         return tomllib.loads(f"values = [{words}]")["values"]
-    except ValueError:
+    except (ValueError, RecursionError):
         return [_value(word.strip()) for word in words.split(",")]
 
 
 def _value(word: str) -> Any:
     try:
         return tomllib.loads(f"value = {word}")["value"]
-    except ValueError:
+    except (ValueError, RecursionError):
         return word
 
 

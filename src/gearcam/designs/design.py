@@ -17,7 +17,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Final, Self
 
 from gearcam.designs.examine import examine
-from gearcam.designs.faults import dotted
+from gearcam.designs.faults import dotted, is_deep
 from gearcam.designs.functions import Function, function_name, functions_in, never, pickles
 from gearcam.designs.kind import KINDS
 from gearcam.designs.outputs import OutputSpec
@@ -25,6 +25,9 @@ from gearcam.designs.table import settled
 from gearcam.display import cut
 from gearcam.errors import DesignError, InfeasibleError, Problem
 from gearcam.numeric.arguments import instance
+
+_PLACE: Final = re.compile("[0-9]{1,9}")
+"""The number of a place in a list."""
 
 HASH_DIGITS: Final = 16
 """Hexadecimal digits of a design's hash: two of a thousand million million are alike by chance."""
@@ -177,13 +180,13 @@ class Design:
         """
         document, rule = document_of(self), "a mapping of dotted keys to values"
         for key, value in instance("changes", changes, Mapping, rule).items():
-            *path, last = path_of(key)
             place: Any = document
             try:
+                *path, last = path_of(key)
                 for step in path:
                     place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
                 place[last] = value
-            except (IndexError, KeyError, TypeError):
+            except (IndexError, KeyError, TypeError, ValueError):  # the last: no step at all
                 problem = Problem("there is no such place", self.source, key=key)
                 raise DesignError([problem]) from None
         return design(document, self.source)
@@ -311,7 +314,7 @@ def design(document: Mapping[str, Any], source: str = "") -> Any:
     DesignError
         For everything that is wrong in it, each with its key.
     """
-    plain = _plain(document)
+    plain = document if is_deep(document) else _plain(document)  # examine refuses what is deep
     found = examine(plain)
     if found.faults:
         raise DesignError(fault.problem(source) for fault in found.faults)
@@ -392,4 +395,5 @@ def value_at(document: Any, key: str) -> Any:
 
 def path_of(key: str) -> tuple[str | int, ...]:
     """Return the steps of a dotted key, such as ``law.ratios[1]``."""
-    return tuple(int(step) if step.isdigit() else step for step in re.findall(r"[^.\[\]]+", key))
+    steps = re.findall(r"[^.\[\]]+", key)
+    return tuple(int(step) if _PLACE.fullmatch(step) else step for step in steps)

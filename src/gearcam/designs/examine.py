@@ -10,7 +10,16 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from gearcam.designs.faults import Fault, did_you_mean, key_hint, nearest, quoted, show
+from gearcam.designs.faults import (
+    TOO_DEEP,
+    Fault,
+    did_you_mean,
+    is_deep,
+    key_hint,
+    nearest,
+    quoted,
+    show,
+)
 from gearcam.designs.kind import KINDS, DesignKind, Examined, own_faults
 from gearcam.designs.lines import Path
 from gearcam.designs.retired import without_retired
@@ -22,6 +31,8 @@ _NAME_RULE: Final = (
 )
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _LONGEST_NAME: Final = 100
+_LONGEST_ENCODED: Final = 200
+"""Bytes of a name in UTF-8: disks take 255."""
 
 
 def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
@@ -40,6 +51,9 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
         With the fields of the kind's design where there is no fault.
     """
     found = Examined()
+    if is_deep(document):
+        found.faults.append(Fault((), TOO_DEEP))
+        return found
     kind = _meant_kind(document)
     if kind is None:
         found.faults += _kind_faults(document)
@@ -132,7 +146,7 @@ def _examine_name(document: Mapping[str, Any], stem: str, found: Examined) -> No
             "is missing" if not stem else f"is missing, and the file's own {show(stem)} {fault}"
         )
         hint = re.sub(r"[^\w-]+", "_", stem).strip("_-")
-        hint = f'add name = "{hint}"' if hint else ""
+        hint = f'add name = "{hint}"' if not name_fault(hint) else ""
         found.faults.append(Fault(("name",), message, allowed=_NAME_RULE, hint=hint))
 
 
@@ -142,6 +156,8 @@ def name_fault(name: Any) -> str:
         return "is not text"
     if len(name) > _LONGEST_NAME:
         return f"has {len(name)} characters, and {_LONGEST_NAME} are allowed"
+    if len(name.encode("utf-8", "replace")) > _LONGEST_ENCODED:
+        return f"has more than {_LONGEST_ENCODED} bytes in UTF-8, too many for a folder"
     if not _NAME.fullmatch(name) or name.endswith("."):
         return "cannot name a folder"
     return "is reserved on some systems" if _RESERVED.fullmatch(name) else ""

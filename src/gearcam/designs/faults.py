@@ -23,6 +23,10 @@ _SUFFIX = re.compile(r"_(deg|rad|mm|cm|m|in|inch|rpm|um)$")
 _KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 _SHOWN: Final = 60
 
+TOO_DEEP: Final = "lists or tables are nested too deep"
+_DEEPEST: Final = 50
+"""Lists and tables within each other; designs need five."""
+
 _SURE: Final = 0.75
 """Likeness of words (twice the letters that they share over the letters of both) from which the
 first letter may be wrong too, which it rarely is in a slip."""
@@ -53,6 +57,20 @@ class Fault:
         value = None if self.value is MISSING else self.value
         value = show(value) if functions_of(value) else value  # a problem must pickle
         return Problem(self.message, file, line, dotted(self.path), value, self.allowed, self.hint)
+
+
+def is_deep(document: Any) -> bool:
+    """Return whether lists and tables of a `document` are nested deeper than any design's."""
+    level = [document]
+    for _ in range(_DEEPEST):
+        below = (
+            part.values() if isinstance(part, Mapping) else part
+            for part in level
+            if isinstance(part, Mapping | list | tuple)
+        )
+        # each once, so that what holds itself several times does not grow
+        level = list({id(item): item for items in below for item in items}.values())
+    return bool(level)
 
 
 def dotted(path: Path) -> str:

@@ -7,7 +7,7 @@ names it, and only that of a file is loaded. Its modules:
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
 - `facts`: ``facts(result, measured)`` returns what is known of it;
 - `files`: ``FILES``, what makes each kind of file; where it has ``report`` among them,
-  ``assembled(result, measured)`` returns its solids where they stand and ``framed(result)`` what
+  ``assembled(result)`` returns its solids where they stand and ``framed(result)`` what
   a notebook shows;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
 - `advice`: ``seek(search, refusal)`` leads the search for changes that help where it is refused
@@ -17,12 +17,16 @@ names it, and only that of a file is loaded. Its modules:
 - `describe`: what schema, template and list of laws say of its main part, and the table of each
   of its items;
 - `commands`, where it has any: ``COMMANDS`` of the command line;
-- `ladder`, where it has any: ``LADDERS``, stages at rising resolution (see `gearcam.ladders`).
+- `ladder`, where it has any: ``LADDERS``, stages at rising resolution (see `gearcam.ladders`);
+- `draw`, where it has any: ``design(d, index)`` returns a random design as a file holds it;
+- `doubts`, where it has any: ``doubts(result)`` yields places and words of what a study by other
+  means says against a result.
 """
 
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import math
 import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -183,6 +187,14 @@ class _Kinds(Mapping[str, DesignKind]):
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
+
+
+def rooms(name: str) -> Iterator[ModuleType]:
+    """Yield the modules of a `name` that kinds have, without loading anything of their designs."""
+    for kind in _names():
+        home = f"{_package(kind)}.{name}"
+        if importlib.util.find_spec(home) is not None:
+            yield importlib.import_module(home)
 
 
 def all_formats() -> tuple[str, ...]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import re
+import sys
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
@@ -11,12 +13,25 @@ from typing import Any, Final
 
 from gearcam.designs.design import Design
 from gearcam.designs.examine import examine
-from gearcam.designs.faults import Fault
+from gearcam.designs.faults import TOO_DEEP, Fault, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import line_at, lines_of
 from gearcam.errors import DesignError, Problem
+from gearcam.reading import UnreadableError, read
+
+LARGEST: Final = 2_000_000
+"""Size of a design file, bytes: a motion table of 20 000 rows in a list is half of it."""
 
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+_TWICE = re.compile(r"Cannot declare \((.*)\) twice")
+_LONG = re.compile(r"(?<![0-9_])[0-9_]{1000,}")
+"""Digits that are, or may be, too many for a whole number."""
+
+_DEEP_KEY = re.compile(
+    r"""(?<![\w."'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}"""
+)
+"""A dotted key of more than 50 names: tomllib takes the square of their number."""
+
 _COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
 """A number with a decimal comma at the end of a line."""
 
@@ -66,14 +81,10 @@ def content_of(file: str) -> bytes:
     DesignError
         If it cannot be read.
     """
-    known = {FileNotFoundError: "there is no such file",
-             IsADirectoryError: "this is a folder, not a file"}  # fmt: skip
     try:
-        return Path(file).read_bytes()
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        message = known.get(type(error), f"cannot be read: {reason}")
-        raise DesignError([Problem(message, file=file)]) from error
+        return read(file, LARGEST)
+    except UnreadableError as error:
+        raise DesignError([Problem(str(error), file=file)]) from error
 
 
 def decoded(content: bytes, file: str) -> str:
@@ -101,6 +112,8 @@ def decoded(content: bytes, file: str) -> str:
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         message = f"the byte 0x{content[error.start]:02x} is not UTF-8"
+        if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            message = "this text is UTF-16"
         problem = Problem(message, file=file, line=line, allowed="a text file saved as UTF-8")
         raise DesignError([problem]) from error
 
@@ -167,20 +180,30 @@ def document_in(text: str, file: str) -> dict[str, Any]:
     Raises
     ------
     DesignError
-        If it is not TOML.
+        If it is not TOML, or too deep.
     """
+    deep = DesignError([Problem(TOO_DEEP, file=file)])
+    if _DEEP_KEY.search(text):
+        raise deep
     try:
-        return tomllib.loads(text)
+        document = tomllib.loads(text)
     except RecursionError as error:
-        raise DesignError([Problem("lists or tables are nested too deep", file=file)]) from error
+        raise deep from error
     except ValueError as error:  # TOMLDecodeError, and integers beyond Python's limit of digits
         raise DesignError([_syntax_problem(str(error), text, file)]) from error
+    if is_deep(document):
+        raise deep
+    return document
 
 
 def _syntax_problem(message: str, text: str, file: str) -> Problem:
     place = _PLACE.search(message)
     what = message[: place.start()] if place else message
     what = _PLAIN.get(what, what)
+    twice = _TWICE.fullmatch(what)
+    if twice:
+        names = re.findall(r"'([^']*)'", twice[1])
+        what = f"the table [{'.'.join(names)}] is given twice"
     if place and place.group(1):
         line = int(place.group(1))
         comma = _COMMA.search(text.split("\n")[line - 1])
@@ -189,4 +212,8 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
     if place:
         last = text.rstrip().count("\n") + 1
         return Problem(f"{what} (the file ends)", file=file, line=last)
-    return Problem(f"a number in this file cannot be read: {what}", file=file)
+    most = sys.get_int_max_str_digits()
+    long = next((one for one in _LONG.finditer(text) if len(one[0].replace("_", "")) > most), None)
+    line = text.count("\n", 0, long.start()) + 1 if long else None
+    rule = f"numbers of at most {most} digits"
+    return Problem("a number here is too long to be read", file=file, line=line, allowed=rule)

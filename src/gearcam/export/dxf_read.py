@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 _Outline = tuple[Array, Array, bool]
 """Vertices, bulges, and whether it is closed."""
 
+_SHOWN: Final = 80
+"""Characters of what ezdxf complains of: it may quote a whole file."""
+
 _R12: Final = "AC1009"
 """The version that knows no units and no light polylines."""
 
@@ -110,7 +113,7 @@ def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Ou
 
     chain: list[tuple[Array, Array]] = []
     for entity in document.modelspace():
-        if not wanted(entity.dxf.layer):
+        if not wanted(_layer(entity)):
             continue
         if isinstance(entity, LWPolyline):
             rows = entity.lwpoints.values
@@ -127,6 +130,11 @@ def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Ou
                 chain = []
     if chain:
         yield _joined(chain)
+
+
+def _layer(entity: Any) -> str:
+    """Return the layer of an entity; nothing of one that ezdxf does not know."""
+    return entity.dxf.layer if entity.dxf.is_supported("layer") else ""
 
 
 def _joined(chain: Sequence[tuple[Array, Array]]) -> _Outline:
@@ -158,10 +166,11 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
     Raises
     ------
     DxfError
-        If the file is damaged, holds paths of a cutter, or does not hold one closed outline.
+        If the file is damaged, holds paths of a cutter, or does not hold one closed outline of
+        finite numbers.
     """
     document = read_dxf(data)
-    layers = dict.fromkeys(entity.dxf.layer for entity in document.modelspace())
+    layers = dict.fromkeys(_layer(entity) for entity in document.modelspace())
     paths = [layer for layer in layers if layer.upper().endswith(KERF)]
     if paths:
         raise DxfError(
@@ -177,6 +186,8 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
             if closed
         ]
         if len(found) == 1:
+            if not np.isfinite(np.column_stack(found[0])).all():
+                raise DxfError("its outline has numbers that are not finite")
             return found[0]
     raise DxfError(f"it should hold one closed outline, and holds {len(found)}")
 
@@ -204,13 +215,17 @@ def read_dxf(data: bytes) -> Document:
         If the file is damaged, or ezdxf's audit finds anything to report or to mend.
     """
     from ezdxf.filemanagement import read
-    from ezdxf.lldxf.const import DXFError
 
+    if data.startswith(b"AutoCAD Binary DXF"):
+        raise DxfError("the DXF file is binary: save it as text")
+    # older files are in another encoding than UTF-8, and lines end in two characters on Windows
+    text = data.decode("utf-8-sig", errors="surrogateescape")
     try:
-        document = read(io.StringIO(data.decode("utf-8")))
-    except (DXFError, UnicodeDecodeError) as error:
-        raise DxfError(f"the DXF file cannot be read: {error}") from error
-    audit = document.audit()
+        document = read(io.StringIO(text, newline=None))
+        audit = document.audit()
+    except Exception as error:  # of any type: ezdxf looks up what a damaged file names
+        told = " ".join(str(error).split())[:_SHOWN]
+        raise DxfError(f"the DXF file cannot be read: {told}") from error
     faults = [*audit.errors, *audit.fixes]
     if faults:
         raise DxfError(f"the DXF file has faults ({len(faults)}), the first: {faults[0].message}")

@@ -212,33 +212,31 @@ def cut_files(drawings: Sequence[Drawing], title: str, kerf: float) -> Files:
     return files | {"cut.svg": cut_svg(sheet, title, kerf)}
 
 
-def meshes(parts: Sequence[Part], measured: dict[str, Any]) -> dict[str, Mesh]:
-    """Return the solids of parts, made once for all kinds of files.
+def solid_facts(parts: Sequence[Part], solids: Mapping[str, Mesh]) -> dict[str, Any]:
+    """Return what was measured on solids.
 
     Parameters
     ----------
     parts : sequence of Part
         As made.
-    measured : dict
-        Keeps them, and what was measured on them.
+    solids : mapping of str to Mesh
+        By the parts' names.
 
     Returns
     -------
-    dict of str to Mesh
+    dict
         By the parts' names.
     """
-    from gearcam.solids import solid, volume_error
+    from gearcam.solids import volume_error
 
-    solids = measured.setdefault("_solids", {})
-    for part in parts:
-        if part.name not in solids:
-            solids[part.name] = solid(part)
-            measured.setdefault("solids", {})[part.name] = {
-                "volume_mm3": solids[part.name].volume,
-                "volume_error_mm3": volume_error(part),
-                "triangles": len(solids[part.name].triangles),
-            }
-    return solids
+    return {
+        part.name: {
+            "volume_mm3": solids[part.name].volume,
+            "volume_error_mm3": volume_error(part),
+            "triangles": len(solids[part.name].triangles),
+        }
+        for part in parts
+    }
 
 
 def mesh_bytes(named: dict[str, Mesh], kind: str, title: str) -> bytes:

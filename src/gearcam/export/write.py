@@ -3,14 +3,16 @@
 Every file is first written beside its place under a temporary name. Only when all are on the disk
 are they moved into place; files that the *previous summary* lists and this build no longer writes
 are *stale* and removed, so that nobody cuts one; the new summary comes last. What stood there
-before is kept until then and put back if anything fails, an interruption included.
+before is kept until then and put back if anything fails; an interruption waits until all is in
+place. The folder is *held* meanwhile: a second build waits for its turn.
 
 One file of the user's is *rewritten* in the same way: beside it, then into its place, with its
 permissions; of a link the file that it leads to is rewritten.
 
-Refused: names that are not plain, a folder that is a file, and whatever the disk refuses.
+Refused: names that are not plain, a folder that is a file, a folder of a design that is a link, and
+whatever the disk refuses.
 
-Depends on errors only.
+Depends on folder, errors, interrupts and reading only.
 """
 
 from __future__ import annotations
@@ -19,23 +21,29 @@ import errno
 import json
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
 from gearcam.errors import WriteError
+from gearcam.export.folder import demand_name, held, lock, spare
+from gearcam.interrupts import unbroken
+from gearcam.reading import read
 
 SUMMARY: Final = "summary.json"
 """The file that lists the others; replaced last."""
 
-TEMPORARY: Final = ".gearcam-"
-"""Beginning of temporary names."""
+_LARGEST: Final = 10_000_000
+"""Size of a summary, bytes: a thousand times that of one."""
+
+Make = Callable[[Mapping[str, "str | None"]], Mapping[str, bytes]]
+"""Returns contents by name, given the `previous_files` of the folder."""
 
 
 def write_all(
-    directory: str | os.PathLike[str], files: Mapping[str, bytes], *, keep: bool = False
+    directory: str | os.PathLike[str], make: Make, *, name: str = "", keep: bool = False
 ) -> tuple[str, ...]:
     """Write files into a folder, whole or not at all, and remove stale ones.
 
@@ -43,8 +51,10 @@ def write_all(
     ----------
     directory : path
         The folder; made where it does not exist.
-    files : mapping of str to bytes
-        Plain file names and contents. ``summary.json`` among them lists the others.
+    make : callable
+        Returns plain file names and contents. ``summary.json`` among them lists the others.
+    name : str
+        Of a folder in it that they are written to instead; it may be no link.
     keep : bool
         Keep the stale files: what is written is no build, only a summary.
 
@@ -61,51 +71,41 @@ def write_all(
     ValueError
         If a name is not plain.
     """
-    folder = Path(directory)
-    wrong = [name for name in files if not is_plain(name)]
-    if wrong:
-        raise ValueError(f"not plain file names: {wrong}")
+    folder = Path(directory) / name
+    demand_name(folder)
     try:
-        return _write(folder, files, keep)
+        if name:
+            _demand_no_link(folder)
+        return _write(folder, make, keep)
     except OSError as error:
         place = error.filename2 or error.filename or folder
         raise WriteError(f"cannot write to {place}: {error.strerror or error}") from error
 
 
-def _write(folder: Path, files: Mapping[str, bytes], keep: bool) -> tuple[str, ...]:
-    made = _make(folder)
+def _demand_no_link(folder: Path) -> None:
+    if folder.is_symlink():
+        words = "it is a link, and may lead elsewhere: remove it, or choose another folder"
+        raise OSError(errno.ELOOP, words, str(folder))
+
+
+def _write(folder: Path, make: Make, keep: bool) -> tuple[str, ...]:
     change = _Change(folder)
-    try:
-        before = {} if keep else previous_files(folder)
-        stale = [name for name in before if name not in files]
-        for name, content in files.items():
-            change.stage(name, content)
-        for name in [name for name in files if name != SUMMARY]:
-            change.replace(name)
-        change.remove(stale)
-        if SUMMARY in files:
-            change.replace(SUMMARY)
-    except BaseException:
-        change.undo()
-        for empty in reversed(made):
-            with suppress(OSError):
-                empty.rmdir()
-        raise
-    try:
-        change.finish()
-    except BaseException:
-        change.finish()
-        raise
+    with held(folder):
+        before = previous_files(folder)
+        files = make(before)
+        wrong = [name for name in files if not is_plain(name)]
+        if wrong:
+            raise ValueError(f"not plain file names: {wrong}")
+        try:
+            for name, content in files.items():
+                change.stage(name, content)
+        except BaseException:
+            with unbroken():
+                change.finish()
+            raise
+        with unbroken():
+            change.commit([] if keep else [name for name in before if name not in files])
     return tuple(change.removed)
-
-
-def _make(folder: Path) -> list[Path]:
-    """Make a folder and those above it; return the new ones, outermost first."""
-    if folder.exists() and not folder.is_dir():
-        raise NotADirectoryError(errno.ENOTDIR, "it is a file, not a folder", str(folder))
-    new = [place for place in (folder, *folder.parents) if not place.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
-    return new[::-1]
 
 
 def is_plain(name: str) -> bool:
@@ -125,15 +125,17 @@ def previous_files(folder: str | os.PathLike[str]) -> dict[str, str | None]:
     -------
     dict of str to str or None
         By plain name the hash of the design that a file was made from, None where the summary does
-        not tell it; without the summary itself. Empty where there is no summary that can be read.
+        not tell it; without the summary itself. Empty where there is no summary that can be read,
+        or it is not one of gearcam's.
     """
     place = Path(folder)
     try:
-        content = json.loads((place / SUMMARY).read_text(encoding="utf-8"))
+        content = json.loads(read(place / SUMMARY, _LARGEST))
     except (OSError, ValueError, RecursionError):
         return {}
     found: dict[str, str | None] = {}
-    for key in ("files", "stale") if isinstance(content, dict) else ():
+    own = isinstance(content, dict) and isinstance(content.get("format"), int)
+    for key in ("files", "stale") if own else ():
         found |= _listed(content.get(key))
     return {
         name: made
@@ -170,7 +172,7 @@ class _Change:
     temporary: list[Path] = field(default_factory=list)
 
     def _spare(self) -> Path:
-        self.temporary.append(self.folder / f"{TEMPORARY}{os.urandom(16).hex()}.tmp")
+        self.temporary.append(spare(self.folder))
         return self.temporary[-1]
 
     def stage(self, name: str, content: bytes) -> None:
@@ -184,18 +186,32 @@ class _Change:
         except OSError as error:
             raise OSError(error.errno, error.strerror, str(target)) from error
 
-    def replace(self, name: str) -> None:
+    def commit(self, stale: list[str]) -> None:
+        """Move all staged files into place, put stale ones aside; all, or none if that fails."""
+        try:
+            for name in [name for name in self.staged if name != SUMMARY]:
+                self._replace(name)
+            self._remove(stale)
+            if SUMMARY in self.staged:
+                self._replace(SUMMARY)
+        except BaseException:
+            self._undo()
+            raise
+        finally:
+            self.finish()
+
+    def _replace(self, name: str) -> None:
         """Move a staged file into place and keep what was there."""
         target = self.folder / name
         if os.path.lexists(target):
-            spare = self._spare()
-            _copy(target, spare)
-            self.kept[name] = spare
+            kept = self._spare()
+            _copy(target, kept)
+            self.kept[name] = kept
         else:
             self.fresh.append(name)
         self.staged[name].replace(target)
 
-    def remove(self, names: list[str]) -> None:
+    def _remove(self, names: list[str]) -> None:
         """Put stale files aside; links are removed, never followed, and folders are left alone."""
         written = [self.folder / name for name in self.staged]
         for name in names:
@@ -209,15 +225,14 @@ class _Change:
             target.replace(self.kept[name])
             self.removed.append(name)
 
-    def undo(self) -> None:
+    def _undo(self) -> None:
         """Put everything back."""
         for name in self.fresh:
             with suppress(OSError):
                 (self.folder / name).unlink()
-        for name, spare in self.kept.items():
+        for name, kept in self.kept.items():
             with suppress(OSError):
-                spare.replace(self.folder / name)
-        self.finish()
+                kept.replace(self.folder / name)
 
     def finish(self) -> None:
         """Remove every temporary file that is left."""
@@ -247,16 +262,22 @@ def write_new(path: str | os.PathLike[str], text: str) -> None:
     Raises
     ------
     WriteError
-        If there is one already, or the disk refuses.
+        If there is one already, or the disk refuses; nothing is left there then.
     """
+    demand_name(path)
     try:
-        with Path(path).open("x", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
+        with unbroken(), Path(path).open("x", encoding="utf-8", newline="\n") as stream:
+            try:
+                stream.write(text)
+                stream.flush()
+            except OSError:
+                with suppress(OSError):
+                    Path(path).unlink()
+                raise
     except FileExistsError as error:
         raise WriteError(f"{path}: exists, and is not overwritten") from error
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise WriteError(f"{path}: cannot be written: {reason}") from error
+    except OSError as error:
+        raise WriteError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
 def rewrite(file: str | os.PathLike[str], content: bytes) -> None:
@@ -275,13 +296,15 @@ def rewrite(file: str | os.PathLike[str], content: bytes) -> None:
         If the disk refuses; the file is as it was then.
     """
     target = Path(file).resolve()
-    spare = target.with_name(f"{TEMPORARY}{os.urandom(16).hex()}.tmp")
+    fresh = spare(target.parent)
     try:
-        spare.write_bytes(content)
-        shutil.copymode(target, spare)
-        spare.replace(target)
+        with lock(target.parent), unbroken():
+            try:
+                fresh.write_bytes(content)
+                shutil.copymode(target, fresh)
+                fresh.replace(target)
+            finally:
+                with suppress(OSError):
+                    fresh.unlink()
     except OSError as error:
         raise WriteError(f"cannot write to {file}: {error.strerror or error}") from error
-    finally:
-        with suppress(OSError):
-            spare.unlink()

@@ -154,7 +154,7 @@ class FlankPairs(Mounting):
                 places.append(track.angle(self.place(wheel, j) - self.sigma(wheel) * reach))
                 known.append(np.full(j.shape, wheel))
         start = np.concatenate(places)
-        ends, found = touch(self, start, np.tile(self.separation(j), 4), np.concatenate(known))
+        ends, _, found = touch(self, start, np.tile(self.separation(j), 4), np.concatenate(known))
         low1, high1, low2, high2 = ends.phi1.reshape(4, -1)
         first, last = np.maximum(low1, high2), np.minimum(high1, low2)
         if self.side == COAST:

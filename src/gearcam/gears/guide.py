@@ -46,20 +46,18 @@ class Guide(Brief, ABC):
         """Return the nominal turns at driver angles, rad: rad, of a rack mm."""
         return self.scale * self.law.phi2(phi1)
 
-    def rate(self, phi1: Array) -> Array:
-        """Return the nominal turns' derivative by the driver angle at driver angles, rad."""
-        return self.scale * self.law.derivatives(phi1, 1)[1]
+    def motion(self, phi1: Array) -> Array:
+        """Return the nominal turns at driver angles, rad, and their derivative by them, (2, n)."""
+        return self.scale * np.stack(self.law.derivatives(phi1, 1))
 
     @abstractmethod
-    def stand(self, phi1: Array, lead: Array | float) -> tuple[Plane, Plane]:
-        """Return the turn and shift that put its points where they stand at driver angles.
+    def stand(self, moved: Array) -> tuple[Plane, Plane]:
+        """Return the turn and shift that put its points where they stand.
 
         Parameters
         ----------
-        phi1 : (n,) array, rad
-            Phases.
-        lead : (n,) array or float, rad, of a rack mm
-            How far it is ahead of them.
+        moved : (n,) array, rad, of a rack mm
+            How far it has turned: as `nominal` tells, and ahead of that.
 
         Returns
         -------
@@ -96,9 +94,9 @@ class Shaft(Guide):
     unit = "rad"
     turns = 1.0
 
-    def stand(self, phi1: Array, lead: Array | float) -> tuple[Plane, Plane]:
+    def stand(self, moved: Array) -> tuple[Plane, Plane]:
         """Return what is promised (see `Guide`)."""
-        turn = np.exp(1j * self.turns * (self.nominal(phi1) + lead))
+        turn = np.exp(1j * self.turns * moved)
         return turn, np.zeros_like(turn)
 
     def carried(self, points: Plane) -> Plane:
@@ -132,10 +130,10 @@ class Slideway(Guide):
     unit = "mm"
     turns = 0.0
 
-    def stand(self, phi1: Array, lead: Array | float) -> tuple[Plane, Plane]:
+    def stand(self, moved: Array) -> tuple[Plane, Plane]:
         """Return what is promised (see `Guide`)."""
-        moved = np.asarray(-1j * (self.nominal(phi1) + lead), dtype=np.complex128)
-        return np.ones(moved.shape, dtype=np.complex128), moved
+        shift = np.asarray(-1j * moved, dtype=np.complex128)
+        return np.ones(shift.shape, dtype=np.complex128), shift
 
     def carried(self, points: Plane) -> Plane:
         """Return what is promised (see `Guide`)."""

@@ -125,13 +125,26 @@ class Normals(Brief):
     equations: Array
     slopes: Array
 
+    def take(self, index: Ints | Mask) -> Normals:
+        """Return some of them, by `index`."""
+        first, second = self.frames
+        return Normals(
+            frames=(first.some(index), second.some(index)),
+            foot=self.foot[:, index],
+            normal=self.normal[:, index],
+            equations=self.equations[:, index],
+            slopes=self.slopes[..., index],
+        )
+
     @property
     def rates(self) -> Array:
         """Derivatives of both rolls (as driver angles) and the lead by the phase, (3, n)."""
         return -solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
 
 
-def normals(mounting: Mounting, pose: Pose, separation: Array) -> Normals:
+def normals(
+    mounting: Mounting, pose: Pose, separation: Array, motion: Array | None = None
+) -> Normals:
     """Return normals of both wheels' flanks, and what they miss of being one.
 
     Parameters
@@ -142,6 +155,8 @@ def normals(mounting: Mounting, pose: Pose, separation: Array) -> Normals:
         Of n pairs.
     separation : (n,) array, mm
         sf2 - sf1.
+    motion : (2, n) array, optional
+        What the guide tells of the phases (see `Guide.motion`), where it is known.
 
     Returns
     -------
@@ -164,10 +179,11 @@ def normals(mounting: Mounting, pose: Pose, separation: Array) -> Normals:
         toothing.normals(frames, mounting.sigma(toothing.wheel))
         for toothing, frames in zip(mounting.toothings, (first, second), strict=True)
     )
-    back, shift = guide.stand(phi1, lead)
+    nominal, ratio = guide.motion(phi1) if motion is None else motion
+    back, shift = guide.stand(nominal + lead)
     foot1, n1 = first.p * turned, n1 * turned
     foot2, n2, tangent2 = second.p * back + shift, n2 * back, second.t * back
-    carried, turns, ratio = guide.carried(foot2), guide.turns, guide.rate(phi1)
+    carried, turns = guide.carried(foot2), guide.turns
     foot2 = foot2 + mounting.distance
     across = np.conj(n1) * (foot2 - foot1)
     aligned = np.conj(n2) * n1
@@ -195,7 +211,7 @@ def normals(mounting: Mounting, pose: Pose, separation: Array) -> Normals:
 
 def touch(
     mounting: Mounting, start: Array, separation: Array, known: Ints | int = 0
-) -> tuple[Pose, Mask]:
+) -> tuple[Pose, Normals, Mask]:
     """Find where flanks touch.
 
     Parameters
@@ -214,20 +230,23 @@ def touch(
     -------
     pose : Pose
         By Newton's method with steps of half a pitch at most.
+    at : Normals
+        There.
     found : (n,) bool array
         Whether that led to a contact within `_FAR` pitches of the nominal roll.
     """
     every = np.stack([start, start, start, np.zeros(start.shape)])
     free, rows = _FREE[np.broadcast_to(known, start.shape)].T, np.arange(start.size)
     scale = mounting.track.frames(start, curved=False).speed / mounting.pitch
+    motion = None if np.any(known) else mounting.guide.motion(start)
 
     def evaluate(x: Array) -> tuple[Normals, Array, Array]:
         every[free, rows] = x
-        at = normals(mounting, Pose(*every), separation)
+        at = normals(mounting, Pose(*every), separation, motion)
         return at, at.equations, at.slopes[:, free, rows]
 
     _, at = damped_newton(evaluate, every[free, rows], scale, _SMALL)
     found = np.abs(at.equations[0]) <= _MISS
     found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * mounting.pitch
     found &= np.abs(every[:3] - start).max(axis=0) * scale <= _FAR
-    return Pose(*every), found
+    return Pose(*every), at, found

@@ -15,6 +15,9 @@ _PLACES = 8
 _FEET = 2.0
 """Pitches to either side within which feet lie, where polar angles have told them roughly."""
 
+_OFF = 0.25
+"""Part of a curve's least radius that ways measured by polar angles keep off the shaft."""
+
 
 class PolarCurve:
     """A parallel of a centrode whose polar angle rises with the driver angle, in polar coordinates.
@@ -36,6 +39,7 @@ class PolarCurve:
         base = toothing.frames(self._phi[2], curved=False)
         points = base.p + height * toothing.turn * base.t
         self._polar, self._radii = np.unwrap(np.angle(points)), np.abs(points)
+        self._closed = toothing.closed
 
     def _places(self, points: Plane) -> Array:
         first = self._polar[0]
@@ -52,3 +56,19 @@ class PolarCurve:
         return np.abs(points) - np.interp(
             self._places(points), self._polar, self._radii, right=math.inf
         )
+
+    def clear(self, points: Plane, beyond: Array) -> Array:
+        """Return how far points have to go at least, mm, until `beyond` them changes its sign.
+
+        On a way that keeps off the shaft it changes by the length and by the radius that is turned
+        past; any other way leads through the space within the least radius.
+        """
+        least = float(self._radii.min())
+        steep = float(np.abs(np.diff(self._radii) / np.diff(self._polar)).max())
+        clear = np.minimum(np.abs(beyond) / (1.0 + steep / (_OFF * least)), (1.0 - _OFF) * least)
+        if self._closed:
+            return clear
+        for end in self._polar[[0, -1]]:
+            aside = np.abs(np.angle(points * np.exp(-1j * end)))
+            clear = np.minimum(clear, np.abs(points) * np.sin(np.minimum(aside, 0.5 * math.pi)))
+        return clear

@@ -16,11 +16,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline
 from gearcam.gears.polar import PolarCurve
+from gearcam.gears.stays import Stays, find_stays, rolls_of
 from gearcam.gears.tips import feet
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import bracketed_root
@@ -64,18 +64,6 @@ class _Corners(NamedTuple):
     sigma: Array
 
 
-class _Stays(NamedTuple):
-    """Stays of corners between the ring's teeth, and the ends that are seen of them.
-
-    `corner` tells whose; `deep` is the driver angle, rad, in the middle, and `edge` one beyond the
-    end; where a corner never gets out it is the nearest to that.
-    """
-
-    corner: Ints
-    deep: Array
-    edge: Array
-
-
 def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     """Return the least tip-pass margin of a wheel in a ring.
 
@@ -91,7 +79,7 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     """
     own, edge = wheel.toothing, PolarCurve(ring.toothing, ring.toothing.cutter.addendum)
     corners = _corners(wheel, ring.toothing)
-    stays = _stays(*_follow(own, ring.toothing, corners, edge))
+    stays = _follow(own, ring.toothing, corners, edge)
     margins, angles = _margins(own, ring, corners.points, edge, stays)
     if not np.isfinite(margins).any():
         return TipPass(math.inf, 0, 0.0, 0.0)
@@ -118,51 +106,22 @@ def _corners(wheel: Outline, mate: Toothing) -> _Corners:
     )
 
 
-def _follow(
-    own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve
-) -> tuple[Array, Array]:
-    """Return driver angles, rad, and how far corners are in the ring there, mm, roughly.
+def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve) -> Stays:
+    """Follow corners over half a turn either way from the middle of their tooth.
 
-    Rows are corners, columns rolls over half a turn either way from the middle of their tooth; of
-    an open wheel over all of its travel.
+    Those of an open wheel over all of its travel.
     """
-    both = corners.points.reshape(2, -1, 1)
     half = math.ceil(0.5 * own.teeth) if own.closed else own.teeth
-    count = 2 * half * _ROLLS + 1
-    rolls = np.arange(count + (both.shape[1] - 1) * _ROLLS) / _ROLLS - half
+    count, each = 2 * half * _ROLLS + 1, len(corners.points) // 2
+    rolls = np.arange(count + (each - 1) * _ROLLS) / _ROLLS - half
     s = float(own.tooth_places[own.whole][0]) + own.pitch * rolls
     phi = own.track.angle(s if own.closed else np.clip(s, 0.0, own.length))
-    here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
-    turn = there.t * np.conj(here.t)
-    stack = np.stack([turn, there.p - turn * here.p, phi])
-    turn, shift, phi = sliding_window_view(stack, count, axis=1)[:, ::_ROLLS]
-    depth = edge.beyond(shift + turn * both)
-    return np.tile(phi.real, (2, 1)), depth.reshape(-1, count)
-
-
-def _stays(phi: Array, depth: Array) -> _Stays:
-    """Find the stays of corners in the ring, and both ends of each that are seen."""
-    last = phi.shape[1] - 1
-    inside = np.pad(depth > 0.0, ((0, 0), (1, 1)))
-    starts, stops = (
-        np.stack(np.nonzero(change), axis=1)
-        for change in (inside[:, 1:] & ~inside[:, :-1], inside[:, :-1] & ~inside[:, 1:])
-    )
-    corner, deep, edge = [], [], []
-    for (row, start), (_, stop) in zip(starts, stops, strict=True):
-        stay = depth[row, start:stop]
-        # one roll further out, since the places are rough
-        ends = [max(start - 2, 0)] if start > 0 else []
-        ends += [min(stop + 1, last)] if stop <= last else []
-        for end in ends or [start + int(np.argmin(stay))]:
-            corner.append(row)
-            deep.append(phi[row, start + int(np.argmax(stay))])
-            edge.append(phi[row, end])
-    return _Stays(np.array(corner, dtype=int), np.array(deep), np.array(edge))
+    first = np.tile(_ROLLS * np.arange(each), 2)
+    return find_stays(rolls_of(own, mate, phi), corners.points, first, count, edge)
 
 
 def _margins(
-    own: Toothing, ring: Outline, points: Plane, edge: PolarCurve, stays: _Stays
+    own: Toothing, ring: Outline, points: Plane, edge: PolarCurve, stays: Stays
 ) -> tuple[Array, Array]:
     """Return margins, mm, and driver angles, rad, of all stays, (2n,).
 

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.display import Brief
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.hermite import hermite_cubic
 from gearcam.numeric.roots import newton_in_bracket
@@ -72,7 +72,7 @@ class Frames(NamedTuple):
     speed: Array
     s: Array
 
-    def some(self, which: Ints | int) -> Frames:
+    def some(self, which: Ints | Mask | int) -> Frames:
         """Return those at some of the parameters; a curvature that is left out stays so."""
         kappa = self.kappa[which] if self.kappa.size else self.kappa
         return Frames(self.p[which], self.t[which], kappa, self.speed[which], self.s[which])

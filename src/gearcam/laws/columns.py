@@ -7,7 +7,6 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -15,14 +14,19 @@ import numpy as np
 from gearcam.display import Brief
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
+from gearcam.reading import UnreadableError, read
 
 MOST_ROWS: Final = 20000
 """Rows of a table: more are a file of something else."""
 
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _POINT_NUMBER: Final = re.compile(r"[+-]?\d*\.\d*([eE][+-]?\d+)?")
+_SHOWN: Final = 40
 _HINT: Final = "; use a decimal point"
 
+
+LARGEST: Final = 16_000_000
+"""Size of a file, bytes: twenty times that of the longest table."""
 
 NARROWEST_STEP: Final = 2e-6 * math.pi
 """Least step of the angle in rows, rad: a second of arc; the place of a row in it is known to
@@ -144,19 +148,25 @@ def read_rows(file: str) -> CsvRows:
     import csv
 
     try:
-        text = Path(file).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is not a text file in UTF-8"
-        raise ColumnsError(f"cannot be read: {reason}") from error
+        text = read(file, LARGEST).decode("utf-8-sig").splitlines()
+    except UnreadableError as error:
+        raise ColumnsError(f"cannot be read: {error}") from error
+    except UnicodeDecodeError as error:
+        raise ColumnsError("cannot be read: it is not a text file in UTF-8") from error
     rows = [(k, row) for k, row in enumerate(text, start=1) if row.strip() and row[0] != "#"]
     if not rows:
         raise ColumnsError("is empty")
     if len(rows) > MOST_ROWS + 1:
         raise ColumnsError(f"has {len(rows) - 1} rows; up to {MOST_ROWS} are read")
     semicolons = ";" in rows[0][1] and "," not in rows[0][1]
-    found = (next(csv.reader([row], delimiter=";" if semicolons else ",")) for _, row in rows)
-    cells = tuple([cell.strip() for cell in row] for row in found)
-    made = CsvRows(file=file, lines=tuple(line for line, _ in rows), cells=cells)
+    cells = []
+    for line, row in rows:
+        try:
+            found = next(csv.reader([row], delimiter=";" if semicolons else ","))
+        except csv.Error as error:
+            raise ColumnsError(f"line {line}: no row of a table: {error}") from error
+        cells.append([cell.strip() for cell in found])
+    made = CsvRows(file=file, lines=tuple(line for line, _ in rows), cells=tuple(cells))
     return _with_points(made) if semicolons else made
 
 
@@ -203,13 +213,14 @@ def _numbers(cells: Sequence[str], places: Sequence[int], line: int) -> list[flo
     found = []
     for place in places:
         text = cells[place] if place < len(cells) else ""
+        told = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
         try:
             if "_" in text or not text.isascii():  # which are numbers to Python
                 raise ValueError(text)
             found.append(float(text))
         except ValueError:
             hint = _HINT if _COMMA_NUMBER.fullmatch(text) else ""
-            raise ColumnsError(f"line {line}: {text!r} is not a number{hint}") from None
+            raise ColumnsError(f"line {line}: {told!r} is not a number{hint}") from None
         if not math.isfinite(found[-1]):
-            raise ColumnsError(f"line {line}: {text!r} is not finite")
+            raise ColumnsError(f"line {line}: {told!r} is not finite")
     return found

@@ -26,6 +26,10 @@ JUMP: Final = 1e-9
 """Jump of a derivative that counts, in its largest value: far above rounding."""
 
 
+EXACT: Final = (0.0, 0.0, 0.0, 0.0)
+"""Errors beyond rounding of a function in closed form and of its first three derivatives."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Jump:
     """A knot where a derivative jumps.
@@ -44,6 +48,22 @@ class Jump:
     order: int
     before: float
     after: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deviation:
+    """The largest distance of a lift from the rows that it was made from.
+
+    Parameters
+    ----------
+    theta : float, rad
+        Where.
+    value : float, mm or rad
+        How far, positive where the lift is above the row.
+    """
+
+    theta: float
+    value: float
 
 
 class Displacement(ABC):

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from gearcam.laws.displacement import EXACT
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
@@ -101,6 +102,11 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> tuple[Callable[[J
 
     made = expanded(given, axis, tolerance)
     return made, made.error
+
+
+def errors_of(function: Callable[[Jet], Jet]) -> tuple[float, ...]:
+    """Return estimated errors of what `function_of` gives, and of its first three derivatives."""
+    return getattr(function, "errors", EXACT)
 
 
 def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:

@@ -84,6 +84,10 @@ class Waves:
     cosines: Array
     sines: Array
 
+    def growth(self, order: int) -> float:
+        """Return what makes of an error of values one of a derivative: that of the next wave."""
+        return (self.rate * (len(self.cosines) + 1)) ** order
+
     def derivatives(self, x: Array, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at places `x`."""
         distance = Jet.variable(x, order) - self.low
@@ -107,6 +111,17 @@ class Pieces:
             self._chain.append(self._chain[-1].derivative())
         return self._chain[order]
 
+    def growth(self, order: int) -> float:
+        """Return what makes of errors of values one of a derivative, at the ends of a piece.
+
+        Errors at the nodes are no smooth curve: they are in all coefficients alike, and there the
+        k-th derivative of ``T_n`` is the product of ``(n^2 - j^2)/(2*j + 1)`` for j below k.
+        """
+        n, j = np.arange(len(self.expansion.coefficients))[:, None], np.arange(order)
+        slopes = np.prod((n**2 - j**2) / (2 * j + 1), axis=1)
+        rate = 2.0 / float(np.diff(self.expansion.knots).min())
+        return float(np.sqrt(2.0 * np.mean(slopes**2)) * rate**order)
+
     def derivatives(self, x: Array, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at places `x`."""
         return [self.order(k)(x) for k in range(order + 1)]
@@ -120,13 +135,27 @@ class Expanded:
     ----------
     curves : tuple of Waves or Pieces
         The function and the derivatives that were given with it.
-    error : float
-        Estimated error of its values: the largest difference between expansion and function, at
+    misses : tuple of float
+        Estimated errors of their values: the largest difference between expansion and function, at
         places between its nodes, and rounding.
     """
 
     curves: tuple[Waves | Pieces, ...]
-    error: float
+    misses: tuple[float, ...]
+
+    @property
+    def error(self) -> float:
+        """Estimated error of the function."""
+        return self.misses[0]
+
+    @property
+    def errors(self) -> tuple[float, ...]:
+        """Estimated errors of the function and its first three derivatives, given or made."""
+        last = len(self.curves) - 1
+        return tuple(
+            self.misses[min(k, last)] * self.curves[min(k, last)].growth(max(k - last, 0))
+            for k in range(4)
+        )
 
     def __call__(self, x: Jet) -> Jet:
         """Return the function of a jet."""
@@ -161,7 +190,7 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
     functions = given if isinstance(given, tuple) else (given,)
     places = np.linspace(axis.low, axis.high, _PLACES)
     curves: list[Waves | Pieces] = []
-    first = 0.0
+    misses: list[float] = []
     for number, function in enumerate(functions):
         ask = _Asked(function, axis, number)
         values = ask(places)
@@ -175,11 +204,10 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
                 raise ask.refusal(what, axis.low, nearest="a formula as text has no such limit")
         if curves:
             _demand_agreement(curves[-1], ask, places, values)
-        else:
-            miss = np.abs(curve.derivatives(places, 0)[0] - values)
-            first = float(miss.max()) + _ROUNDING * scale
+        miss = np.abs(curve.derivatives(places, 0)[0] - values)
+        misses.append(float(miss.max()) + _ROUNDING * scale)
         curves.append(curve)
-    return Expanded(tuple(curves), first)
+    return Expanded(tuple(curves), tuple(misses))
 
 
 class _Asked:

@@ -16,15 +16,17 @@ from typing import Final
 import numpy as np
 
 from gearcam.display import Brief
+from gearcam.laws.displacement import Deviation
 from gearcam.laws.phases_of_lift import (
     TURN,
     TURN_MISS,
     DwellPhase,
     Phase,
+    PlacedPhase,
     angles_of,
     levels,
 )
-from gearcam.laws.program import Deviation, PlacedPhase, Program
+from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, extremes, piecewise

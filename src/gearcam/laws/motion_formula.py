@@ -15,7 +15,14 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED
-from gearcam.laws.formula import Axis, Given, formula_problems, function_of, values_of
+from gearcam.laws.formula import (
+    Axis,
+    Given,
+    errors_of,
+    formula_problems,
+    function_of,
+    values_of,
+)
 from gearcam.laws.phases_of_lift import LONGEST, TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import stretches_of
@@ -89,7 +96,7 @@ class MotionFormula:
         InfeasibleError
             Where the formula is not finite or not smooth, does not repeat or does not move.
         """
-        function, error = function_of(self.lift, _AXIS, tolerances.expansion)
+        function, _ = function_of(self.lift, _AXIS, tolerances.expansion)
         scale, unit = (math.degrees(1.0), "deg") if oscillating else (1.0, "mm")
         theta = np.linspace(0.0, TURN, _PLACES + 1)
         first = values_of(function)(theta)
@@ -121,4 +128,9 @@ class MotionFormula:
             )
         lift = piecewise([0.0, TURN], [Piece(lambda x: function(x) - (miss / TURN) * x)])
         rows = theta[:-1], values[:-1], TYPED * extent, 0.5 * count
-        return Program(lift=lift, stretches=stretches_of(lift, *rows), cuts=cuts, error=error)
+        return Program(
+            lift=lift,
+            stretches=stretches_of(lift, *rows),
+            cuts=cuts,
+            errors=errors_of(function),
+        )

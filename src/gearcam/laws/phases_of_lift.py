@@ -190,6 +190,15 @@ def angles_of(phases: Sequence[Phase], turn: float = TURN) -> list[float]:
     return [rest if phase.angle == "rest" else phase.angle for phase in phases]
 
 
+@dataclass(frozen=True, kw_only=True)
+class PlacedPhase:
+    """A phase in its place: its `kind` (rise, return or dwell), `start` and `end` in rad."""
+
+    kind: str
+    start: float
+    end: float
+
+
 def levels(phases: Sequence[Phase]) -> list[float]:
     """Return the lift at the beginning of each phase and at the end of the last, mm or rad.
 

@@ -20,11 +20,12 @@ import numpy as np
 
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
-from gearcam.laws.displacement import JUMP, Displacement, Jump
+from gearcam.laws.displacement import EXACT, JUMP, Deviation, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
     TURN,
     DwellPhase,
     Phase,
+    PlacedPhase,
     ReturnPhase,
     RisePhase,
     SegmentPhase,
@@ -33,6 +34,7 @@ from gearcam.laws.phases_of_lift import (
     program_problems,
 )
 from gearcam.laws.rises.base import Rise
+from gearcam.laws.rises.pieces import from_both_ends
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
@@ -46,31 +48,6 @@ _KNOT = 4.0 * np.finfo(float).eps * TURN
 """Rounding of a knot, rad."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class PlacedPhase:
-    """A phase in its place: its `kind` (rise, return or dwell), `start` and `end` in rad."""
-
-    kind: str
-    start: float
-    end: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Deviation:
-    """The largest distance of a lift from the rows that it was made from.
-
-    Parameters
-    ----------
-    theta : float, rad
-        Where.
-    value : float, mm or rad
-        How far, positive where the lift is above the row.
-    """
-
-    theta: float
-    value: float
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Survey(Brief):
     """A lift and its derivatives to the fourth, all at once: most questions need no more.
@@ -78,7 +55,7 @@ class Survey(Brief):
     Parameters
     ----------
     places : (n, k) array, rad
-        In every stretch between cuts, both ends just inside.
+        In every stretch between cuts, both ends among them, seen from inside.
     found : (5, n, k) array
         Lift and derivatives there.
     before, after : (m, 5) arrays
@@ -103,8 +80,13 @@ class Program(Brief, Displacement):
         Its phases; a segment counts as a rise or return by its direction.
     cuts : (m,) array, rad
         The knots, and more places where a law bends sharply: between them extremes are sought.
-    error : float, mm or rad
-        Estimated error of the lift beyond rounding.
+    errors : (float, float, float, float)
+        Estimated errors of the lift, mm or rad, and of its first three derivatives beyond rounding.
+    rough : tuple of Piecewise
+        Curves of the same knots through fewer rows: what is integrated of them differs by more than
+        the lift's own errors make, by as much as `fall` says.
+    fall : float
+        By what errors of the rough curves are larger.
     deviation : Deviation, optional
         What smoothing took off rows.
     open : bool
@@ -114,7 +96,9 @@ class Program(Brief, Displacement):
     lift: Piecewise
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
-    error: float = 0.0
+    errors: tuple[float, ...] = EXACT
+    rough: tuple[Piecewise, ...] = ()
+    fall: float = 1.0
     deviation: Deviation | None = None
     open: bool = False
 
@@ -148,6 +132,14 @@ class Program(Brief, Displacement):
         cuts = np.append(self.cuts, self.cuts + TURN)
         return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
 
+    def sides(self, cuts: Sequence[Array]) -> tuple[Array, Array]:
+        """Return the ends of stretches between `cuts`, rad, and lift, s' and s'' from within."""
+        low, high = np.hstack([[own[:-1], own[1:]] for own in cuts])
+        periods, middle = self.within(0.5 * (low + high))
+        index = np.tile(np.searchsorted(self.knots[1:-1], middle), 2)
+        ends = np.concatenate([low, high])
+        return ends, self.lift.on_pieces(index, ends - np.tile(periods, 2) * TURN, 2)
+
     def phases(self, kind: str) -> list[tuple[float, float]]:
         """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
         return [(s.start, s.end) for s in self.stretches if s.kind == kind]
@@ -168,6 +160,7 @@ class Program(Brief, Displacement):
         places, pieces = places_between(self.cuts), np.arange(len(self.knots) - 1)
         owner = np.repeat(np.searchsorted(self.knots, places[:, 0]) - 1, places.shape[1])
         index = np.concatenate([pieces, pieces, owner])
+        places[:, 0], places[:, -1] = self.cuts[:-1], self.cuts[1:]
         theta = np.concatenate([self.knots[1:], self.knots[:-1], places.ravel()])
         found = self.lift.on_pieces(index, theta, 4)
         before, after, inside = np.split(found, [len(pieces), 2 * len(pieces)], axis=1)
@@ -276,7 +269,7 @@ def make_program(
 
     pieces: list[tuple[float, Piece]] = []
     stretches: list[PlacedPhase] = []
-    cuts = np.array([])
+    cuts, errors = np.array([]), np.array(EXACT)
     for number, (phase, place) in enumerate(zip(phases, places, strict=True)):
         match phase:
             case DwellPhase():
@@ -291,15 +284,15 @@ def make_program(
                 kind = "return" if isinstance(phase, ReturnPhase) else "rise"
                 pieces += place.pieces(rises[phase.law])
                 cuts = np.append(cuts, place.cuts(rises[phase.law]))
+                errors = np.maximum(errors, place.errors(rises[phase.law]))
         stretches.append(PlacedPhase(kind=kind, start=place.start, end=place.end))
     knots, parts = zip(*pieces, strict=True)
     lift = piecewise([0.0, *knots], list(parts))
-    swing = max(heights) - min(heights)
     return Program(
         lift=lift,
         stretches=tuple(stretches),
         cuts=np.union1d(lift.knots, cuts),
-        error=swing * max((rise.error for rise in rises.values()), default=0.0),
+        errors=tuple(errors.tolist()),
         open=not closed,
     )
 
@@ -376,6 +369,10 @@ class _Place:
         origin, width, *_ = self.law(rise)
         return origin + width * np.array(rise.cuts)
 
+    def errors(self, rise: Rise) -> Array:
+        """Return the errors of a law and of its first three derivatives."""
+        return abs(self.rise) * np.array(rise.errors) / (self.end - self.start) ** np.arange(4)
+
     def end_state(self, rise: Rise) -> tuple[float, float]:
         """Return velocity and acceleration of a law at the end."""
         _, width, _, scale = self.law(rise)
@@ -388,12 +385,14 @@ class _Place:
     ) -> Piece:
         """Return the quintic with given velocities and accelerations at both ends.
 
-        `opposite` changes the signs of those at its start.
+        `opposite` changes the signs of those at its start. It is computed from the nearer end.
         """
         width = self.end - self.start
-        rates = np.array([start, end]) * [width, width**2]
-        rates[0] *= -1.0 if opposite else 1.0
-        ends = np.array([(0.0, 0.0, *rates[0]), (1.0, self.rise, *rates[1])])
-        powers = hermite_quintics(*ends.T)[0].tolist()
-        parameters = (self.start, 1.0 / width, self.base, 1.0, 0.0, *powers)
-        return Piece(_Placed(polynomial), parameters=parameters)
+        first, last = np.array([start, end]) * [width, width**2]
+        first *= -1.0 if opposite else 1.0
+        ends = np.array([(0.0, 0.0, *first), (1.0, self.rise, *last)])
+        seen = np.array([(0.0, self.rise, *last), (1.0, 0.0, *first)]) * [1, 1, -1, 1]  # from there
+        left, right = (hermite_quintics(*rows.T)[0] for rows in (ends, seen))
+        both = from_both_ends(left.tolist(), (right * (-1.0) ** np.arange(6)).tolist(), 0.0, 1.0)
+        parameters = (self.start, 1.0 / width, self.base, 1.0, *both.parameters)
+        return Piece(_Placed(both.function), parameters=parameters)

@@ -24,9 +24,10 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
-from gearcam.laws.phases_of_lift import TURN
-from gearcam.laws.program import Deviation, PlacedPhase, Program
+from gearcam.laws.phases_of_lift import TURN, PlacedPhase
+from gearcam.laws.program import Program
 from gearcam.laws.rises.pieces import from_both_ends
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
@@ -51,9 +52,12 @@ half the digits."""
 _ORDER: Final = 6
 """Power of the step with which the error of a smooth lift falls."""
 
-_BESIDE: Final = 2.0
+_SHARES: Final = np.array([0.0, 0.25, 0.5, 0.75])
+"""Places of a step at which derivatives are compared."""
+
+_BESIDE: Final = np.array([2.0, 4.0, 4.0, 4.0])
 """A miss is seen in the middle between rows; beside it, where a derivative jumps near a row, it may
-be twice as large."""
+be twice as large. Derivatives are held against a curve that misses them too."""
 
 
 def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
@@ -87,11 +91,15 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
         deviation = Deviation(theta=float(theta[far]), value=value)
     curve = _curve(theta[::step], values[::step])
     level = max(tolerance, TYPED * float(np.ptp(lift)))
+    errors, fall = _errors(theta[::step], values[::step])
+    pair = 2 * step
     return Program(
         lift=curve,
         stretches=stretches_of(curve, theta, values, level, cutoff),
         cuts=curve.knots,
-        error=_error(theta[::step], values[::step]),
+        errors=errors,
+        rough=tuple(_rough(curve.knots, theta[k::pair], values[k::pair]) for k in (0, step)),
+        fall=fall,
         deviation=deviation,
     )
 
@@ -127,12 +135,20 @@ def _quintics(theta: Array, lift: Array) -> tuple[Array, tuple[Array, Array]]:
     return x, coefficients(x, y, np.concatenate([slopes, slopes[:1]]), ring=True)
 
 
-def _between(theta: Array, lift: Array, places: Array) -> Array:
-    """Return the closed curve through rows at places, at most a turn behind the first row."""
+def _between(theta: Array, lift: Array, places: Array, order: int = 0) -> Array:
+    """Return the closed curve through rows at places, at most a turn behind the first row.
+
+    With its derivatives up to an order it is an (order + 1, n) array, else (n,).
+    """
     x, (left, _) = _quintics(theta, lift)
     index = np.searchsorted(theta, places, side="right") - 1
-    distance = (places - x[index])[:, None]
-    return (left[index] * distance ** np.arange(left.shape[1])).sum(axis=1)
+    distance, powers = (places - x[index])[:, None], left[index]
+    found = []
+    for _ in range(order + 1):
+        count = np.arange(powers.shape[1])
+        found.append((powers * distance**count).sum(axis=1))
+        powers = (powers * count)[:, 1:]
+    return np.array(found) if order else found[0]
 
 
 def _curve(theta: Array, lift: Array) -> Piecewise:
@@ -147,28 +163,49 @@ def _curve(theta: Array, lift: Array) -> Piecewise:
     return piecewise(np.concatenate([[0.0], theta, [TURN]]), [over, *pieces])
 
 
-def _error(theta: Array, lift: Array) -> float:
-    """Estimate the error of the curve between rows from that of curves through fewer.
+def _rough(knots: Array, theta: Array, lift: Array) -> Piecewise:
+    """Return the curve through rows with the knots of a finer one, which are among its own."""
+    curve = _curve(theta, lift)
+    owner = np.searchsorted(curve.knots[1:-1], 0.5 * (knots[:-1] + knots[1:]))
+    return piecewise(knots, [curve.pieces[k] for k in owner.tolist()])
+
+
+def _errors(theta: Array, lift: Array) -> tuple[tuple[float, ...], float]:
+    """Estimate errors of the curve between rows, and of its derivatives, by curves through fewer.
 
     Curves through every second row miss the rows between by so much, those through every fourth by
     more. By what it falls between these, which the smoothness of the motion decides, it is taken to
     fall again. The worst of all choices of rows counts, as a jump of a derivative may lie anywhere.
+    Of derivatives, which rows do not tell, the curve through all of them takes their place: what
+    curves through fewer miss of it is seen between the rows as well.
+
+    Returns the errors, and by what that of the lift falls from rows twice as far apart.
     """
     two, four = (
-        max(_missed(np.roll(theta, -k), np.roll(lift, -k), step) for k in range(step))
+        np.max([_missed(theta, lift, step, first) for first in range(step)], axis=0)
         for step in (2, 4)
     )
-    rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max())
-    falls = min(max(four / max(two, rounding), 1.0), 2.0**_ORDER)
-    return float(_BESIDE * two / falls + rounding)
+    narrowest = float(np.diff(theta, append=theta[0] + TURN).min())
+    rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max()) / narrowest ** np.arange(4)
+    falls = np.clip(four / np.maximum(two, rounding), 1.0, 2.0 ** (_ORDER - np.arange(4)))
+    return tuple((_BESIDE * two / falls + rounding).tolist()), float(falls[0])
 
 
-def _missed(theta: Array, lift: Array, step: int) -> float:
-    """Return by how much a curve through every `step`-th row misses those in the middle between."""
-    theta = theta[0] + (theta - theta[0]) % TURN
+def _missed(theta: Array, lift: Array, step: int, first: int) -> Array:
+    """Return by how much a curve through every `step`-th row misses lift and derivatives.
+
+    The lift in the middle rows between, derivatives of the curve through all rows everywhere.
+    """
+    own, values = np.roll(theta, -first), np.roll(lift, -first)
+    own = own[0] + (own - own[0]) % TURN
     middle = slice(step // 2, None, step)
-    found = _between(theta[::step], lift[::step], theta[middle])
-    return float(np.abs(found - lift[middle]).max())
+    lifts = _between(own[::step], values[::step], own[middle]) - values[middle]
+    widths = np.diff(own, append=own[0] + TURN)
+    places = (own[:, None] + widths[:, None] * _SHARES).ravel()
+    fewer, all_rows = (_between(own[::k], values[::k], places, 3) for k in (step, 1))
+    missed = np.abs(fewer - all_rows).max(axis=1)
+    missed[0] = np.abs(lifts).max()
+    return missed
 
 
 def stretches_of(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.normals import normals, touch
+from gearcam.gears.normals import touch
 from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Ints, Plane
 
@@ -83,7 +83,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     side = pairs.side
     step, pair = pairs.beside(phi1)
-    pose, touching = touch(pairs, phi1[step], pairs.separation(pair))
+    pose, at, touching = touch(pairs, phi1[step], pairs.separation(pair))
     rolled = [
         sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
         for wheel, sign, angle in zip(WHEELS, (side, -side), (pose.one, pose.two), strict=True)
@@ -92,8 +92,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
         low, high = pairs.reach(wheel, pair)
         touching = touching & (w >= low) & (w <= high)
     step, pair = step[touching], pair[touching]
-    pose = pose.take(touching)
-    at = normals(pairs, pose, pairs.separation(pair))
+    pose, at = pose.take(touching), at.take(touching)
     first, second = at.frames
     (one, two), sf = pairs.toothings, [pairs.place(wheel, pair) for wheel in WHEELS]
     normal = at.normal[0]

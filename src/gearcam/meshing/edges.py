@@ -97,7 +97,7 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
     Returns them with the driver angles, rad, of the range's ends on the driver, root first.
     """
     step, pair = pairs.beside(phi1)
-    turn, offset = pairs.guide.stand(phi1[step], 0.0)
+    turn, offset = pairs.guide.stand(pairs.guide.nominal(phi1)[step])
     every = Facing(
         pairs=pairs,
         step=step,
@@ -188,9 +188,11 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     """
     outward = of_leading_pair(pairs.side, len(phi1), found.step, found.lead)
     searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
-    some = touches(pairs, phi1[searched])
-    step, turn = searched[some.step[some.edge]], some.turn[some.edge]
-    ends = of_leading_pair(pairs.side, len(phi1), step, turn)
+    ends = np.full(len(phi1), -np.inf)
+    if searched.size:
+        some = touches(pairs, phi1[searched])
+        step, turn = searched[some.step[some.edge]], some.turn[some.edge]
+        ends = of_leading_pair(pairs.side, len(phi1), step, turn)
     return -pairs.side * np.maximum(outward, ends), ends > outward
 
 

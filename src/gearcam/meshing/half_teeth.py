@@ -95,8 +95,15 @@ class HalfTeeth:
 
     def distance(self, points: Plane) -> Array:
         """Return the distances of points from the half-teeth, mm; 0 inside."""
-        union = shapely.MultiPolygon(self.polygons.tolist())
-        return np.asarray(shapely.distance(union, shapely.points(points.real, points.imag)))
+        at: Any = shapely.points(points.real, points.imag)
+        body = self.points[self.starts[self.count] :]  # by its edges, of which it has many
+        ends = np.stack([body, np.roll(body, -1)], axis=1)
+        edges = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
+        tree = shapely.STRtree(np.concatenate([self.polygons[: self.count], edges]))
+        least = tree.query_nearest(at, return_distance=True, all_matches=False)[1]
+        for whole in self.polygons[self.count :]:
+            least[shapely.intersects(whole, at)] = 0.0
+        return least
 
     @cached_property
     def circles(self) -> tuple[Plane, Array]:

@@ -83,6 +83,11 @@ class Turning:
         return shapely.STRtree(self.driven.polygons)
 
     @cached_property
+    def _teeth(self) -> Any:
+        """The half-teeth alone: a body has as many corners as the wheel has teeth."""
+        return shapely.STRtree(self.driven.polygons[: self.driven.count])
+
+    @cached_property
     def _height(self) -> float:
         """Largest height of the driven wheel, mm."""
         return float(self.rolling.guide.height(self.driven.points).max())
@@ -105,7 +110,8 @@ class Turning:
         -------
         turn, offset : (n,) complex arrays, 1 and mm
         """
-        turn, offset = self.rolling.guide.stand(phi1, lead)
+        guide = self.rolling.guide
+        turn, offset = guide.stand(guide.nominal(phi1) + lead)
         back = np.conj(turn)
         return np.exp(-1j * (phi1 + overclosure)) * back, back * (-self.distance - offset)
 
@@ -199,9 +205,12 @@ class Turning:
         seen = center * turn[:, None] + offset[:, None]
         step, half = np.nonzero(self.rolling.guide.height(seen) - radius <= self._height)
         seen = seen[step, half]
-        points = shapely.points(seen.real, seen.imag)
-        some = np.unique(self._tree.query(points, predicate="dwithin", distance=radius[half])[0])
-        step, half = step[some], half[some]
+        points: Any = shapely.points(seen.real, seen.imag)
+        near = np.zeros(len(step), dtype=bool)
+        near[self._teeth.query(points, predicate="dwithin", distance=radius[half])[0]] = True
+        for body in self.driven.polygons[self.driven.count :]:
+            near |= shapely.dwithin(body, points, cast("Any", radius[half]))
+        step, half = step[near], half[near]
         if not self.driver.closed:
             bodies = self._touched_bodies(turn, offset)
             step = np.append(step, bodies)

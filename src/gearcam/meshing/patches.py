@@ -11,6 +11,7 @@ delta and the relative curvature kr.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -98,19 +99,26 @@ class Graphs(PlacedFlanks):
         low, high = np.max(x, axis=0)[0], np.min(x, axis=0)[1]
         return np.stack([low, np.clip(0.0, low, high), high])
 
-    def slope(self, wheel: Wheel, angle: Array) -> Array:
-        """Return dy/dx of a `wheel`'s flanks at driver angles `angle`, rad."""
-        direction = self.at(wheel, angle, unit=True)[1]
-        return self.pairs.side * direction.imag / direction.real
+    @cached_property
+    def along(self) -> Array:
+        """How x grows with the driver angles at `center`, (2, n), mm/rad."""
+        each = zip(WHEELS, self.center, strict=True)
+        return np.stack([self.at(wheel, center)[1].real for wheel, center in each])
 
-    def depth(self, x: Array) -> tuple[Array, Array]:
-        """Return how deep the driver's flanks stand at `x`, mm, and both driver angles, (2, n)."""
-        angles, y = [], []
-        for wheel, center, ends in zip(WHEELS, self.center, self.rising, strict=True):
-            start = center + x / self.at(wheel, center)[1].real
-            angles.append(self.find(wheel, _along, x, ends, start, _ANGLE))
-            y.append(self.pairs.side * self.at(wheel, angles[-1], unit=True)[0].imag)
-        return y[0] - y[1], np.stack(angles)
+    def depth(self, x: Array) -> tuple[Array, Array, Array]:
+        """Return how deep the driver's flanks stand at `x`, mm, and what leads there.
+
+        Returns the depth, its derivative by x, and both driver angles, (2, n).
+        """
+        angles, y, slope = [], [], []
+        rows = zip(WHEELS, self.center, self.along, self.rising, strict=True)
+        for wheel, center, along, ends in rows:
+            angles.append(self.find(wheel, _along, x, ends, center + x / along, _ANGLE))
+            point, direction = self.at(wheel, angles[-1], unit=True)
+            y.append(self.pairs.side * point.imag)
+            with np.errstate(divide="ignore", invalid="ignore"):  # upright at an end
+                slope.append(self.pairs.side * direction.imag / direction.real)
+        return y[0] - y[1], slope[0] - slope[1], np.stack(angles)
 
 
 def _along(points: Plane, directions: Plane) -> tuple[Array, Array]:
@@ -167,16 +175,18 @@ def patches(
 def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array) -> Graphs:
     """Find the normals that pairs share, and the pairs that overlap along them."""
     step, pair = pairs.beside(phi1)
-    side, guide, phi1 = pairs.side, pairs.guide, phi1[step]
+    side, guide = pairs.side, pairs.guide
+    moved, motion = (guide.nominal(phi1) + lead)[step], guide.motion(phi1 + overclosure)[:, step]
+    phi1 = phi1[step]
     ahead = phi1 + overclosure
-    lead = lead[step] + guide.nominal(phi1) - guide.nominal(ahead)
-    center, at = _shared(pairs, Pose(ahead, phi1, phi1, lead), pairs.separation(pair))
+    pose = Pose(ahead, phi1, phi1, moved - motion[0])
+    center, at = _shared(pairs, pose, pairs.separation(pair), motion)
     (first, second), (one, two) = at.frames, pairs.toothings
     sf = [pairs.place(wheel, pair) for wheel in WHEELS]
     with np.errstate(divide="ignore", invalid="ignore"):
         curvature = first.kappa / one.regularity(first, sf[0], side)
         curvature = curvature + second.kappa / two.regularity(second, sf[1], -side)
-    turn = np.stack([np.exp(-1j * ahead), guide.stand(ahead, lead)[0]])
+    turn = np.stack([np.exp(-1j * ahead), guide.stand(moved)[0]])
     origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
     offset = at.foot - np.stack([first.p, second.p]) * turn - origin
     # the tangent towards the driver's tip becomes the x-axis
@@ -195,17 +205,20 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
     return every.select((every.penetration > 0.0) & (missed < _MISS))
 
 
-def _shared(pairs: FlankPairs, pose: Pose, separation: Array) -> tuple[Array, Normals]:
+def _shared(
+    pairs: FlankPairs, pose: Pose, separation: Array, motion: Array
+) -> tuple[Array, Normals]:
     """Find the rolls at which two flanks of a given pose have one normal, at any distance.
 
-    Returns them as driver angles, rad, (2, n), and the normal.
+    What the guide tells of the phases is given as `motion`. Returns them as driver angles, rad,
+    (2, n), and the normal.
     """
     # the third unknown is the distance along it
     none = np.zeros_like(separation)
     by_distance = np.stack([none, none - 1.0, none])
 
     def evaluate(x: Array) -> tuple[Normals, Array, Array]:
-        at = normals(pairs, pose._replace(one=x[0], two=x[1]), separation)
+        at = normals(pairs, pose._replace(one=x[0], two=x[1]), separation, motion)
         slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by_distance], axis=1)
         return at, at.equations + x[2] * by_distance, slopes
 
@@ -224,13 +237,13 @@ def _end(graphs: Graphs, top: Array, limit: Array, cut: Mask, guess: Array) -> A
     some = graphs.select(at)
 
     def depth(place: Array) -> tuple[Array, Array]:
-        deep, (one, two) = some.depth(place)
-        return -deep, some.slope(2, two) - some.slope(1, one)
+        deep, slope, _ = some.depth(place)
+        return -deep, -slope
 
     low, high = np.minimum(top, limit)[at], np.maximum(top, limit)[at]
     start = np.clip(guess[at], low, high)
     x[at] = newton_in_bracket(depth, top[at], limit[at], start, _CLOSE * graphs.pairs.pitch)
-    return graphs.depth(x)[1]
+    return graphs.depth(x)[2]
 
 
 def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:

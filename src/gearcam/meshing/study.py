@@ -131,7 +131,12 @@ class Meshing:
         return np.concatenate([getattr(block, name) for block in self.blocks])
 
 
-def study(gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None = None) -> Meshing:
+def study(
+    gears: tuple[Gear, Gear],
+    spec: MeshingSpec,
+    progress: Progress | None = None,
+    designed: tuple[FlankPairs, ...] = (),
+) -> Meshing:
     """Study a pair.
 
     Parameters
@@ -142,6 +147,8 @@ def study(gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None
         Settings.
     progress : callable, optional
         Called with ``"meshing"``, the phases done and their number.
+    designed : tuple of FlankPairs
+        Both sides of the pair as designed, where they are known already.
 
     Returns
     -------
@@ -153,7 +160,7 @@ def study(gears: tuple[Gear, Gear], spec: MeshingSpec, progress: Progress | None
     InfeasibleError
         If the wheels do not reach each other, or the overclosure is lost in rounding.
     """
-    return run(mount(gears, spec), progress)
+    return run(mount(gears, spec, designed), progress)
 
 
 def run(setup: Setup, progress: Progress | None = None) -> Meshing:
@@ -171,7 +178,9 @@ def run(setup: Setup, progress: Progress | None = None) -> Meshing:
     return Meshing(setup=setup, phi1=phi1[:done], asked=len(phi1), blocks=blocks)
 
 
-def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
+def mount(
+    gears: tuple[Gear, Gear], spec: MeshingSpec, designed: tuple[FlankPairs, ...] = ()
+) -> Setup:
     """Put a pair on its shafts, with outlines as fine as the overclosure asks for.
 
     Parameters
@@ -180,6 +189,8 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
         The wheels.
     spec : MeshingSpec
         Settings.
+    designed : tuple of FlankPairs
+        Both sides of the pair as designed, where they are known already.
 
     Returns
     -------
@@ -192,7 +203,8 @@ def mount(gears: tuple[Gear, Gear], spec: MeshingSpec) -> Setup:
     """
     pair = gears[0].pair
     distance = _distance(pair, spec)
-    pairs = {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
+    pairs = {one.side: one for one in designed if one.distance == distance}
+    pairs = pairs or {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
     side = DRIVE if spec.overclosure > 0.0 else COAST
     grid = np.linspace(0.0, pairs[side].travel, 20 * len(pairs[side].numbers))
     levers = contacts(pairs[side], grid).lever[0]

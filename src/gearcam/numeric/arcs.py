@@ -12,7 +12,7 @@ Refused: runs that do not join to a closed chain, tolerances that are not positi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -22,8 +22,15 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs, off_circle
 from gearcam.numeric.contour import Run
-from gearcam.numeric.fitting import RunPoints, largest, longest_pieces, points_to_fit
-from gearcam.numeric.hermite import on_cubics
+from gearcam.numeric.fitting import (
+    Checks,
+    RunPoints,
+    checks_of,
+    largest,
+    longest_pieces,
+    points_to_fit,
+    turns,
+)
 
 MAX_TURN = 0.5 * np.pi
 """Largest angle that one biarc may turn through, rad: keeps its two arcs short of a half circle,
@@ -42,28 +49,21 @@ NEAR = 0.02
 WIDEST = np.tan(1.0)
 """Tangent of the largest half of the angle through which one arc may turn."""
 
-CHECK_PART = 0.02
-"""Part of the tolerance by which the arcs may leave the curve unseen between two checks."""
-
-REACH = 3
-"""Steps beside a bend over which an arc may carry on its curvature."""
-
-MOST_CHECKS = 50
-"""Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
+_BLOCK = 64
+"""Points of a long run that are looked at as one, for how far the tangent turns."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Curves:
-    """RunPoints of points, the angle that the tangent has `turned` so far, and where to check.
+    """Points, the angle that the tangent has `turned` so far, and where distances are taken.
 
-    Distances are taken at the `checks`: the points, and more between them where points are sparse
-    beside a sharper bend; `place` is where each point stands among the checks.
+    `ranges` holds the least and the largest angle of each `_BLOCK` points, (2, n).
     """
 
     rows: RunPoints
     turned: Array
-    checks: Plane
-    place: Ints
+    ranges: Array
+    checks: Checks
 
 
 class _Biarcs(NamedTuple):
@@ -154,52 +154,44 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
 
 
 def _curves(rows: RunPoints, tolerance: float) -> _Curves:
-    steps = np.angle(rows.tangents[1:] * np.conj(rows.tangents[:-1]))
-    turned = np.append(0.0, np.cumsum(steps))
-    of = np.repeat(np.arange(len(rows.first)), rows.last - rows.first + 1)
-    parts = _checks(np.abs(np.diff(rows.points)), steps, of, tolerance)
-    return _Curves(rows, turned, *_between(rows.points, rows.tangents, parts))
-
-
-def _checks(length: Array, turn: Array, of: Ints, tolerance: float) -> Ints:
-    """Return into how many parts each step of runs is cut for checking.
-
-    Next to a sharp bend an arc may carry on the bend's curvature over a long, flat step and leave
-    the curve between its ends: such a step is cut as finely as the bend asks for.
-    """
-    inside = of[1:] == of[:-1]
-    bend = np.divide(np.abs(turn), length, out=np.zeros_like(length), where=inside)
-    sharpest = bend.copy()
-    for away in range(1, REACH + 1):
-        beside = of[1:-away] == of[1 + away :]
-        for near, far in (
-            (slice(None, -away), slice(away, None)),
-            (slice(away, None), slice(None, -away)),
-        ):
-            sharpest[near] = np.maximum(sharpest[near], np.where(beside, bend[far], 0.0))
-    parts = np.ceil(length * np.sqrt(sharpest / (8 * CHECK_PART * tolerance)))
-    return np.where(inside, np.clip(parts, 1, MOST_CHECKS), 1).astype(np.int64)
-
-
-def _between(points: Plane, tangents: Plane, parts: Ints) -> tuple[Plane, Ints]:
-    """Return points with others between them (cubic Hermite), and where the points stand."""
-    place = np.append(0, np.cumsum(parts))
-    index = np.repeat(np.arange(len(parts)), parts)
-    number = np.arange(len(index)) - place[index]
-    checks, inner = points[np.append(index, len(parts))], np.flatnonzero(number)
-    share = number[inner] / parts[index[inner]]
-    checks[inner] = on_cubics(points, tangents, index[inner], share)[0]
-    return checks, place
+    turned = np.append(0.0, np.cumsum(turns(rows.tangents)))
+    blocks = np.arange(0, len(turned), _BLOCK)
+    ranges = np.stack([end.reduceat(turned, blocks) for end in (np.minimum, np.maximum)])
+    return _Curves(rows, turned, ranges, checks_of(rows, tolerance, even=True))
 
 
 def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
-    """Return the last indices to which the tangent turns by no more than `MAX_TURN`."""
+    """Return the last indices to which the tangent turns by no more than `MAX_TURN`.
+
+    The first that is beyond is sought among the next few points, then among blocks of them, and
+    then in its block: the way to it may be as long as the run.
+    """
+    begin = curves.turned[start]
+
+    def point(index: Ints, of: Ints) -> Mask:
+        return np.abs(curves.turned[index] - begin[of]) > MAX_TURN
+
+    def block(index: Ints, of: Ints) -> Mask:
+        low, high = curves.ranges[:, index]
+        return np.maximum(high - begin[of], begin[of] - low) > MAX_TURN
+
+    beyond = last + 1
+    edge = np.minimum(_BLOCK * (start // _BLOCK + 1), beyond)
+    near = _first(point, start + 1, edge)
+    sought = (near == edge) & (edge < beyond)
+    number = _first(block, edge // _BLOCK, np.where(sought, last // _BLOCK + 1, 0))
+    inside = np.where(sought, np.minimum(_BLOCK * number, beyond), beyond)
+    far = _first(point, inside, np.minimum(inside + _BLOCK, beyond))
+    return np.maximum(np.where(sought, far, near) - 1, start + 1)
+
+
+def _first(is_it: Callable[[Ints, Ints], Mask], low: Ints, high: Ints) -> Ints:
+    """Return the first numbers in ranges of which it is true, the upper end where of none."""
 
     def short(index: Ints, of: Ints) -> Array:
-        over = np.abs(curves.turned[index] - curves.turned[start[of]]) > MAX_TURN
-        return np.where(over, last[of] + 1 - index, 0)
+        return np.where(is_it(index, of), high[of] - index, 0)
 
-    return np.maximum(last - largest(short, start + 1, last + 1).astype(np.int64), start + 1)
+    return high - largest(short, low, high).astype(np.int64)
 
 
 def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:
@@ -240,10 +232,11 @@ def _errors(curves: _Curves, start: Ints, end: Ints) -> Array:
     bend = 2 * (chord * back).imag / square
 
     def away(index: Ints, of: Ints) -> Array:
-        points = curves.checks[index]
+        points = curves.checks.points[index]
         beyond = ((points - made.joint[of]) * back[1, of]).real >= 0
         side = (beyond & ~made.single[of]).astype(np.int64)
         return off_circle((points - begin[side, of]) * back[side, of], bend[side, of])
 
-    stop = np.where(made.fails, 0, curves.place[end])
-    return np.where(made.fails, np.inf, largest(away, curves.place[start] + 1, stop))
+    place = curves.checks.place
+    stop = np.where(made.fails, 0, place[end])
+    return np.where(made.fails, np.inf, largest(away, place[start] + 1, stop))

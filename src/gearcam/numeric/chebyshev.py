@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -175,9 +174,9 @@ def expand(
     nodes, to_coefficients = _basis(degree)
     halvings = (_FINEST // cuts).bit_length() - 1
     parts = np.ceil(cuts * np.diff(grid) / span).astype(int)
-    inner = [np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(grid), parts, strict=True)]
-    knots = np.concatenate([grid[:1], *inner])
-    low, high = knots[:-1], knots[1:]
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    low = grid[:-1].repeat(parts) + number * (np.diff(grid) / parts).repeat(parts)
+    high = np.append(low[1:], grid[-1])
     done: list[tuple[Array, Array, Array]] = []
     scale = error = 0.0
     before = np.full(low.shape, np.inf)

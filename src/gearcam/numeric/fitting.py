@@ -13,6 +13,7 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Run
+from gearcam.numeric.hermite import on_cubics
 
 _AIM: Final = 0.985
 """Part of the predicted length that the search tries: a little short, so that most succeed."""
@@ -25,6 +26,19 @@ _FEW: Final = 8
 
 _GROWTH: Final = 10.0
 """Growth of a length from one trial to the next at most: very small errors predict nothing."""
+
+
+_CHECK_PART: Final = 0.02
+"""Part of the tolerance by which a curve may leave the points unseen between two checks."""
+
+_REACH: Final = 3
+"""Steps beside a bend over which a curve may carry on its curvature."""
+
+_SHARPER: Final = 2.0
+"""How many times as sharp as its neighbour a bend is not even."""
+
+_MOST_CHECKS: Final = 50
+"""Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
 
 
 class RunPoints(NamedTuple):
@@ -72,6 +86,70 @@ def points_to_fit(runs: Sequence[Run], tolerance: float) -> RunPoints:
     if (last <= first).any():
         raise ValueError("a run needs at least two different points")
     return RunPoints(points[kept], tangents[kept], first, last)
+
+
+class Checks(NamedTuple):
+    """Where distances are taken: the points of runs, and more between them where they are sparse.
+
+    `points`, mm, and unit `tangents` there, complex; `place` is where each point of the runs stands
+    among them.
+    """
+
+    points: Plane
+    tangents: Plane
+    place: Ints
+
+
+def turns(tangents: Plane) -> Array:
+    """Return by what angles `tangents` turn from each to the next, rad."""
+    return np.angle(tangents[1:] * np.conj(tangents[:-1]))
+
+
+def checks_of(rows: RunPoints, tolerance: float, *, even: bool) -> Checks:
+    """Return where the distances of a fit are taken.
+
+    Next to a sharp bend what is fitted may carry on the bend's curvature over a long, flat step and
+    leave the curve between its ends: such a step is cut as finely as the bend asks for.
+
+    Parameters
+    ----------
+    rows : RunPoints
+        What is fitted to.
+    tolerance : float, mm
+        Of the fit.
+    even : bool
+        Whether steps are cut where the curve bends evenly, too, if its points are sparse there.
+    """
+    points, tangents = rows.points, rows.tangents
+    of = np.repeat(np.arange(len(rows.first)), rows.last - rows.first + 1)
+    length = np.abs(np.diff(points))
+    inside = of[1:] == of[:-1]
+    bend = np.divide(np.abs(turns(tangents)), length, out=np.zeros_like(length), where=inside)
+    sharpest = bend.copy()
+    for away in range(1, _REACH + 1):
+        beside = of[1:-away] == of[1 + away :]
+        for near, far in (
+            (slice(None, -away), slice(away, None)),
+            (slice(away, None), slice(None, -away)),
+        ):
+            sharpest[near] = np.maximum(sharpest[near], np.where(beside, bend[far], 0.0))
+    if not even:
+        sharpest[sharpest < _SHARPER * bend] = 0.0
+    parts = np.ceil(length * np.sqrt(sharpest / (8 * _CHECK_PART * tolerance)))
+    parts = np.where(inside, np.clip(parts, 1, _MOST_CHECKS), 1).astype(np.int64)
+    return _between(points, tangents, parts)
+
+
+def _between(points: Plane, tangents: Plane, parts: Ints) -> Checks:
+    """Return points with others between them, on cubics, so many in each step."""
+    place = np.append(0, np.cumsum(parts))
+    index = np.repeat(np.arange(len(parts)), parts)
+    number = np.arange(len(index)) - place[index]
+    whole = np.append(index, len(parts))
+    checks, slopes, inner = points[whole], tangents[whole], np.flatnonzero(number)
+    share = number[inner] / parts[index[inner]]
+    checks[inner], slopes[inner] = on_cubics(points, tangents, index[inner], share)
+    return Checks(checks, slopes, place)
 
 
 def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Array:

@@ -37,6 +37,10 @@ with."""
 _FLAT = 1e-8
 """Share of an interval to which extremes are placed: there a value is flat, good to rounding."""
 
+_BLOCK = 1 << 15
+"""Places at which pieces are evaluated at once: of more, the arrays between, several for each
+parameter, leave the processor's cache, and the allocator gives them back."""
+
 
 @dataclass(frozen=True, eq=False)
 class Piece(Brief):
@@ -107,7 +111,9 @@ class Piecewise(Brief):
         jet = piece(Jet.variable(x.ravel(), order)) + self.offsets[0]
         return [values.reshape(x.shape) for values in jet.derivatives()]
 
-    def on_pieces(self, index: Ints, x: Array, order: int) -> Array:
+    def on_pieces(
+        self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None = None
+    ) -> Array:
         """Return function and derivatives by given pieces, right at knots too.
 
         Parameters
@@ -118,11 +124,23 @@ class Piecewise(Brief):
             Places in or at the ends of them.
         order : int
             Of the last derivative.
+        moved : callable, optional
+            ``moved(parameters) -> parameters``: what is done to those of the pieces at each place.
 
         Returns
         -------
         (order + 1, n) array
         """
+        result = np.empty((order + 1, x.size))
+        for begin in range(0, x.size, _BLOCK):
+            part = slice(begin, begin + _BLOCK)
+            result[:, part] = self._some(index[part], x[part], order, moved)
+        return result
+
+    def _some(
+        self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None
+    ) -> Array:
+        """Return what `on_pieces` does, at once."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
         family = numbers.take(index)
@@ -130,7 +148,8 @@ class Piecewise(Brief):
             here = np.flatnonzero(family == number) if len(functions) > 1 else slice(None)
             which = index[here]
             if which.size:
-                jet = function(Jet.variable(x[here], order), *columns.take(which, 1, mode="clip"))
+                given = columns.take(which, 1, mode="clip")
+                jet = function(Jet.variable(x[here], order), *(moved(given) if moved else given))
                 for k, values in enumerate((jet + self.offsets[which]).derivatives()):
                     result[k, here] = values
         return result

@@ -47,6 +47,8 @@ def newton_in_bracket(
         The roots. Where the function does not change sign, the end that is nearer to zero.
     """
     a, b, x = (np.array(v, dtype=float) for v in np.broadcast_arrays(low, high, start))
+    if x.size == 0:
+        return x
     for number in range(_STEPS):
         value, slope = function(x)
         below = value < 0.0

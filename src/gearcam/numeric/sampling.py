@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -85,6 +85,21 @@ class Curves(Protocol):
         ...
 
 
+class _Chords(NamedTuple):
+    """Chords of a polygon.
+
+    `counts` between corners, `vertices` by their J and their `points` (start and end), `errors`,
+    which chords are `rough`, and the share of those that are off by too much, `bad`.
+    """
+
+    counts: Ints
+    vertices: Array
+    points: Plane
+    errors: Array
+    rough: Mask
+    bad: float
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sampler(Brief):
     """Curves with the density of points that a tolerance asks for.
@@ -154,19 +169,19 @@ class Sampler(Brief):
     @cached_property
     def chords(self) -> tuple[Array, Plane, float]:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
-        vertices = self._spread(np.append(self.corners, self.least), self.density, self.density)
-        ends = self._ends(vertices)
-        errors, rough = self._errors(vertices, ends)
+        made = self._spread(np.append(self.corners, self.least), self.density, self.density)
         for _ in range(_ROUNDS):
-            if np.mean(errors > _MARGIN * self.tolerance) <= _FEW:
+            if made.bad <= _FEW:
                 break
             # The error that a chord has, not the one that its J promised, says how long it may be.
-            effort = np.concatenate([[0.0], np.cumsum(np.sqrt(errors / self.tolerance) + _RISING)])
-            at_corners = np.interp(np.append(self.corners, self.least), vertices, effort)
-            vertices = self._spread(at_corners, effort, vertices)
-            ends = self._ends(vertices)
-            errors, rough = self._errors(vertices, ends)
-        points = ends[0]
+            steps = np.sqrt(made.errors / self.tolerance) + _RISING
+            effort = np.concatenate([[0.0], np.cumsum(steps)])
+            at_corners = np.interp(np.append(self.corners, self.least), made.vertices, effort)
+            anew = self._spread(at_corners, effort, made.vertices, made.counts)
+            if anew.bad >= made.bad:
+                break
+            made = anew
+        vertices, points, errors, rough = made.vertices, made.points, made.errors, made.rough
         for _ in range(_ROUNDS):
             bad = errors > _MARGIN * self.tolerance
             if not bad.any():
@@ -182,15 +197,26 @@ class Sampler(Brief):
             errors[halves] = self._measure(vertices, points, halves, rough[halves], new)
         return vertices, points[:-1] if self.closed else points, float(errors.max())
 
-    def _spread(self, ends: Array, effort: Array, places: Array) -> Array:
-        """Spread vertices evenly over `effort` (known at `places`) between `ends`: their J."""
-        counts = np.maximum(np.ceil(np.diff(ends) / _FILL).astype(int), 1)
+    def _spread(
+        self, ends: Array, effort: Array, places: Array, least: Ints | None = None
+    ) -> _Chords:
+        """Spread vertices evenly over `effort` (known at `places`) between `ends`.
+
+        With `least` chords between corners: with fewer than before, whose errors only were uneven,
+        it would go to and fro.
+        """
+        counts = np.maximum(
+            np.ceil(np.diff(ends) / _FILL).astype(int), 1 if least is None else least
+        )
         first = np.repeat(ends[:-1], counts)
         step = np.repeat(np.diff(ends) / counts, counts)
         number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
         vertices = np.interp(np.append(first + number * step, ends[-1]), effort, places)
         vertices[np.cumsum(counts)[:-1]] = self.corners[1:]
-        return vertices
+        at = self._ends(vertices)
+        errors, rough = self._errors(vertices, at)
+        bad = float(np.mean(errors > _MARGIN * self.tolerance))
+        return _Chords(counts, vertices, at[0], errors, rough, bad)
 
     def _ends(self, vertices: Array) -> Plane:
         """Points and tangents, (2, n), at the vertices; of a closed polygon the first repeated."""

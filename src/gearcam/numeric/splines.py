@@ -20,7 +20,14 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
-from gearcam.numeric.fitting import RunPoints, largest, longest_pieces, points_to_fit
+from gearcam.numeric.fitting import (
+    Checks,
+    RunPoints,
+    checks_of,
+    largest,
+    longest_pieces,
+    points_to_fit,
+)
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 DEGREE: Final = 3
@@ -77,8 +84,15 @@ def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
     rows = points_to_fit(runs, tolerance)
     p, t, first, last = rows
     way = np.append(0.0, np.cumsum(hermite_arms(p, t)))
+    checks = checks_of(rows, tolerance, even=False)
+    gone = np.interp(np.arange(len(checks.points)), checks.place, way)  # steps are cut evenly
     start, end = longest_pieces(
-        partial(_errors, rows, way), lambda _, last: last, rows, tolerance, 4, _NEAR
+        partial(_errors, rows, way, checks, gone),
+        lambda _, last: last,
+        rows,
+        tolerance,
+        4,
+        _NEAR,
     )
     arms = (way[end] - way[start]) / 3.0
     inner = np.stack([p[start] + arms * t[start], p[end] - arms * t[end]], axis=1)
@@ -91,8 +105,10 @@ def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
     return made
 
 
-def _errors(rows: RunPoints, way: Array, start: Ints, end: Ints) -> Array:
-    """Return the largest distances of inner points from the cubics that join two points."""
+def _errors(
+    rows: RunPoints, way: Array, checks: Checks, gone: Array, start: Ints, end: Ints
+) -> Array:
+    """Return the largest distances of checks between points from the cubics that join those."""
     p, t = rows.points, rows.tangents
     length = way[end] - way[start]
     chord, first, second = p[end] - p[start], length * t[start], length * t[end]
@@ -100,10 +116,11 @@ def _errors(rows: RunPoints, way: Array, start: Ints, end: Ints) -> Array:
 
     def away(index: Ints, of: Ints) -> Array:
         begin = start[of]
-        u = (way[index] - way[begin]) / length[of]
-        miss = p[begin] + hermite_cubic(chord[of], first[of], second[of], u)[0] - p[index]
+        u = (gone[index] - way[begin]) / length[of]
+        cubic = p[begin] + hermite_cubic(chord[of], first[of], second[of], u)[0]
+        miss = cubic - checks.points[index]
         # across the curve; what is along it only shifts the parameter, and counts by its square
-        across = np.abs((miss * np.conj(t[index])).imag)
+        across = np.abs((miss * np.conj(checks.tangents[index])).imag)
         return across + 0.5 * bend[of] * np.abs(miss) ** 2
 
-    return largest(away, start + 1, end)
+    return largest(away, checks.place[start] + 1, checks.place[end])

@@ -35,8 +35,11 @@ _GRAZE: Final = 1e-9
 _VERTICES: Final = 0.95
 """Part of the tolerance that the polygon's chords may take; the rest covers the dense points."""
 
-_POINT: Final = 1e-9
+_GRAIN: Final = 1e-3
 """Length in tolerances below which a stretch is a point."""
+
+_TURN: Final = 1e-6
+"""Angle, rad, by which a tangent turns at a corner: far above rounding."""
 
 _PLACES: Final = 65
 """Places on each run at which it is asked whether a parallel follows it."""
@@ -189,7 +192,7 @@ def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
     """Put runs together, drawn within the tolerance, and prove that they do not cross."""
     from shapely import LinearRing, get_coordinates, linestrings, simplify
 
-    real = [run for run in runs if float(np.ptp(run.points, axis=0).max()) > _POINT * old.tolerance]
+    real = [piece for run in runs for piece in _cut(run, _GRAIN * old.tolerance)]
     lines: Any = np.array([linestrings(run.points) for run in real])
     thinned: Any = simplify(lines, _VERTICES * old.tolerance, preserve_topology=False)
     vertices = np.vstack([get_coordinates(line)[:-1] for line in thinned])
@@ -203,6 +206,30 @@ def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
     if not ring.is_simple or contour.area <= 0.0:
         raise too_far(old, by)
     return contour
+
+
+def _cut(run: Run, grain: float) -> list[Run]:
+    """Return the pieces of a run between corners: arcs of the disc's own radius that have shrunk.
+
+    A stretch shorter than a `grain`, mm, is a point, and a corner where the tangent turns in it.
+    """
+    steps = np.hypot(*np.diff(run.points, axis=0).T)
+    groups = np.append(0, np.flatnonzero(np.diff(steps > grain)) + 1)
+    long = np.add.reduceat(steps, groups) > grain
+    kept = np.repeat(long, np.diff(np.append(groups, len(steps))))
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], kept, [0]])))
+    if not ends.size:
+        return []
+    low, high, tangents = ends[::2], ends[1::2], as_complex(run.tangents)
+    corner = np.abs(np.angle(tangents[low[1:]] * np.conj(tangents[high[:-1]]))) > _TURN
+    low, high = low[np.append(True, corner)], high[np.append(corner, True)]
+    pieces = []
+    for first, last in zip(low.tolist(), high.tolist(), strict=True):
+        points = run.points[first : last + 1].copy()
+        points[0] = pieces[-1].points[-1] if pieces else points[0]
+        inside = tuple(joint - first for joint in run.joints if first < joint < last)
+        pieces.append(Run(points=points, tangents=run.tangents[first : last + 1], joints=inside))
+    return pieces
 
 
 def touches(contour: Contour, points: Plane, normals: Plane, by: float) -> Mask:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from html import escape
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
@@ -24,6 +23,8 @@ def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
 
 def framed(result: Result) -> str:
     """Return the page of a `result` as HTML that a notebook shows: a frame, without solids."""
+    from html import escape
+
     from gearcam.report.page import document, page
 
     shown = escape(page(document(result, seek=False)).decode())

@@ -45,5 +45,7 @@ def _assembled(result: Result, chords: float) -> Mapping[str, Mesh]:
     """Return the solids of a result, where its own are finer than `chords` with those."""
     if (result.design.output.chord_tolerance or 0.0) < chords:
         coarse = result.design.with_({"output.chord_tolerance_mm": chords})
+        known = {name: getattr(result, name) for name in result.before_output}
         result = type(result)(coarse, result.tolerances)
-    return KINDS[result.design.kind].room("files").assembled(result, {})
+        vars(result).update(known)
+    return KINDS[result.design.kind].room("files").assembled(result)

@@ -17,6 +17,7 @@ from typing import Final, Literal
 
 import numpy as np
 
+from gearcam.display import Brief
 from gearcam.drawings import OUTER_WALL, OUTLINE, THROUGH, Feature
 from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
@@ -75,7 +76,7 @@ def text_width(text: str, height: float = HEIGHT) -> float:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Text:
+class Text(Brief):
     """A line of text.
 
     Parameters
@@ -100,7 +101,7 @@ class Text:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LinearDimension:
+class LinearDimension(Brief):
     """A distance of two points along x or y.
 
     Parameters
@@ -137,7 +138,7 @@ class LinearDimension:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RoundDimension:
+class RoundDimension(Brief):
     """A diameter or a radius.
 
     Parameters
@@ -193,7 +194,7 @@ Dimension = LinearDimension | RoundDimension
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class DrawnDimension:
+class DrawnDimension(Brief):
     """A dimension as it is drawn: `lines` (2, 2) and arrow `heads` (3, 2), mm, and its `text`."""
 
     lines: tuple[Array, ...]
@@ -202,7 +203,7 @@ class DrawnDimension:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sheet:
+class Sheet(Brief):
     """A workshop drawing.
 
     Parameters

@@ -8,11 +8,12 @@ import time
 import webbrowser
 from argparse import ArgumentParser
 from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from typing import Final
 
 from gearcam.console import complain, say
 from gearcam.designs.reader import content_of
+from gearcam.interrupts import unbroken
 from gearcam.view.server import Server
 from gearcam.view.session import Session, State
 from gearcam.view.watch import PAUSE, Watch
@@ -54,11 +55,12 @@ def view(file: str, port: int = 0, *, browser: bool = True) -> None:
     with ProcessPoolExecutor(count, mp_context=context, initializer=begin) as workers:
         session = Session(file, workers, count, lambda state: _tell(file, state))
         with Server(session, port) as server:
-            threading.Thread(target=server.serve_forever, daemon=True).start()
-            say(f"{file}: shown at {server.address} until Ctrl-C")
-            if browser:
-                webbrowser.open(server.address)
             try:
+                with unbroken():
+                    threading.Thread(target=server.serve_forever, daemon=True).start()
+                say(f"{file}: shown at {server.address} until Ctrl-C")
+                if browser:
+                    webbrowser.open(server.address)
                 _follow(session)
             except KeyboardInterrupt:
                 say("the view has ended")
@@ -66,6 +68,8 @@ def view(file: str, port: int = 0, *, browser: bool = True) -> None:
                 session.end()
                 server.shutdown()
                 workers.shutdown(wait=False, cancel_futures=True)
+                for worker in active_children():  # one that still builds would be waited for
+                    worker.kill()
 
 
 def _follow(session: Session) -> None:
@@ -74,7 +78,8 @@ def _follow(session: Session) -> None:
     while True:
         changed, content = watch.look()
         if changed:
-            session.refresh(content)
+            with unbroken():  # workers begin
+                session.refresh(content)
         time.sleep(PAUSE)
 
 

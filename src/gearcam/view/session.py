@@ -149,6 +149,8 @@ class Session:
                 self._set(error=reply["error"])
 
     def _set(self, **changes: Any) -> None:
+        if self.ended:  # its workers have gone, which is no news
+            return
         self.state = replace(self.state, number=self.state.number + 1, **changes)
         self._news.notify_all()
         self._notice(self.state)

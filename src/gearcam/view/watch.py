@@ -9,8 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
+from gearcam.designs import reader
 from gearcam.designs.reader import decoded, document_in
 from gearcam.errors import DesignError
+from gearcam.laws import columns
+from gearcam.reading import UnreadableError, read
 
 PAUSE: Final = 0.1
 """Between two looks, s: what an eye does not notice."""
@@ -48,7 +51,7 @@ class Watch:
         content : bytes or None
             None where it cannot be read.
         """
-        content = _content(self.file)
+        content = _content(self.file, reader.LARGEST)
         if not content and self._gone < _GONE:
             self._gone += 1
             return False, content
@@ -74,7 +77,7 @@ class Watch:
         same = before is not None and before[:2] == (found.st_mtime_ns, found.st_size)
         if before is not None and same and time.time() - found.st_mtime > _FRESH:
             return before
-        held = hashlib.sha256(_content(name) or b"").hexdigest()
+        held = hashlib.sha256(_content(name, columns.LARGEST) or b"").hexdigest()
         return found.st_mtime_ns, found.st_size, held
 
 
@@ -109,8 +112,8 @@ def _named(part: Any) -> Iterator[str]:
             yield from _named(item)
 
 
-def _content(name: str) -> bytes | None:
+def _content(name: str, most: int) -> bytes | None:
     try:
-        return Path(name).read_bytes()
-    except (OSError, ValueError):
+        return read(name, most)
+    except UnreadableError:
         return None

@@ -19,6 +19,7 @@ from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design
 from gearcam.designs.reader import content_of, decoded, loads
 from gearcam.errors import DesignError, GearcamError, InfeasibleError
+from gearcam.interrupts import SIGNALS
 from gearcam.numeric.memory import keep_freed_memory
 from gearcam.report.page import document, draft
 from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tidy
@@ -34,8 +35,9 @@ _DONE: Final = "shown"
 
 
 def begin() -> None:
-    """Prepare a worker: who ends the server ends it too, and Ctrl-C is not its to answer."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Prepare a worker: who ends the server ends it too, and no interrupt is its to answer."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
     quieten()
     keep_freed_memory()
     parent = parent_process()

@@ -21,6 +21,7 @@ from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.result import Progress, Result
 from gearcam.tolerances import DEFAULT, Tolerances
@@ -29,8 +30,10 @@ if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.cams.mechanism import Mechanism
     from gearcam.cams.wall import PitchMotion, Wall
+    from gearcam.drawings import Drawing
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
+    from gearcam.sheets.sheet import Sheet
     from gearcam.study import Study
 
 FOLLOWED: Final = "followed.csv"
@@ -64,6 +67,7 @@ class CamResult(Result):
     """
 
     design: CamDesign
+    before_output = ("program",)
     stages = MappingProxyType(
         {"program": "program", "cam": "cam", "profile": "profile", "checks": "findings"}
     )
@@ -147,6 +151,13 @@ class CamResult(Result):
         """
         return self.motion_at(self._asked(theta))
 
+    @cached_property
+    def motion_of_turn(self) -> Columns:
+        """The table of `motion` over a turn, at both sides of all knots."""
+        turn = self.angles
+        turn = np.append(turn[turn < 2.0 * math.pi], np.nextafter(2.0 * math.pi, 0.0))
+        return self.motion_at(with_both_sides(turn, self.program.knots))
+
     def _asked(self, theta: ArrayLike | None) -> Array:
         """Return cam angles, rad, of what people give: angles, rad, or ways, mm."""
         if theta is None:
@@ -186,7 +197,7 @@ class CamResult(Result):
     @property
     def ordered(self) -> bool:
         """Whether the design orders a part: a blank, or files that are made from parts."""
-        plain = {"csv", "curvature"}
+        plain = {"csv", "curvature", "inspection"}
         blank = CamBlank()
         return self.design.blank != blank or not set(self.design.output.files) <= plain
 
@@ -201,6 +212,26 @@ class CamResult(Result):
     def part(self) -> Part:
         """The cam as a part, of several parts the first: bore, hub, holes, moved edges."""
         return self.parts[0]
+
+    @cached_property
+    def to_cut(self) -> tuple[Drawing, ...]:
+        """What a cutter follows: the parts, or paths with the kerf."""
+        from gearcam.drawings import cut_drawing
+
+        kerf = self.design.output.kerf
+        return tuple(cut_drawing(one, kerf) for one in self.form.drawings(self))
+
+    @cached_property
+    def drawing(self) -> Drawing:
+        """The assembled cam with its follower, at the angle of the design."""
+        return self.form.picture(self)
+
+    @cached_property
+    def sheets(self) -> tuple[Sheet, ...]:
+        """The workshop drawings of the parts."""
+        from gearcam.kinds.cam.drawn import sheets
+
+        return sheets(self)
 
     def _wall(self, key: str | None) -> Wall:
         """Return the wall with a key, the first where left out."""

@@ -12,8 +12,6 @@ from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 from gearcam.findings import limit_of
 from gearcam.kinds.cam.build import pressure_column, rho_column
-from gearcam.numeric.columns import Columns
-from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
 
@@ -23,13 +21,6 @@ if TYPE_CHECKING:
 _TIMES: Final = 10.0
 """Curvature of the roller, or of the pitch curve where that is more, beyond which the profile's is
 not drawn: where it is undercut its curvature grows without limit."""
-
-
-def _table(result: CamResult) -> Columns:
-    """Return the motion over a turn, at both sides of all knots."""
-    turn = result.angles
-    turn = np.append(turn[turn < 2.0 * math.pi], np.nextafter(2.0 * math.pi, 0.0))
-    return result.motion_at(with_both_sides(turn, result.program.knots))
 
 
 def _places(result: CamResult) -> tuple[str, str]:
@@ -44,7 +35,7 @@ def _knots(result: CamResult) -> tuple[MarkedPlace, ...]:
 
 
 def _of_lift(name: str, result: CamResult) -> Chart:
-    table = _table(result)
+    table = result.motion_of_turn
     column = next(column for column in table if column.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
     places, told = _places(result)
@@ -55,7 +46,7 @@ def _of_lift(name: str, result: CamResult) -> Chart:
 
 
 def _pressure_angle(result: CamResult) -> Chart:
-    table = _table(result)
+    table = result.motion_of_turn
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = math.degrees(pressure_limit(result.mechanism, given))
     places, told = _places(result)
@@ -85,7 +76,7 @@ def _radii(result: CamResult) -> dict[str, str]:
 
 
 def _curvature(result: CamResult) -> Chart:
-    table, radius = _table(result), result.mechanism.radius
+    table, radius = result.motion_of_turn, result.mechanism.radius
     with np.errstate(divide="ignore"):
         lines = {label: 1.0 / table[name] for label, name in _radii(result).items()}
     pitch = [np.abs(values).max() for label, values in lines.items() if label.startswith("pitch")]

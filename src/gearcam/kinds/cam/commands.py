@@ -8,7 +8,6 @@ from typing import Any, Final
 
 from gearcam.commands import Command
 from gearcam.designs.design import Design, demand_kind
-from gearcam.kinds.cam.design import NAME
 from gearcam.result import Progress
 from gearcam.written import Written
 
@@ -21,6 +20,8 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _adapt(design: Design, _: Mapping[str, Any]) -> Design:
+    from gearcam.kinds.cam.design import NAME
+
     return demand_kind(design, NAME)
 
 

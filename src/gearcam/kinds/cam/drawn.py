@@ -5,16 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
 from gearcam.errors import InfeasibleError
+from gearcam.export.shared import sheet_rows
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Part
 from gearcam.parts.parallel import moved, sized
+
+if TYPE_CHECKING:
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.sheets.sheet import Sheet
+
+_ROWS: Final = (
+    "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
+    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.total_lift",
+    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle_deg.rise_max",
+    "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
+    "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
+)  # fmt: skip
+"""Facts that stand in the table of the drawing."""
 
 TOOL_RADIUS: Final = "output.tool_radius_mm"
 """The key of a cutter's radius."""
@@ -125,3 +139,17 @@ def grooved(
     edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
     blank, *others = drawing.features
     return replace(drawing, features=(replace(blank, shape=edge), *others))
+
+
+def sheets(result: CamResult) -> tuple[Sheet, ...]:
+    """Return the workshop drawings of the parts of a `result`."""
+    from gearcam.sheets import wheel_sheet
+
+    facts, title = result.facts, result.design.name
+    other = f"{'prime' if result.mechanism.flat else 'base'}_radius_mm"
+    made = []
+    for number, part in enumerate(result.parts):
+        names = result.form.rows_of(number, _ROWS)
+        rows = sheet_rows(facts, [one for one in names if not one.endswith(other)])
+        made.append(wheel_sheet(part, rows, title))
+    return tuple(made)

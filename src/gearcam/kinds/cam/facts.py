@@ -6,12 +6,11 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
+from gearcam.kinds.cam.accuracy import error_rows
 from gearcam.kinds.cam.wall_facts import ends_of
 from gearcam.numerals import shown
 
@@ -169,20 +168,5 @@ def _part(result: CamResult) -> Tree | list[Tree]:
 
 def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
     """Error estimates, and how each was made."""
-    reach = max(float(np.abs(one.vertices).max()) for one in result.profiles)
-    rounding = 16.0 * np.finfo(float).eps * reach
-    rows = {"profile_mm": (rounding, "rounding of closed forms at the largest radius")}
-    if result.program.error:
-        given = result.design.follower
-        lever = (given.arm or given.pivot_distance or 0.0) if given.oscillating else 1.0
-        how = "the lift, between the places that it was computed from, and rounding"
-        rows = {"profile_mm": (lever * result.program.error + rounding, how)}
-    if not result.design.blank.clearance:
-        how = "Gauss-Legendre quadrature with half the cells, and rounding"
-        for wall in result.cam.walls:
-            prefix, size = f"{wall.key}_" if wall.key else "", wall.size
-            rows[f"{prefix}perimeter_mm"] = (size.perimeter_error, how)
-            if wall.program.closed:
-                rows[f"{prefix}area_mm2"] = (size.area_error, how)
-    kerf = result.design.output.kerf
-    return accuracy(rows, max(one.chord_error for one in result.contours), kerf, measured)
+    chord, kerf = max(one.chord_error for one in result.contours), result.design.output.kerf
+    return accuracy(error_rows(result), chord, kerf, measured)

@@ -13,16 +13,14 @@ from gearcam.export.shared import (
     drawn,
     dxf_style,
     mesh_bytes,
-    meshes,
     sheet_bytes,
-    sheet_rows,
+    solid_facts,
 )
 from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
-    from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
@@ -30,15 +28,6 @@ if TYPE_CHECKING:
     from gearcam.solids import Mesh
 
 Measured = dict[str, Any]
-
-_ROWS: Final = (
-    "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
-    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.total_lift",
-    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle_deg.rise_max",
-    "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
-    "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
-)  # fmt: skip
-"""Facts that stand in the table of the drawing."""
 
 _SHORT: Final = {"lift": "s", "velocity": "ds", "acceleration": "d2s", "jerk": "d3s"}
 """What the file calls the lift and its derivatives, by the first words of their columns."""
@@ -48,32 +37,32 @@ _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 
 
 def _dxf(result: CamResult, measured: Measured) -> Files:
-    return drawn(_cut(result), _style(result), measured)
+    return drawn(result.to_cut, _style(result), measured)
 
 
 def _cut_svg(result: CamResult, _: Measured) -> Files:
-    return cut_files(_cut(result), result.design.name, result.design.output.kerf)
+    return cut_files(result.to_cut, result.design.name, result.design.output.kerf)
 
 
 def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
-    solids = meshes(result.parts, measured)
+    solids = result.meshes
+    measured["solids"] = solid_facts(result.parts, solids)
     files = {
         f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
     }
     whole = result.form.assembly
     if whole:
-        files[f"{whole}.{kind}"] = mesh_bytes(assembled(result, measured), kind, whole)
+        files[f"{whole}.{kind}"] = mesh_bytes(assembled(result), kind, whole)
     return files
 
 
-def assembled(result: CamResult, measured: Measured) -> dict[str, Mesh]:
-    """Return the solids where they stand on the shaft (see `gearcam.export.shared.meshes`)."""
+def assembled(result: CamResult) -> dict[str, Mesh]:
+    """Return the solids where they stand on the shaft."""
     from gearcam.drawings import UNMOVED
 
-    solids = meshes(result.parts, measured)
     if not result.form.assembly:
-        return solids
-    heights = zip(solids.items(), result.form.heights(result), strict=True)
+        return result.meshes
+    heights = zip(result.meshes.items(), result.form.heights(result), strict=True)
     return {name: mesh.placed(*UNMOVED, height) for (name, mesh), height in heights}
 
 
@@ -99,19 +88,15 @@ def _style(result: CamResult) -> Any:
     return dxf_style(result.design.output, result.profile.tolerance)
 
 
-def _cut(result: CamResult) -> list[Drawing]:
-    """Return what a cutter follows: the parts, or paths with the kerf."""
-    from gearcam.drawings import cut_drawing
-
-    kerf = result.design.output.kerf
-    return [cut_drawing(one, kerf) for one in result.form.drawings(result)]
-
-
 def _picture(result: CamResult, _: Measured) -> Files:
     from gearcam.export.svg import svg_bytes
 
-    drawing, notes = result.form.picture(result), result.facts.headline
-    return {f"{drawing.name}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
+    notes = result.facts.headline
+    return {
+        f"{result.drawing.name}.svg": svg_bytes(
+            result.drawing, title=result.design.name, notes=notes
+        )
+    }
 
 
 def _step(result: CamResult, _: Measured) -> Files:
@@ -133,16 +118,9 @@ def _step(result: CamResult, _: Measured) -> Files:
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
-    from gearcam.sheets import wheel_sheet
-
-    other = "prime" if result.mechanism.flat else "base"
-    style, facts = _style(result), result.facts
-    files: Files = {}
-    for number, part in enumerate(result.parts):
-        names = result.form.rows_of(number, _ROWS)
-        rows = sheet_rows(facts, [one for one in names if not one.endswith(f"{other}_radius_mm")])
-        files |= sheet_bytes(wheel_sheet(part, rows, result.design.name), style, ending)
-    return files
+    style = _style(result)
+    made = [sheet_bytes(sheet, style, ending) for sheet in result.sheets]
+    return {name: data for files in made for name, data in files.items()}
 
 
 def _inspection(result: CamResult, _: Measured) -> Files:

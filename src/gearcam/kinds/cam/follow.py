@@ -16,9 +16,11 @@ from gearcam.cams.wall import Wall
 from gearcam.errors import DesignError, Problem
 from gearcam.facts import Fact
 from gearcam.findings import Finding, run_checks
+from gearcam.laws.columns import LARGEST, read_rows
 from gearcam.numeric.arguments import points
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import flatten_bulges
+from gearcam.reading import UnreadableError, read
 
 _SAGITTA = 0.01
 """Chord error of arcs that are flattened, in the design's chord tolerances."""
@@ -57,21 +59,18 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array
         if name.lower().endswith(".dxf"):
             from gearcam.export.dxf_read import read_outline
 
-            return read_outline(Path(name).read_bytes(), outer=wall.side < 0)
-        from gearcam.laws.columns import read_rows
-
+            return read_outline(read(name, LARGEST), outer=wall.side < 0)
         vertices, _ = read_rows(name).columns(_COLUMNS)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
+    except (UnreadableError, ValueError) as error:
         rule = "a DXF file with one closed outline, or a CSV file with the columns x_mm, y_mm"
-        raise DesignError([Problem(f"is no profile: {reason}", file=name, allowed=rule)]) from error
+        raise DesignError([Problem(f"is no profile: {error}", file=name, allowed=rule)]) from error
     vertices = _open(vertices)
     return vertices, np.zeros(len(vertices))
 
 
 def _open(vertices: Array) -> Array:
     """Return vertices without a last one that repeats the first."""
-    return vertices[:-1] if np.array_equal(vertices[0], vertices[-1]) else vertices
+    return vertices[:-1] if np.array_equal(vertices[:1], vertices[-1:]) else vertices
 
 
 def followed(

@@ -41,7 +41,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
     turn = np.zeros_like(theta) if slide else side * theta
     shift = np.asarray(slide * theta, dtype=np.complex128)
     back = (0.0, (-slide * pose, 0.0)) if slide else (-side * pose, (0.0, 0.0))
-    shown = result.form.picture(result).features
+    shown = result.drawing.features
     plates = [one for one in shown if one.kind not in (CENTER, FOLLOWER)]
     angle, way = _carried(motion, theta, pose)
     follower = MovingBody(

@@ -61,11 +61,11 @@ def curvature(wall: Wall) -> Tree:
     convex, concave = wall.profile_radius
     made = {"profile_min_mm": min(convex, concave)}
     whole = wall.pitch_curvature()
-    made["pitch_min_mm"] = min(convex, concave) if whole is None else 1.0 / whole.largest
+    made["pitch_min_mm"] = min(convex, concave) if whole is None else whole.least_radius
     for kind in ("rise", "return"):
         found = wall.pitch_curvature(kind)
         if found is not None:
-            made[f"pitch_{kind}_min_mm"] = 1.0 / found.largest
+            made[f"pitch_{kind}_min_mm"] = found.least_radius
     made |= {"profile_convex_min_mm": convex, "profile_concave_min_mm": concave}
     facts: Tree = {name: value for name, value in made.items() if math.isfinite(value)}
     which = f", {wall.called}" if wall.key else ""

@@ -6,17 +6,19 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, get_args
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.findings import in_order, run_checks
 from gearcam.kinds.gear_pair.columns import (
     centrode_columns,
     contact_ratio_columns,
-    contacts_at,
+    contact_rows,
     motion_columns,
 )
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.kinds.gear_pair.stages import PairStages
+from gearcam.meshing.contact import Contacts, contacts
 from gearcam.numeric.arguments import angles, one_of, whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -24,6 +26,7 @@ from gearcam.result import Progress
 from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
+    from gearcam.gears.contact import FlankPairs
     from gearcam.study import Study
 
 MESHING = "meshing.csv"
@@ -84,8 +87,14 @@ class GearPairResult(PairStages):
         InfeasibleError
             If the centrodes cannot be made.
         """
-        count = None if n is None else whole("n", n, 2)
-        return centrode_columns(self, self.centrode_angles(count))
+        if n is None:
+            return self.whole_centrodes
+        return centrode_columns(self, self.centrode_angles(whole("n", n, 2)))
+
+    @cached_property
+    def whole_centrodes(self) -> Columns:
+        """The table of `centrodes` where nothing else is asked for."""
+        return centrode_columns(self, self.centrode_angles())
 
     def motion(self, phi1: ArrayLike | None = None) -> Columns:
         """Return how the driven element moves, exactly.
@@ -146,14 +155,32 @@ class GearPairResult(PairStages):
         InfeasibleError
             If the wheels cannot be made.
         """
+        pairs, phases = self.flanks_of(side), self._phases(phi1)
+        return contact_rows(self, pairs, phases, contacts(pairs, phases))
+
+    def flanks_of(self, side: Side) -> FlankPairs:
+        """Return the pairs of flanks of a `side`; DesignError if there is no such side."""
         coast, drive = self.subject.sides
-        pairs = drive if one_of("side", side, get_args(Side)) == "drive" else coast
-        return contacts_at(self, pairs, self._phases(phi1))
+        return drive if one_of("side", side, get_args(Side)) == "drive" else coast
+
+    @cached_property
+    def touching(self) -> dict[Side, Contacts]:
+        """Where flanks of both sides touch over `phases`."""
+        return {side: contacts(self.flanks_of(side), self.phases) for side in get_args(Side)}
+
+    @cached_property
+    def centrodes_of_phases(self) -> Columns:
+        """The table of `centrodes` over `phases`."""
+        same = np.array_equal(self.phases, self.centrode_angles())  # no knots, and one turn
+        return self.whole_centrodes if same else centrode_columns(self, self.phases)
 
     @cached_property
     def paths_of_contact(self) -> dict[Side, Columns]:
         """The tables of `contact` of both sides, over `phases`."""
-        return {side: self.contact(self.phases, side) for side in get_args(Side)}
+        return {
+            side: contact_rows(self, self.flanks_of(side), self.phases, found)
+            for side, found in self.touching.items()
+        }
 
     @cached_property
     def contact_ratio(self) -> float:
@@ -214,7 +241,8 @@ class GearPairResult(PairStages):
         design = result.design
         gears = result.steps[design.meshing.step - 1]
         with result.stage("meshing"):
-            meshing = study(gears, design.meshing, progress)
+            designed = result.subject.sides if gears is result.steps[0] else ()
+            meshing = study(gears, design.meshing, progress, designed)
         if not meshing.blocks:
             raise KeyboardInterrupt
         with result.stage("checks"):
@@ -236,7 +264,8 @@ class GearPairResult(PairStages):
             return self
         design = self.design.with_({f"meshing.{key}": value for key, value in settings.items()})
         other = type(self)(design, self.tolerances)
-        vars(other).update(vars(self) | {"design": design, "timings": dict(self.timings)})
+        own = {"design": design, "timings": dict(self.timings), "sought": {}}
+        vars(other).update(vars(self) | own)
         return other
 
 

@@ -13,7 +13,6 @@ from gearcam.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 from gearcam.findings import limit_of
 from gearcam.gears.checks import KIND, undercut_curvatures
 from gearcam.gears.contact import COAST, DRIVE
-from gearcam.kinds.gear_pair.columns import centrode_columns
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -44,7 +43,7 @@ def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
 def _of_centrodes(
     title: str, unit: str, names: dict[str, str], result: GearPairResult, *, bend: bool = False
 ) -> Chart:
-    table = centrode_columns(result, result.phases)
+    table = result.centrodes_of_phases
     with np.errstate(divide="ignore"):
         lines = tuple(
             Line(label=label, x=table["phi1_deg"], y=1.0 / table[name] if bend else table[name])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.gears.contact import COAST, FlankPairs
-from gearcam.meshing.contact import contact_columns, contacts
+from gearcam.meshing.contact import Contacts, contact_columns
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 
@@ -64,9 +64,8 @@ def motion_columns(result: PairStages, phi1: Array) -> Columns:
     return Columns(columns)
 
 
-def contacts_at(result: PairStages, pairs: FlankPairs, phi1: Array) -> Columns:
-    """Return where the flanks `pairs` of a `result` touch at driver angles `phi1`, rad."""
-    found = contacts(pairs, phi1)
+def contact_rows(result: PairStages, pairs: FlankPairs, phi1: Array, found: Contacts) -> Columns:
+    """Return where the flanks `pairs` of a `result` were `found` to touch at `phi1`, rad."""
     guide = result.pair.rolling.guide
     moved = np.degrees(guide.nominal(phi1)) if guide.turns else guide.nominal(phi1)
     return Columns(

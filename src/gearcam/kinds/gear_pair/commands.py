@@ -5,15 +5,17 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.commands import Command
 from gearcam.designs.design import Design, demand_kind
 from gearcam.designs.kind import KINDS
-from gearcam.designs.table import Table
-from gearcam.kinds.gear_pair.design import NAME, GearPairDesign
 from gearcam.result import Progress
 from gearcam.written import Written
+
+if TYPE_CHECKING:
+    from gearcam.designs.table import Table
+    from gearcam.kinds.gear_pair.design import GearPairDesign
 
 _OPTIONS: Final = {"center_distance_mm": "center"}
 """Options that are not called as their keys are."""
@@ -38,12 +40,16 @@ def with_meshing(design: Design, given: Mapping[str, Any]) -> GearPairDesign:
     DesignError
         If nothing meshes in such a design, or a value is not what the file may hold.
     """
+    from gearcam.kinds.gear_pair.design import NAME
+
     pair: GearPairDesign = demand_kind(design, NAME)
     values = _table().inward(given)
     return dataclasses.replace(pair, meshing=dataclasses.replace(pair.meshing, **values))
 
 
 def _table() -> Table:
+    from gearcam.kinds.gear_pair.design import NAME
+
     return KINDS[NAME].table("meshing")
 
 

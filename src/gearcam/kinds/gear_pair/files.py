@@ -15,19 +15,18 @@ from gearcam.export.shared import (
     drawn,
     dxf_style,
     mesh_bytes,
-    meshes,
     sheet_bytes,
-    sheet_rows,
+    solid_facts,
 )
 from gearcam.kinds.gear_pair.columns import POINTS
-from gearcam.numerals import shown
 from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing, Path, Placement
+    from gearcam.drawings import Placement
     from gearcam.export.dxf import DxfStyle
     from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.stages import PairStages
     from gearcam.parts.body import Part
     from gearcam.solids import Mesh
 
@@ -35,17 +34,6 @@ Measured = dict[str, Any]
 
 PAIR: Final = "pair"
 """Stem of the files of the assembled pair."""
-
-_PAIR_ROWS: Final = ("pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm")
-_RACK_ROWS: Final = (
-    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
-    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
-)  # fmt: skip
-_GEAR_ROWS: Final = (
-    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
-    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
-)  # fmt: skip
-"""Facts that stand in the tables of drawings."""
 
 
 def _tables(result: GearPairResult, _: Measured) -> Files:
@@ -57,30 +45,7 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
     return files | {"centrodes.csv": table_bytes(centrodes)}
 
 
-def centrode_paths(result: GearPairResult) -> list[Path]:
-    """Return the centrodes of a `result` as chains, each in its wheel's own frame, driver first."""
-    from gearcam.drawings import Path
-
-    lobes = result.law.lobes
-    ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
-    if result.pair.on_rack:
-        ends[1] = result.centrode_angles()[-1]
-    paths = []
-    for gear, end in zip(result.gears, ends, strict=True):
-        closed = gear.toothing.closed
-        turn = np.linspace(0.0, end, 721)[: -1 if closed else None]
-        paths.append(Path(points=gear.centrode(turn), closed=closed))
-    return paths
-
-
-def _pair_drawing(result: GearPairResult) -> Drawing:
-    from gearcam.drawings import pair_drawing
-
-    paths = centrode_paths(result)
-    return pair_drawing(result.parts, result.pair.shift, paths, placements=placements(result))
-
-
-def placements(result: GearPairResult) -> tuple[Placement, Placement]:
+def placements(result: PairStages) -> tuple[Placement, Placement]:
     """Return how the wheels of a `result` stand when assembled: wheel 1 turned by -phi1."""
     phi1, guide = result.design.output.pose, result.pair.rolling.guide
     moved = float(guide.nominal(np.array(phi1)))
@@ -94,7 +59,7 @@ def _style(result: GearPairResult) -> DxfStyle:
 
 
 def _dxf(result: GearPairResult, measured: Measured) -> Files:
-    return drawn([*result.to_cut, _pair_drawing(result)], _style(result), measured)
+    return drawn([*result.to_cut, result.drawing], _style(result), measured)
 
 
 def _cut(result: GearPairResult, _: Measured) -> Files:
@@ -105,7 +70,7 @@ def _picture(result: GearPairResult, _: Measured) -> Files:
     from gearcam.export.svg import svg_bytes
 
     notes = result.facts.headline
-    return {"pair.svg": svg_bytes(_pair_drawing(result), title=result.design.name, notes=notes)}
+    return {"pair.svg": svg_bytes(result.drawing, title=result.design.name, notes=notes)}
 
 
 def _inspection(result: GearPairResult, _: Measured) -> Files:
@@ -131,37 +96,23 @@ def _steps(result: GearPairResult, _: Measured) -> Files:
 
 
 def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
-    solids = meshes(result.parts, measured)
+    solids = result.meshes
+    measured["solids"] = solid_facts(result.parts, solids)
     files = {
         f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
     }
-    return files | {f"{PAIR}.{kind}": mesh_bytes(assembled(result, measured), kind, PAIR)}
+    return files | {f"{PAIR}.{kind}": mesh_bytes(assembled(result), kind, PAIR)}
 
 
-def assembled(result: GearPairResult, measured: Measured) -> dict[str, Mesh]:
-    """Return the solids of both wheels where they stand (see `gearcam.export.shared.meshes`)."""
-    solids = meshes(result.parts, measured).items()
-    places = placements(result)
-    return {name: mesh.placed(*pose) for (name, mesh), pose in zip(solids, places, strict=True)}
+def assembled(result: GearPairResult) -> dict[str, Mesh]:
+    """Return the solids of both wheels where they stand."""
+    placed = zip(result.meshes.items(), placements(result), strict=True)
+    return {name: mesh.placed(*pose) for (name, mesh), pose in placed}
 
 
 def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
-    """Return the workshop drawings of both wheels and of the pair."""
-    from gearcam.sheets import pair_sheet, wheel_sheet
-
-    facts, title, pose = result.facts, result.design.name, result.design.output.pose
-    radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
-    sheets = []
-    for number, part in enumerate(result.parts):
-        own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
-        names = (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
-        sheets.append(wheel_sheet(part, sheet_rows(facts, names), title))
-    rows = {"law": result.design.law_type} | sheet_rows(facts, (*_PAIR_ROWS, *_RACK_ROWS))
-    rows["drawn at phi1"] = f"{shown(np.degrees(pose))} deg"
-    pair = _pair_drawing(result)
-    sheets.append(pair_sheet(pair, result.pair.shift, rows, title, pitch_radius=radius))
     style = _style(result)
-    made = [sheet_bytes(sheet, style, ending) for sheet in sheets]
+    made = [sheet_bytes(sheet, style, ending) for sheet in result.sheets]
     return {name: data for files in made for name, data in files.items()}
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from gearcam.drawings import CENTER, CENTRODE, CROSS_SIZE, Cross, Feature, part_features
 from gearcam.kinds.gear_pair.build import Side
 from gearcam.kinds.gear_pair.charts import DRIVER
-from gearcam.kinds.gear_pair.files import centrode_paths
+from gearcam.kinds.gear_pair.stages import CENTRODE_POINTS
+from gearcam.meshing.contact import contacts
 from gearcam.scenes import PLACES, ContactPoints, MovingBody, Scene, still
 
 if TYPE_CHECKING:
@@ -35,14 +36,15 @@ def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     Scene
         As designed: teeth touch as made, where the driven element lags by what `contact` tells.
     """
-    guide, lobes = result.pair.rolling.guide, result.law.lobes
-    phi1 = np.linspace(0.0, _end(result), places + 1)
+    guide, pose = result.pair.rolling.guide, result.design.output.pose
+    phi1 = result.turn(places)
+    end = float(phi1[-1])
     moved = guide.nominal(phi1)
     way = np.zeros_like(moved) if guide.turns else moved
     shift = np.asarray(guide.place - 1j * way, dtype=np.complex128)
     stands = ((-phi1, np.zeros_like(shift)), (guide.turns * moved, shift))
     names = ("driver", "rack" if result.pair.on_rack else "driven wheel")
-    wheels = zip(result.gears, result.parts, names, centrode_paths(result), stands, strict=True)
+    wheels = zip(result.gears, result.parts, names, result.centrode_paths, stands, strict=True)
     bodies = [_stepped(*wheel) for wheel in wheels]
     size = CROSS_SIZE * (abs(result.pair.shift) or float(np.ptp(result.gear1.outline)))
     shafts = (0.0, result.pair.shift) if guide.turns else (0.0,)
@@ -52,24 +54,16 @@ def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     lowest = [steps[0] for steps in bodies]
     behind = [step for steps in bodies for step in steps[:0:-1]]
     radius = result.pair.rolling.tracks[0].frames(phi1).p
-    turn = lobes.n1 * lobes.period if result.pair.closed else np.inf
     return Scene(
         title=result.design.name,
         driver=DRIVER,
         places=np.degrees(phi1),
         closed=result.pair.closed,
-        start=float(np.degrees(result.design.output.pose % turn)),
+        start=float(np.degrees(pose % end if result.pair.closed else min(max(pose, 0.0), end))),
         bodies=(*behind, *(lowest[::-1] if result.pair.internal else lowest), still(crosses, phi1)),
         contacts={side: _contacts(result, phi1, side) for side in get_args(Side)},
         pitch=radius * np.exp(-1j * phi1),
     )
-
-
-def _end(result: GearPairResult) -> float:
-    """Return where the driver's cycle ends, rad: after a turn, or all its travel."""
-    if result.pair.closed:
-        return result.law.lobes.n1 * result.law.period
-    return float(result.centrode_angles(2)[-1])
 
 
 def _stepped(
@@ -101,12 +95,17 @@ def _stepped(
 
 
 def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
-    """Return where teeth touch on one side of the driver's."""
-    table = result.contact(phi1, side)
-    first = [gear.profile.teeth[0][0] for gear in result.gears]
+    """Return where teeth touch on one side of the driver's; of angles of charts that is known."""
+    pairs, at = result.flanks_of(side), np.arange(len(phi1))
+    if len(phi1) == CENTRODE_POINTS + 1:
+        found, at = result.touching[side], np.searchsorted(result.phases, phi1)
+    else:
+        found = contacts(pairs, phi1)
+    own = np.isin(found.step, at)
+    j, first = found.pair[own], [gear.profile.teeth[0][0] for gear in result.gears]
     return ContactPoints(
-        start=np.searchsorted(table["phi1_deg"], np.append(np.degrees(phi1), np.inf)),
-        point=table["x_mm"] + 1j * table["y_mm"],
-        force=table["force_x"] + 1j * table["force_y"],
-        teeth=np.column_stack([table["tooth1"], table["tooth2"]]) - first + 1,
+        start=np.searchsorted(found.step[own], np.append(at, at[-1] + 1)),
+        point=found.point[own],
+        force=found.force[own],
+        teeth=np.column_stack([pairs.tooth(1, j), pairs.tooth(2, j)]) - first + 1,
     )

@@ -21,6 +21,7 @@ from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
@@ -28,15 +29,19 @@ from gearcam.parts.blank import Blank
 from gearcam.result import Result
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing
+    from gearcam.drawings import Drawing, Path
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
+    from gearcam.sheets.sheet import Sheet
 
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
 """Checks that can find something else in each step of stepped wheels."""
 
+_PLAIN = frozenset({"csv", "inspection"})
+"""Files that are made from the teeth alone."""
+
 _WHOLE = 1e-9
-"""Part of a lobe by which an end may lie beyond it: rounding."""
+"""Part of a lobe or travel by which an end may lie beyond it: rounding."""
 
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
@@ -54,6 +59,7 @@ class PairStages(Result):
     """
 
     design: GearPairDesign
+    before_output = ("law", "pair")
     stages = MappingProxyType(
         {
             "law": "law",
@@ -71,7 +77,9 @@ class PairStages(Result):
         with self.stage("law"):
             if getattr(law, "driven_travel", None) is None:  # closed
                 demand_ring(pair)
-            return law.build(lobes_of(pair), self.tolerances)
+            made = law.build(lobes_of(pair), self.tolerances)
+            _demand_reached(self.design.output.pose, made)
+        return made
 
     @cached_property
     def pair(self) -> GearPair:
@@ -196,7 +204,7 @@ class PairStages(Result):
     @property
     def ordered(self) -> bool:
         """Whether the design orders parts: a blank, or files that are made from parts."""
-        return self.design.blank != Blank() or not set(self.design.output.files) <= {"csv"}
+        return self.design.blank != Blank() or not set(self.design.output.files) <= _PLAIN
 
     @cached_property
     def parts(self) -> tuple[Part, Part]:
@@ -217,6 +225,27 @@ class PairStages(Result):
             for part in self.parts
             for step in range(len(part.contours))
         )
+
+    @cached_property
+    def centrode_paths(self) -> tuple[Path, Path]:
+        """Both centrodes as chains, each in its wheel's own frame, driver first."""
+        from gearcam.kinds.gear_pair.drawn import centrode_paths
+
+        return centrode_paths(self)
+
+    @cached_property
+    def drawing(self) -> Drawing:
+        """The pair as it is assembled, with its centrodes."""
+        from gearcam.kinds.gear_pair.drawn import assembled
+
+        return assembled(self)
+
+    @cached_property
+    def sheets(self) -> tuple[Sheet, ...]:
+        """The workshop drawings of both wheels and of the pair."""
+        from gearcam.kinds.gear_pair.drawn import sheets
+
+        return sheets(self)
 
     def centrode_angles(self, count: int | None = None) -> Array:
         """Return driver angles, rad, until both wheels close, or over the travel, both ends.
@@ -240,10 +269,13 @@ class PairStages(Result):
     @cached_property
     def phases(self) -> Array:
         """Driver angles, rad, of a turn or the whole travel, at both sides of all knots."""
-        phi1 = self.centrode_angles()
-        if self.pair.closed:
-            phi1 = phi1[phi1 <= self.law.lobes.n1 * self.law.period]
-        return with_both_sides(phi1, self.knots)
+        return with_both_sides(self.turn(CENTRODE_POINTS), self.knots)
+
+    def turn(self, steps: int) -> Array:
+        """Return driver angles, rad, of a turn or the whole travel in `steps`, both ends."""
+        closed, law = self.pair.closed, self.law
+        end = law.lobes.n1 * law.period if closed else self.centrode_angles(2)[-1]
+        return np.linspace(0.0, end, steps + 1)
 
     @property
     def knots(self) -> Array:
@@ -251,3 +283,19 @@ class PairStages(Result):
         period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
         lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
         return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])
+
+
+def _demand_reached(pose: float, law: RatioLaw) -> None:
+    """Refuse to draw an open pair at a driver angle, rad, that it never reaches."""
+    if law.lobes.closed or 0.0 <= pose <= (1.0 + _WHOLE) * law.period:
+        return
+    key, limit = "output.phi1_deg", math.degrees(min(max(pose, 0.0), law.period))
+    raise InfeasibleError(
+        "the pair never stands as it is to be drawn",
+        where=key,
+        value=math.degrees(pose),
+        limit=limit,
+        unit="deg",
+        nearest=f"the driver turns from 0 to {shown(math.degrees(law.period))} deg",
+        ways=(Way(near={key: limit}, far={key: 0.5 * math.degrees(law.period)}),),
+    )

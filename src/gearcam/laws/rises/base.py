@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
 from gearcam.display import Brief
+from gearcam.laws.displacement import EXACT
 from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
 from gearcam.registry import Registry
@@ -41,14 +42,14 @@ class Rise:
         Whether the return is the rise run backwards, ``S(1 - phi)``, instead of ``1 - S(phi)``.
     cuts : sequence of float
         Where else than at the knots the search for peaks cuts the angle: it bends sharply there.
-    error : float
-        Estimated error of S beyond rounding.
+    errors : (float, float, float, float)
+        Estimated errors of S, S', S'' and S''' beyond rounding.
     """
 
     function: Piecewise
     mirrored: bool = False
     cuts: Sequence[float] = ()
-    error: float = 0.0
+    errors: tuple[float, ...] = EXACT
 
 
 class RiseParameters(Protocol):

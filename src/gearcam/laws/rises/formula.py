@@ -9,7 +9,7 @@ from typing import Final
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.formula import Axis, Given, formula_problems, function_of
+from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of
 from gearcam.laws.rises.base import RISES, Rise
 from gearcam.laws.smoothness import demand_smooth
 from gearcam.numerals import shown
@@ -53,7 +53,7 @@ class FormulaRise(Brief):
         InfeasibleError
             Where the formula is not finite or not smooth, or does not go from 0 to 1.
         """
-        shape, error = function_of(self.formula, _AXIS, tolerances.expansion)
+        shape, _ = function_of(self.formula, _AXIS, tolerances.expansion)
         cuts = demand_smooth(shape, self.formula, _AXIS, _NAMES, tolerances)
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
@@ -67,7 +67,11 @@ class FormulaRise(Brief):
                 )
         scale = 1.0 / (end - start)
         piece = Piece(lambda x: (shape(x) - start) * scale)
-        return Rise(function=piecewise([0.0, 1.0], [piece]), cuts=cuts[1:-1].tolist(), error=error)
+        return Rise(
+            function=piecewise([0.0, 1.0], [piece]),
+            cuts=cuts[1:-1].tolist(),
+            errors=errors_of(shape),
+        )
 
 
 def _from_corner_to_corner(formula: Given, start: float, end: float) -> str:

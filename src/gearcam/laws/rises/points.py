@@ -24,6 +24,16 @@ from gearcam.tolerances import Tolerances
 
 Problem = tuple[str, int | None, str, str]
 
+_MOVES: Final = (1, 2)
+"""How values of a table are moved to see what rounding does: every one, or every two the other
+way."""
+
+_ROUNDING: Final = 24.0 * float(np.finfo(float).eps)
+"""By what part."""
+
+_SHARES: Final = np.array([[0.0], [0.25], [0.5], [0.75]])
+"""Places between rows at which the change is looked at."""
+
 _FEWEST: Final = 3
 _MOST: Final = 2000
 """Rows of a table: one every fifth of a degree of a full turn."""
@@ -161,7 +171,8 @@ class TableRise(FromFile):
             raise InfeasibleError(message, where=where, nearest=rule)
         points = self.points[0].copy()
         points[0], points[-1] = (0.0, 0.0), (1.0, 1.0)
-        return Rise(function=_through(points, self.start, self.end))
+        ends = self.start, self.end
+        return Rise(function=_through(points, *ends), errors=_errors(points, *ends))
 
 
 def _point_problems(points: Array) -> Iterator[Problem]:
@@ -184,6 +195,25 @@ def _through(points: Array, start: tuple[float, float], end: tuple[float, float]
     """Return the quintic spline through points, with S' and S'' given at its ends."""
     x, y = points.T
     return spline(x, *coefficients(x, y, chain_slopes(x, y, start, end), ring=False))
+
+
+def _errors(
+    points: Array, start: tuple[float, float], end: tuple[float, float]
+) -> tuple[float, ...]:
+    """Estimate what rounding does to the spline and its derivatives: the change with moved points.
+
+    Its equations are solved again for values that are moved by rounding, each its own way.
+    """
+    x, y = points.T
+    places = (x[:-1] + np.diff(x) * _SHARES).ravel(order="F")
+    own = np.array(_through(points, start, end).derivatives(places, 3))
+    changes = []
+    for step in _MOVES:
+        sign = (-1.0) ** (np.arange(len(y)) // step)
+        moved = np.column_stack([x, y * (1.0 + _ROUNDING * sign)])
+        found = np.array(_through(moved, start, end).derivatives(places, 3))
+        changes.append(np.abs(found - own).max(axis=1))
+    return tuple(np.max(changes, axis=0).tolist())
 
 
 RISES.register(

@@ -9,12 +9,22 @@ import math
 from collections.abc import Callable
 from typing import Any, Final
 
-from random_draw import Draw, short
+from gearcam.draws.blank import blank
+from gearcam.draws.draw import Draw, short
+from gearcam.draws.output import asked
 
 Rise = dict[str, Any]
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """They take turns; a point is another word for a knife edge."""
+
+
+_SHARES: Final = {
+    "svg": 0.8, "dxf": 0.3, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
+    "drawing-dxf": 0.05, "stl": 0.1, "3mf": 0.05, "glb": 0.05, "step": 0.01,
+    "tool-path": 0.2, "curvature": 0.3, "report": 0.06,
+}  # fmt: skip
+"""Share of cams that have each file beside their tables, by what it costs."""
 
 
 def _derivatives(d: Draw) -> Rise:
@@ -149,7 +159,7 @@ def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str,
     follower: dict[str, Any] = {"type": kind}
     radius = 0.0
     if kind == "roller":
-        radius = follower["roller_radius_mm"] = short(size * d.log(0.05, 0.4))
+        radius = follower["roller_radius_mm"] = short(size * d.log(0.02, 1))
     elif kind == "domed":
         radius = follower["dome_radius_mm"] = short(size * d.log(0.2, 3))
     prime = short(size + radius)
@@ -271,7 +281,7 @@ def _form(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
         _slide(d, design, size)
 
 
-def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
+def design(d: Draw, index: int) -> dict[str, Any]:
     """Return a cam; rises and followers take turns.
 
     Parameters
@@ -280,24 +290,22 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         Draws of this design.
     index : int
         Its number.
-    blank : callable
-        ``blank(d, radius, unit, both)``: a blank for a least radius and the unit of edges, mm.
     """
     law = [*RISES][index % len(RISES)]
     kind = FOLLOWERS[index % len(FOLLOWERS)]
     swings = d.chance(0.4)
     size = d.pick([d.log(0.1, 1e5), d.log(10, 100)])
     follower, wheel = _mechanism(d, kind, swings, size)
-    share = d.log(0.005, 0.15 if kind == "flat" else 0.4)
+    share = d.log(0.002, 0.15 if kind == "flat" else 0.7)
     lift = short(share * 40) if swings else short(share * size)
     if d.chance(0.5):
         wheel["rotation"] = d.pick(["ccw", "cw"])
     phases = _program(d, law, lift, "deg" if swings else "mm")
     output: dict[str, Any] = {"chord_tolerance_mm": min(1.0, short(size * d.log(1e-5, 1e-3)))}
-    design: dict[str, Any] = {"motion": phases, "follower": follower, "cam": wheel}
+    made: dict[str, Any] = {"motion": phases, "follower": follower, "cam": wheel}
     if d.chance(0.5):
-        design["blank"] = blank(d, 0.8 * size, 0.05 * size, both=False)
-    design["output"] = output
+        made["blank"] = blank(d, 0.8 * size, 0.05 * size, both=False)
+    made["output"] = output
     if 10 < size < 100 and d.chance(0.3):
         del output["chord_tolerance_mm"]
     if d.chance(0.3):
@@ -308,8 +316,9 @@ def cam(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, 
         output["tool_radius_mm"] = short(size * d.log(0.02, 0.3))
     unit = "deg" if swings else "mm"
     if d.chance(0.1):
-        design["motion"] = _turn(d, lift, unit)
+        made["motion"] = _turn(d, lift, unit)
     elif d.chance(0.1):
         d.pick(phases)["angle_deg"] = "rest"
-    _form(d, design, size, lift)
-    return design
+    _form(d, made, size, lift)
+    made["output"] |= asked(d, _SHARES)
+    return made

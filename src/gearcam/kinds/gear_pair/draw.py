@@ -10,39 +10,50 @@ import math
 from collections.abc import Callable
 from typing import Any, Final
 
-from random_draw import Draw, short
+from gearcam.draws.blank import blank
+from gearcam.draws.draw import Draw, short
+from gearcam.draws.output import asked
 
 Law = dict[str, Any]
 Counts = tuple[int, int]
 
-MOST_TEETH: Final = 60
+MOST_TEETH: Final = 120
 """Of a wheel: time goes with them."""
 
+
+_SHARES: Final = {
+    "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
+    "drawing-dxf": 0.02, "stl": 0.05, "3mf": 0.02, "glb": 0.03, "step": 0.01, "report": 0.04,
+}  # fmt: skip
+"""Share of pairs that have each file beside their tables, by what it costs."""
+
+_AFFORDABLE: Final = 1200.0
+"""Vertices of a pair above which the other files are drawn less often."""
 
 # --- tooth counts -----------------------------------------------------------------------------
 
 
-def equal(d: Draw, low: int = 8) -> Counts:
+def _equal(d: Draw, low: int = 8) -> Counts:
     """Return two wheels of the same count."""
     z = d.whole(low, MOST_TEETH)
     return z, z
 
 
-def lobed(d: Draw, low: int = 8) -> Counts:
+def _lobed(d: Draw, low: int = 8) -> Counts:
     """Return counts of few lobes."""
     n1, n2 = d.pick([(1, 1), (1, 1), (1, 2), (2, 1), (2, 3), (3, 2), (1, 3), (3, 1)])
     each = d.whole(math.ceil(low / min(n1, n2)), MOST_TEETH // max(n1, n2))
     return n1 * each, n2 * each
 
 
-def one_lobe(d: Draw, low: int = 8) -> Counts:
+def _one_lobe(d: Draw, low: int = 8) -> Counts:
     """Return a driver of one lobe and a driven wheel of one to three."""
     n = d.whole(1, 3)
     z = d.whole(low, MOST_TEETH // n)
     return z, n * z
 
 
-def period(z: Counts) -> float:
+def _period(z: Counts) -> float:
     """Return a lobe of the driver, deg."""
     return 360.0 * math.gcd(*z) / z[0]
 
@@ -61,19 +72,19 @@ def _rising(d: Draw, count: int, end: float) -> list[float]:
 def _phases(d: Draw) -> tuple[Law, Counts]:
     if d.chance(0.35):
         return _open_phases(d)
-    z = lobed(d, 16)
+    z = _lobed(d, 16)
     count = d.whole(2, 5)
     swing = d.log(0.02, 0.4)
     ratios: list[Any] = [short(z[0] / z[1] * d.even(1 - swing, 1 + swing)) for _ in range(count)]
     ratios.append(ratios[0])
     ratios[d.whole(1, count - 1)] = "solve"
     shape = d.pick(["cosine", "cubic", "quintic"])
-    return {"shape": shape, "knots_deg": _rising(d, count, period(z)), "ratios": ratios}, z
+    return {"shape": shape, "knots_deg": _rising(d, count, _period(z)), "ratios": ratios}, z
 
 
 def _open_phases(d: Draw) -> tuple[Law, Counts]:
     low, high = d.even(0.7, 1.0), d.even(1.0, 1.8)
-    travel, z = d.even(120, 300), equal(d, 16)
+    travel, z = d.even(120, 300), _equal(d, 16)
     if d.chance(0.4):
         law: Law = {"shape": "sine", "knots_deg": [0, d.even(50, 90), "solve"]}
         return law | {"ratios": [1, high, high], "driven_travel_deg": travel}, z
@@ -88,9 +99,9 @@ def _open_phases(d: Draw) -> tuple[Law, Counts]:
 
 
 def _three_phases(d: Draw) -> tuple[Law, Counts]:
-    z = lobed(d, 20)
+    z = _lobed(d, 20)
     shares = (d.even(0.3, 0.5), d.even(0.65, 0.8))
-    knots = [0, *(short(share * period(z)) for share in shares), period(z)]
+    knots = [0, *(short(share * _period(z)) for share in shares), _period(z)]
     return {"knots_deg": knots, "lowest": short(z[0] / z[1] * d.even(0.4, 0.95))}, z
 
 
@@ -100,10 +111,10 @@ def _multispeed(d: Draw) -> tuple[Law, Counts]:
         angles = [d.even(30, 100), d.even(30, 100)]
         law |= {"angles_deg": angles, "transition_deg": d.even(20, 60)}
         travel = short((sum(angles) + law["transition_deg"]) * d.even(0.9, 1.3))
-        return law | {"ratios": [d.even(0.8, 1.2), "solve"], "driven_travel_deg": travel}, equal(d)
-    z, count = lobed(d, 20), d.whole(2, 3)
-    each = short(period(z) * d.even(0.12, 0.25))
-    rest = period(z) - count * each
+        return law | {"ratios": [d.even(0.8, 1.2), "solve"], "driven_travel_deg": travel}, _equal(d)
+    z, count = _lobed(d, 20), d.whole(2, 3)
+    each = short(_period(z) * d.even(0.12, 0.25))
+    rest = _period(z) - count * each
     angles = [short(share * rest) for share in d.shares(count)]
     angles[-1] = rest - sum(angles[:-1])
     ratios: list[Any] = [short(z[0] / z[1] * d.even(0.7, 1.3)) for _ in range(count)]
@@ -112,7 +123,7 @@ def _multispeed(d: Draw) -> tuple[Law, Counts]:
 
 
 def _fourier(d: Draw) -> tuple[Law, Counts]:
-    z, of = lobed(d, 12), d.pick(["ratio", "phi2"])
+    z, of = _lobed(d, 12), d.pick(["ratio", "phi2"])
     waves = [[d.sign() * d.log(1e-3, 0.2) / k for k in range(1, d.whole(1, 4) + 1)] for _ in "ab"]
     # degrees of phi2: a share of the ratio over k*n1
     n = z[0] // math.gcd(*z)
@@ -127,7 +138,7 @@ def _constant(d: Draw) -> tuple[Law, Counts]:
 
 def _with_lobes(most: float) -> Callable[[Draw], tuple[Law, Counts]]:
     def draw(d: Draw) -> tuple[Law, Counts]:
-        z = lobed(d, 12)
+        z = _lobed(d, 12)
         law: Law = {"eccentricity": d.log(1e-3, most)}
         common = math.gcd(*z)
         if d.chance(0.4):
@@ -140,22 +151,22 @@ def _with_lobes(most: float) -> Callable[[Draw], tuple[Law, Counts]]:
 
 
 def _excentric(most: float) -> Callable[[Draw], tuple[Law, Counts]]:
-    return lambda d: ({"eccentricity": d.log(1e-3, most)}, one_lobe(d, 12))
+    return lambda d: ({"eccentricity": d.log(1e-3, most)}, _one_lobe(d, 12))
 
 
 def _bspline(d: Draw) -> tuple[Law, Counts]:
     swing = d.log(1e-3, 0.15)
-    return {"radii": [d.even(1 - swing, 1 + swing) for _ in range(d.whole(4, 8))]}, lobed(d, 16)
+    return {"radii": [d.even(1 - swing, 1 + swing) for _ in range(d.whole(4, 8))]}, _lobed(d, 16)
 
 
 def _polygon(d: Draw) -> tuple[Law, Counts]:
-    return {"corners": d.whole(3, 6), "corner_radius": d.even(0.16, 0.4)}, equal(d, 24)
+    return {"corners": d.whole(3, 6), "corner_radius": d.even(0.16, 0.4)}, _equal(d, 24)
 
 
 def _spiral(d: Draw) -> tuple[Law, Counts]:
     first, growth = d.even(0.5, 1.2), d.log(1.05, 3)
     ratios = [first, short(first * growth)]
-    return {"ratios": ratios[:: d.sign()], "driven_travel_deg": d.even(60, 220)}, equal(d)
+    return {"ratios": ratios[:: d.sign()], "driven_travel_deg": d.even(60, 220)}, _equal(d)
 
 
 def _formula(d: Draw) -> tuple[Law, Counts]:
@@ -163,8 +174,8 @@ def _formula(d: Draw) -> tuple[Law, Counts]:
     if d.chance(0.25):
         travel = d.even(90, 250)
         law: Law = {d.pick(["ratio", "r1"]): f"1 + {short(0.5 * a)}*sin(phi1/2) + {b}*phi1"}
-        return law | {"driver_travel_deg": travel, "driven_travel_deg": travel}, equal(d, 12)
-    z, kind, more = lobed(d, 16), d.pick(["ratio", "r1", "phi2"]), d.whole(1, 3)
+        return law | {"driver_travel_deg": travel, "driven_travel_deg": travel}, _equal(d, 12)
+    z, kind, more = _lobed(d, 16), d.pick(["ratio", "r1", "phi2"]), d.whole(1, 3)
     n, shift = z[0] // math.gcd(*z), d.even(0, 6)
     if kind == "phi2":
         a, b, mean = short(a / n * z[0] / z[1]), short(b / more / n * z[0] / z[1]), f"{z[0]}/{z[1]}"
@@ -175,14 +186,14 @@ def _formula(d: Draw) -> tuple[Law, Counts]:
 
 
 def _table(d: Draw) -> tuple[Law, Counts]:
-    z, count, kind = lobed(d, 16), d.whole(12, 40), d.pick(["ratio", "phi2_deg", "r1"])
+    z, count, kind = _lobed(d, 16), d.whole(12, 40), d.pick(["ratio", "phi2_deg", "r1"])
     a, shift, mean = d.sign() * d.log(1e-2, 0.3), d.even(0, 6), z[0] / z[1]
     turns = [2 * math.pi * k / count for k in range(count + 1)]
-    angles = [period(z) * k / count for k in range(count + 1)]
+    angles = [_period(z) * k / count for k in range(count + 1)]
     wave = [math.cos(t + shift) for t in turns[:-1]]
     wave.append(wave[0])
     if kind == "phi2_deg":
-        unit = period(z) / (2 * math.pi)
+        unit = _period(z) / (2 * math.pi)
         rise = [math.sin(t + shift) - math.sin(shift) for t in turns[:-1]] + [0.0]
         values = [mean * (x + a * unit * w) for x, w in zip(angles, rise, strict=True)]
     else:
@@ -198,9 +209,9 @@ def _motion(d: Draw) -> tuple[Law, Counts]:
     if d.chance(0.5):
         turned, rod = f"(phi1 + {a}*sin(phi1))", d.even(2, 8)
         sine = f"(sin{turned}/{rod})**2"
-        return {"slide": f"1 - cos{turned} + {rod}*(1 - sqrt(1 - {sine}))", "rod": rod}, equal(d)
+        return {"slide": f"1 - cos{turned} + {rod}*(1 - sqrt(1 - {sine}))", "rod": rod}, _equal(d)
     law: Law = {"y": f"x + {a}*x**2", "x_from": 0, "x_to": d.even(0.5, 2)}
-    return law | {"driver_travel_deg": travel, "driven_travel_deg": travel}, equal(d)
+    return law | {"driver_travel_deg": travel, "driven_travel_deg": travel}, _equal(d)
 
 
 def _rack(d: Draw) -> tuple[Law, Counts]:
@@ -217,9 +228,9 @@ LAWS: Final[dict[str, Callable[[Draw], tuple[Law, Counts]]]] = {
     "multispeed": _multispeed,
     "fourier": _fourier,
     "constant": _constant,
-    "ellipse": _with_lobes(0.6),
-    "eccentric-circle": _excentric(0.5),
-    "limacon": _excentric(0.4),
+    "ellipse": _with_lobes(0.9),
+    "eccentric-circle": _excentric(0.7),
+    "limacon": _excentric(0.6),
     "lobed": _with_lobes(0.15),
     "bspline": _bspline,
     "rounded-polygon": _polygon,
@@ -303,7 +314,15 @@ def _study(d: Draw, design: dict[str, Any]) -> dict[str, Any]:
     return study
 
 
-def gear_pair(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict[str, Any]:
+def _vertices(document: dict[str, Any]) -> float:
+    """Return about how many vertices the outlines of a pair have; time goes with them."""
+    pair, steps = document["pair"], document.get("steps", {}).get("count", 1)
+    module = pair.get("module_mm") or 2.0 * pair["center_distance_mm"] / sum(pair["teeth"])
+    tolerance = document["output"].get("chord_tolerance_mm", min(1e-3, 1e-3 * module))
+    return 1.7 * sum(pair["teeth"]) * steps * math.sqrt(module / tolerance)
+
+
+def design(d: Draw, index: int) -> dict[str, Any]:
     """Return a gear pair; the laws take turns.
 
     Parameters
@@ -312,32 +331,31 @@ def gear_pair(d: Draw, index: int, blank: Callable[..., dict[str, Any]]) -> dict
         Draws of this design.
     index : int
         Its number.
-    blank : callable
-        ``blank(d, radius, unit, both)``: a blank for a least radius and the unit of edges, mm.
     """
     law = [*LAWS][index % len(LAWS)]
     given, z = LAWS[law](d)
     module = d.pick([d.log(0.05, 10000), d.log(0.5, 10)])
     opened, closed = "driven_travel_deg" in given, law != "rack"
-    design: dict[str, Any] = {
+    made: dict[str, Any] = {
         "law": {"type": law, **given},
         "pair": _pair(d, z, module, not closed),
     }
     if d.chance(0.4):
-        design["rack"] = _cutter(d)
+        made["rack"] = _cutter(d)
     if d.chance(0.5):
-        design["blank"] = blank(d, 0.3 * module * min(z), module, closed)
+        made["blank"] = blank(d, 0.3 * module * min(z), module, closed)
         if opened and d.chance(0.3):
-            design["blank"]["stop_pin_mm"] = short(module * d.log(0.5, 2))
+            made["blank"]["stop_pin_mm"] = short(module * d.log(0.5, 2))
     if closed and not opened and d.chance(0.12):
-        design["steps"] = _steps(d, module)
+        made["steps"] = _steps(d, module)
     if d.chance(0.15):
-        design["meshing"] = _study(d, design)
-    design["output"] = {"chord_tolerance_mm": short(module * d.log(1e-3, 2e-2))}
+        made["meshing"] = _study(d, made)
+    made["output"] = {"chord_tolerance_mm": short(module * d.log(1e-3, 2e-2))}
     if 0.5 < module < 10 and d.chance(0.1):
-        del design["output"]["chord_tolerance_mm"]
+        del made["output"]["chord_tolerance_mm"]
     if d.chance(0.2):
-        design["output"]["phi1_deg"] = d.even(-400, 400)
+        made["output"]["phi1_deg"] = d.even(0, 50) if opened else d.even(-400, 400)
     if closed and not opened and z[1] > z[0] and d.chance(0.3):
-        _ring(d, design, module)
-    return design
+        _ring(d, made, module)
+    made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
+    return made

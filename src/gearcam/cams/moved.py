@@ -1,0 +1,309 @@
+"""How far off the numbers of a cam may be, found by moving what they come from.
+
+A number is as exact as its conditioning allows, which no formula tells of all laws and followers at
+once. So it is tried: cam angles, knots and coefficients of the lift and sizes of the follower are
+moved by a few units of their last digit, lift and derivatives by what is not known of them beyond
+rounding, and what is told is computed again. The largest change of a few tries, at places all over
+the turn, is the estimate.
+
+Depends on curve, lost, wall, mechanism and laws; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from gearcam.cams.curve import CamCurve
+from gearcam.cams.lost import resting
+from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.wall import PitchMotion, Wall
+from gearcam.display import Brief
+from gearcam.laws.program import Program
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.jets import Jet
+
+_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2.5))
+"""By what part of themselves numbers are moved, as many roundings as they may be the work of: sizes
+of the follower; cam angles, which knots are sums of; coefficients of the lift."""
+
+_TRIES: Final = 4
+
+_PLACES: Final = 256
+_FEWEST: Final = 3
+"""Places over a turn, and at least in a stretch between cuts of the lift, its ends among them."""
+
+Quantity = Callable[[CamCurve, Array, Array], Array | Plane]
+"""What ``quantity(curve, theta, found)`` tells of cam angles, rad, and lift with derivatives."""
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Cam angles, rad, lift with three derivatives there, and by what sizes are multiplied."""
+
+    theta: Array
+    found: Array
+    factors: Array
+
+    def of(self, curve: CamCurve, quantity: Quantity) -> Array | Plane:
+        names = [one.name for one in fields(Mechanism) if isinstance(one.default, float)]
+        names = ["start", *names]
+        sizes = {
+            name: getattr(curve.mechanism, name) * float(factor)
+            for name, factor in zip(names, self.factors, strict=False)
+        }
+        moved = replace(curve, mechanism=replace(curve.mechanism, **sizes))
+        return quantity(moved, self.theta, self.found)
+
+
+@dataclass(frozen=True, eq=False)
+class Moved(Brief):
+    """A lift whose numbers are moved.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    """
+
+    program: Program
+
+    @cached_property
+    def _places(self) -> tuple[Ints, Array]:
+        """Pieces of the lift, and cam angles in them, at knots once for each side."""
+        cuts, knots = self.program.cuts, self.program.knots
+        count = max(_FEWEST, _PLACES // (len(cuts) - 1))
+        places = cuts[:-1, None] + np.diff(cuts)[:, None] * np.linspace(0.0, 1.0, count)
+        middle = 0.5 * (cuts[:-1] + cuts[1:])
+        return np.repeat(np.searchsorted(knots, middle) - 1, count), places.ravel()
+
+    def _states(self, index: Ints, theta: Array) -> list[_State]:
+        """Return the state at places as it is, and then moved."""
+        lift, draw = self.program.lift, np.random.default_rng(0)
+
+        def signs(shape: tuple[int, ...]) -> Array:
+            return draw.uniform(-1.0, 1.0, shape)
+
+        def moved(values: Array, step: float = _COEFFICIENTS) -> Array:
+            return values * (1.0 + step * signs(values.shape))
+
+        count = len(fields(Mechanism))
+        made = [_State(theta, lift.on_pieces(index, theta, 3), np.ones(count))]
+        off = np.array(self.program.errors)[:, None]
+        for _ in range(_TRIES):
+            places = moved(theta, _ANGLES)
+            found = lift.on_pieces(index, places, 3, moved)
+            found += off * np.sign(signs(found.shape))
+            made.append(_State(places, found, moved(np.ones(count), _SIZES)))
+        return made
+
+    @cached_property
+    def _turn(self) -> list[_State]:
+        return self._states(*self._places)
+
+    @cached_property
+    def lift(self) -> list[float]:
+        """Errors of the lift, mm or rad, and of its first three derivatives, per rad and so on."""
+        own, *others = self._turn
+        return np.max(
+            [np.abs(one.found - own.found).max(axis=1) for one in others], axis=0
+        ).tolist()
+
+    def error(self, curve: CamCurve, quantity: str) -> float:
+        """Return the error of a quantity, the largest of the turn.
+
+        Parameters
+        ----------
+        curve : CamCurve
+            Of the cam, with the lift.
+        quantity : str
+            A name in `QUANTITIES`; where it has no value it does not count.
+
+        Returns
+        -------
+        float
+        """
+        return float(_changes(self._turn, curve, QUANTITIES[quantity]).max())
+
+    def errors_at(self, theta: Array, curve: CamCurve, quantity: Quantity) -> Array:
+        """Return the errors of a quantity at cam angles.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        curve : CamCurve
+            Of the cam, with the lift.
+        quantity : callable
+            ``quantity(curve, theta, found)``, of lift and derivatives.
+
+        Returns
+        -------
+        (n,) array
+        """
+        index = np.searchsorted(self.program.knots[1:-1], theta, side="right")
+        return _changes(self._states(index, theta), curve, quantity)
+
+
+def _changes(states: list[_State], curve: CamCurve, quantity: Quantity) -> Array:
+    """Return the largest change of a quantity at each place, 0 where it has no value."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        own, *others = (one.of(curve, quantity) for one in states)
+        changes = np.max([np.abs(one - own) for one in others], axis=0)
+    return np.where(np.isfinite(changes), changes, 0.0)
+
+
+def _pressure(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the pressure angle, rad."""
+    return _array(curve.contact_of(found, 0).pressure, theta)
+
+
+def _pitch_curvature(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the pitch curve's curvature, 1/mm."""
+    contact = curve.contact_of(found, 0)
+    return _array(contact.turning / contact.pitch_speed, theta)
+
+
+def _face_radius(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the radius of curvature of what a face envelops, mm."""
+    contact = curve.contact_of(found, 0)
+    return _array(contact.speed / contact.turning, theta)
+
+
+def _contact_place(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return where a face is touched, mm."""
+    return _array(curve.contact_of(found, 0).place, theta)
+
+
+def _profile(curve: CamCurve, theta: Array, found: Array) -> Plane:
+    """Return points of the profile, mm."""
+    return curve.trace(theta, found[0], found[1], curve.mechanism.radius)[0]
+
+
+QUANTITIES: Final[dict[str, Quantity]] = {
+    "pressure angle": _pressure,
+    "pitch curvature": _pitch_curvature,
+    "face radius": _face_radius,
+    "contact place": _contact_place,
+    "profile": _profile,
+}
+"""What is told over the turn: rad, 1/mm, mm."""
+
+
+def _speed(curve: CamCurve, theta: Array, found: Array) -> Array:
+    return _array(curve.contact_of(found, 0).speed, theta)
+
+
+def _array(values: Jet, theta: Array) -> Array:
+    return np.asarray(values.c[0]) + np.zeros_like(theta)
+
+
+def undercut_error(moved: Moved, wall: Wall) -> float:
+    """Return the error of the cam angles between which a wall is undercut, rad.
+
+    Parameters
+    ----------
+    moved : Moved
+        Its lift.
+    wall : Wall
+        Undercut or not.
+
+    Returns
+    -------
+    float
+        That of knots at least, 0 where nothing is undercut.
+    """
+    ends = np.unique(wall.undercut)
+    slopes = wall.curve.contact(ends).speed.derivatives()[1]
+    inside = ~np.isin(ends, wall.program.knots)
+    off = moved.errors_at(ends, wall.curve, _speed)[inside] / np.abs(slopes[inside])
+    return float(max(off.max(initial=0.0), _ANGLES * ends.max(initial=0.0)))
+
+
+def lost_lift_error(moved: Moved, wall: Wall) -> float:
+    """Return the error of the lift that trimming costs, mm or rad.
+
+    Parameters
+    ----------
+    moved : Moved
+        Its lift.
+    wall : Wall
+        Trimmed or not.
+
+    Returns
+    -------
+    float
+        From how far both sides of a corner miss each other as drawn, and how steeply they cross.
+    """
+    worst = 0.0
+    points, misses = _corner_errors(moved, wall)
+    for corner, loss in zip(wall.corners, wall.lost, strict=True):
+        off = misses[np.abs(points - corner.point).argmin()]
+        theta = Jet([np.array([loss.theta])])
+        lifts = [
+            resting(wall.mechanism, complex(point), wall.curve.mechanism.away)(theta).derivatives()[
+                0
+            ]
+            for point in (corner.point, *(corner.point + off), *(corner.point - off))
+        ]
+        change = float(np.nanmax(np.abs(np.subtract(lifts[1:], lifts[0])), initial=0.0))
+        worst = max(worst, change + moved.lift[0])
+    return worst
+
+
+def _corner_errors(moved: Moved, wall: Wall) -> tuple[Plane, Plane]:
+    """Return where trimming has left corners, and where to they may be off, (n, 2) both ways, mm.
+
+    Each side may be off along its normal: then the corner moves along the other side.
+    """
+    drawn = replace(wall.drawn, curve=wall.curve)
+    number = np.flatnonzero(drawn.corner)
+    (points, after), (ends, before) = (
+        drawn.at(number, drawn.start[number]),
+        drawn.at(number - 1, drawn.end[number - 1]),
+    )
+    theta = drawn.states(number, drawn.start[number])[0]
+    off = np.abs(points - ends) + 2.0 * _normal_errors(moved, wall, theta)
+    crossing = np.maximum(np.abs((np.conj(before) * after).imag), off / wall.size.perimeter)
+    return points, (off / crossing * [before, after]).T
+
+
+def _normal_errors(moved: Moved, wall: Wall, theta: Array) -> Array:
+    """Return the errors of a wall's place at cam angles (n,), rad, along its normal, mm."""
+    s, ds = wall.program.derivatives(theta, 1)
+    normals = -1j * wall.curve.trace(theta, s, ds, wall.curve.mechanism.radius)[1]
+
+    def height(curve: CamCurve, places: Array, found: Array) -> Array:
+        return (np.conj(normals) * _profile(curve, places, found)).real
+
+    return moved.errors_at(theta, wall.curve, height)
+
+
+def play_error(moved: Moved, motion: PitchMotion, walls: tuple[Wall, ...], theta: float) -> float:
+    """Return the error of the lost motion between walls, mm or rad.
+
+    Parameters
+    ----------
+    moved : Moved
+        Their lift.
+    motion : PitchMotion
+        Their motion.
+    walls : tuple of Wall
+        That hold the follower.
+    theta : float, rad
+        Where the lost motion is largest.
+
+    Returns
+    -------
+    float
+        What the walls' points may be off there, as the follower feels it.
+    """
+    place = np.array([theta])
+    off = sum(float(_normal_errors(moved, wall, place)[0]) for wall in walls)
+    slant = float(motion.curve.contact(place, 0).pressure.derivatives()[0][0])
+    return off / (math.cos(slant) * motion.mechanism.lever)

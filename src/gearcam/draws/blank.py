@@ -1,0 +1,74 @@
+"""Random blanks of wheels and cams."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from gearcam.draws.draw import Draw, short
+
+
+def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:
+    """Return a blank for a wheel or cam.
+
+    Parameters
+    ----------
+    d : Draw
+        Draws of this design.
+    radius : float, mm
+        What its openings keep within.
+    unit : float, mm
+        The size of its edges' details: the module.
+    both : bool
+        Whether it is for two wheels, which may differ.
+    """
+    made: dict[str, Any] = {}
+    bore = short(radius * d.log(0.2, 0.9)) if d.chance(0.8) else 0.0
+    reach = bore
+    if bore:
+        made["bore_diameter_mm"] = bore
+        reach = _bore(d, bore, made)
+        if both and d.chance(0.3):
+            made["bore_diameter_mm"] = [bore, short(bore * d.even(1, 1.05))]
+    if d.chance(0.3):
+        made["hub_diameter_mm"] = short(1.1 * reach + radius * d.even(0.05, 0.3))
+        reach = made["hub_diameter_mm"]
+        made[d.pick(["hub_front_mm", "hub_back_mm"])] = short(unit * d.log(0.5, 10))
+    if d.chance(0.25):
+        bolt = short(radius * d.log(0.02, 0.1))
+        count = d.whole(1, 8)
+        circle = short(1.2 * max(reach + bolt, bolt * count / 2))
+        made |= {"bolts": count, "bolt_diameter_mm": bolt, "bolt_circle_mm": circle}
+        made["bolt_angle_deg"] = d.even(-180, 180)
+    if d.chance(0.25):
+        made["lightening_holes"] = d.whole(1, 8)
+        made |= {key: short(unit * d.even(1, 3)) for key in ("rim_mm", "web_mm") if d.chance(0.4)}
+    if d.chance(0.5):
+        made["density_kg_m3"] = d.log(100, 20000)
+    if d.chance(0.2):
+        made |= {"clearance_mm": short(unit * d.log(1e-3, 0.05)), "clearance_bores": d.chance(0.5)}
+    if both:
+        _edges(d, unit, made)
+    return made
+
+
+def _bore(d: Draw, bore: float, made: dict[str, Any]) -> float:
+    """Give a bore a keyway or a flat, and return the diameter that it takes."""
+    if d.chance(0.3):
+        width, depth = short(bore * d.even(0.1, 0.4)), short(bore * d.even(0.05, 0.2))
+        angle = d.even(-180, 180)
+        made |= {"keyway_width_mm": width, "keyway_depth_mm": depth, "keyway_angle_deg": angle}
+        return 2.0 * math.hypot(0.5 * bore + depth, 0.5 * width)
+    if d.chance(0.2):
+        made["bore_flat_mm"] = short(bore * d.even(0.6, 0.95))
+    return bore
+
+
+def _edges(d: Draw, unit: float, made: dict[str, Any]) -> None:
+    if d.chance(0.2):
+        radius = short(unit * d.log(0.01, 0.15))
+        made["tip_rounding_mm"] = d.pick([radius, [radius, 0], [0, radius]])
+    if d.chance(0.2):
+        made["timing_marks"] = d.chance(0.3)
+    if d.chance(0.2):
+        made["mark_diameter_mm"] = short(unit * d.even(0.2, 0.6))

@@ -1,0 +1,86 @@
+"""Random designs as the texts of their files: most can be built, a tenth has something broken.
+
+A design is told by its kind, the seed and its number, and does not depend on how many others are
+drawn. Laws, rises and followers take turns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from gearcam.designs.kind import KINDS
+from gearcam.draws.broken import broken
+from gearcam.draws.documented import places, value
+from gearcam.draws.draw import Draw
+from gearcam.draws.output import limits, tables_as_files
+from gearcam.draws.toml import toml
+
+BROKEN: Final = 0.1
+"""Share of designs with something in them that may be refused as often as not."""
+
+_ANYWHERE: Final = 0.15
+"""Share of the others with one value anywhere in its documented range."""
+
+_LIMITED: Final = 0.15
+"""Share of designs that set limits of checks."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """A random design.
+
+    Parameters
+    ----------
+    files : mapping of str to str
+        Texts by file name: the design file first, then its tables.
+    broken : str
+        What was broken in it; empty where it was drawn so that it can be built.
+    """
+
+    files: Mapping[str, str]
+    broken: str = ""
+
+    def write(self, folder: Path) -> Path:
+        """Write it into a `folder` and return the design file."""
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in self.files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        return folder / next(iter(self.files))
+
+
+def drawn_kinds() -> tuple[str, ...]:
+    """Return the kinds of which designs are drawn: those whose folder has a ``draw``."""
+    found = []
+    for name, kind in KINDS.items():
+        with suppress(ModuleNotFoundError):
+            kind.room("draw")
+            found.append(name)
+    return tuple(found)
+
+
+def design(kind: str, seed: int, index: int) -> Drawn:
+    """Return a random design.
+
+    Parameters
+    ----------
+    kind : str
+        One of `drawn_kinds`.
+    seed, index : int
+        Which one.
+    """
+    d = Draw(f"{kind} {seed} {index}")
+    name = f"{kind}-{seed}-{index}"
+    document = {"kind": kind, "name": name, **KINDS[kind].room("draw").design(d, index)}
+    if d.chance(_LIMITED):
+        document["limits"] = limits(d, document)
+    tables = tables_as_files(d, document, name)
+    if d.chance(BROKEN):
+        return Drawn(**broken(d, document, tables))
+    if d.chance(_ANYWHERE):
+        table, key, node = d.pick([*places(document)])
+        table[key] = value(d, key, node)
+    return Drawn(files={f"{name}.toml": toml(document), **tables})

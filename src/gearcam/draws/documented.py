@@ -1,0 +1,118 @@
+"""What the program documents of a design's keys, and values drawn over those ranges.
+
+The ranges are read from the schema, so that they are always those of the program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any, Final
+
+from gearcam.designs import schema as schemas
+from gearcam.draws.draw import Draw
+
+_NARROWEST, _WIDEST = 1e-9, 1e6
+"""Where a documented range is open, the least of its upper end and the most that is drawn."""
+
+_AFFORDABLE: Final = {
+    "teeth": (3, 300),
+    "steps": (1, 100),
+    "inspection_points": (2, 2000),
+    "motion_step_deg": (0.05, 90.0),
+    "chord_tolerance_mm": (1e-4, 1.0),
+    "bolts": (0, 30),
+}
+"""Ranges drawn from where the documented one would take minutes or gigabytes."""
+
+
+@cache
+def schema() -> schemas.Schema:
+    """Return the schema of design files, made once."""
+    return schemas.schema()
+
+
+def known_keys(node: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys that the schema knows at a node for what is given there, with their schemas.
+
+    Parameters
+    ----------
+    node : mapping
+        A part of the schema.
+    given : mapping
+        The table of a design: which branches hold follows from its values.
+    """
+    found: dict[str, Any] = {}
+    if "$ref" in node:
+        found |= known_keys(schema()["$defs"][node["$ref"].rpartition("/")[2]], given)
+    found |= node.get("properties", {})
+    for branch in node.get("allOf", ()):
+        asked = branch.get("if", {}).get("properties", {})
+        if all(given.get(key) == what.get("const") for key, what in asked.items()):
+            found |= known_keys(branch.get("then", branch), given)
+    return {key: _resolved(one) for key, one in found.items()}
+
+
+def _resolved(node: Mapping[str, Any]) -> Mapping[str, Any]:
+    while "$ref" in node and len(node) == 1:
+        node = schema()["$defs"][node["$ref"].rpartition("/")[2]]
+    return node
+
+
+def places(document: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str, Mapping[str, Any]]]:
+    """Yield every key that the tables of a design know: the table, the key, its schema.
+
+    Parameters
+    ----------
+    document : mapping
+        A design; tables that it does not have are not offered.
+    """
+    for title, node in known_keys(schema(), document).items():
+        tables = document.get(title)
+        if isinstance(tables, dict) and "items" in node:
+            continue  # one table in place of a list is another thing
+        for table in tables if isinstance(tables, list) else [tables]:
+            if isinstance(table, dict):
+                inner = node.get("items", node)
+                yield from ((table, key, one) for key, one in known_keys(inner, table).items())
+
+
+def value(d: Draw, key: str, node: Mapping[str, Any]) -> Any:
+    """Return a value anywhere in a documented range: log-uniform where it is of numbers.
+
+    Parameters
+    ----------
+    d : Draw
+        Draws.
+    key : str
+        Its key in design files.
+    node : mapping
+        Its schema.
+    """
+    node = node["anyOf"][0] if "anyOf" in node else node
+    if "const" in node:
+        return node["const"]
+    if "enum" in node:
+        return d.pick(node["enum"])
+    kind = node.get("type")
+    if kind == "array":
+        fewest = node.get("minItems", 1)
+        count = d.whole(fewest, node.get("maxItems", fewest + 3))
+        drawn = [value(d, key, node["items"]) for _ in range(count)]
+        return list(dict.fromkeys(drawn)) if node.get("uniqueItems") else drawn
+    if kind == "boolean":
+        return d.chance(0.5)
+    if kind not in ("number", "integer"):
+        return "x"
+    drawn = _number(d, key, node)
+    return round(drawn) if kind == "integer" else drawn
+
+
+def _number(d: Draw, key: str, node: Mapping[str, Any]) -> float:
+    low = node.get("minimum", node.get("exclusiveMinimum", -_WIDEST))
+    high = node.get("maximum", node.get("exclusiveMaximum", _WIDEST))
+    low, high = _AFFORDABLE.get(key, (low, high))
+    if low < 0.0 < high and d.chance(0.5):
+        return -d.log(-low * _NARROWEST, -low)
+    drawn = d.log(low if low > 0.0 else high * _NARROWEST, high)
+    return drawn if low < drawn < high or "exclusiveMaximum" not in node else 0.5 * (low + high)

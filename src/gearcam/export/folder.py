@@ -1,0 +1,148 @@
+"""Folders that are written to: made where they are missing, held by one writer at a time.
+
+Everything is first written under a *spare* name. A writer that was killed leaves such files;
+who holds the folder next removes them.
+
+Refused: names that no disk can hold, a folder that is a file or a link to nothing, and waiting for
+ever for another writer.
+
+Depends on errors only.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Final
+
+from gearcam.errors import WriteError
+
+_TEMPORARY: Final = ".gearcam-"
+"""Beginning of temporary names."""
+
+_LEFT_OVER: Final = re.compile(re.escape(_TEMPORARY) + r"[0-9a-f]{32}\.tmp")
+"""A spare name."""
+
+_PATIENCE: Final = 30.0
+"""Seconds to wait while another build writes to the folder: moving files takes a few."""
+
+_PAUSE: Final = 0.05
+"""Seconds between two looks whether the folder is free."""
+
+
+def demand_name(path: str | os.PathLike[str]) -> None:
+    """Refuse a path that can be no name here.
+
+    Parameters
+    ----------
+    path : path
+        Of a file or a folder.
+
+    Raises
+    ------
+    WriteError
+        If it holds a character that no name can hold, or that the system cannot write.
+    """
+    with suppress(ValueError):
+        if b"\0" not in os.fsencode(path):
+            return
+    raise WriteError(f"cannot write to {os.fspath(path)!r}: this can be no name here")
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Make a folder and hold it for oneself; what was made goes again if anything fails.
+
+    Parameters
+    ----------
+    folder : Path
+        With those above it.
+
+    Yields
+    ------
+    None
+
+    Raises
+    ------
+    FileNotFoundError, NotADirectoryError, OSError
+        If a link leads nowhere, if it is a file, if another writer does not come to an end.
+    """
+    for place in (folder, *folder.parents):
+        if place.is_symlink() and not place.exists():
+            raise FileNotFoundError(errno.ENOENT, "it is a link that leads nowhere", str(place))
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, "it is a file, not a folder", str(folder))
+    new = [place for place in (folder, *folder.parents) if not place.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with lock(folder) as alone:
+            if alone:
+                _sweep(folder)
+            yield
+    except BaseException:
+        for empty in new:
+            with suppress(OSError):
+                empty.rmdir()
+        raise
+
+
+@contextmanager
+def lock(folder: Path) -> Iterator[bool]:
+    """Lock a folder as soon as nobody else has.
+
+    Parameters
+    ----------
+    folder : Path
+        One that is there.
+
+    Yields
+    ------
+    bool
+        Whether it is locked: some systems and disks cannot.
+
+    Raises
+    ------
+    OSError
+        If another writer does not come to an end.
+    """
+    try:
+        import fcntl
+
+        handle = os.open(folder, os.O_RDONLY)
+    except (ImportError, PermissionError):  # on Windows, and where one may write but not look
+        yield False
+        return
+    try:
+        end, locked = time.monotonic() + _PATIENCE, False
+        while not locked:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                locked = True
+            except BlockingIOError as error:
+                if time.monotonic() > end:
+                    words = f"another gearcam has been writing to it for {_PATIENCE:.0f} s"
+                    raise OSError(errno.EBUSY, words, str(folder)) from error
+                time.sleep(_PAUSE)
+            except OSError:  # a disk of another computer may know no locks
+                break
+        yield locked
+    finally:
+        os.close(handle)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove temporary files that a writer left which was killed."""
+    for place in folder.iterdir():
+        if _LEFT_OVER.fullmatch(place.name):
+            with suppress(OSError):
+                place.unlink()
+
+
+def spare(folder: Path) -> Path:
+    """Return a temporary name in a `folder`."""
+    return folder / f"{_TEMPORARY}{os.urandom(16).hex()}.tmp"

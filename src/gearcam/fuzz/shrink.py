@@ -1,0 +1,109 @@
+"""A failing design made small: what can be left out is, as long as it fails in the same way."""
+
+from __future__ import annotations
+
+import copy
+import time
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final
+
+from gearcam.draws.toml import toml
+
+Files = Mapping[str, str]
+
+_DIGITS: Final = (1, 2, 3)
+"""Digits that numbers are shortened to, the fewest that do."""
+
+_KEPT: Final = ("kind", "name")
+
+
+def shrunk(files: Files, fails: Callable[[Files], bool], patience: float) -> dict[str, str]:
+    """Return a smaller design that fails as well.
+
+    Parameters
+    ----------
+    files : mapping of str to str
+        Texts by file name: the design file first.
+    fails : callable
+        Whether other files fail in the same way.
+    patience : float, s
+        Time after which nothing more is tried.
+
+    Returns
+    -------
+    dict of str to str
+    """
+    until = time.monotonic() + patience
+    best = dict(files)
+    name = next(iter(best))
+    smaller = _documents if _document(best[name]) is not None else _texts
+    again = True
+    while again:
+        again = False
+        for text in smaller(best[name]):
+            if time.monotonic() > until:
+                return best
+            other = {name: text, **{key: best[key] for key in best if key != name and key in text}}
+            if fails(other):
+                best, again = other, True
+                break
+    return best
+
+
+def _document(text: str) -> dict[str, Any] | None:
+    try:
+        document = tomllib.loads(text)
+        return document if tomllib.loads(toml(document)) == document else None
+    except (ValueError, RecursionError):
+        return None
+
+
+def _texts(text: str) -> Iterator[str]:
+    """Yield texts without some of the lines."""
+    lines = text.splitlines(keepends=True)
+    size = len(lines) // 2
+    while size:
+        for first in range(0, len(lines), size):
+            yield "".join(lines[:first] + lines[first + size :])
+        size //= 2
+
+
+def _documents(text: str) -> Iterator[str]:
+    """Yield designs with a table, a key or an item less, or a shorter number."""
+    document = _document(text) or {}
+    for path in _paths(document):
+        made = copy.deepcopy(document)
+        owner, last = _owner(made, path)
+        del owner[last]
+        if toml(made) != text:
+            yield toml(made)
+    for path in _paths(document):
+        made = copy.deepcopy(document)
+        owner, last = _owner(made, path)
+        value = owner[last]
+        if not isinstance(value, float):
+            continue
+        for digits in _DIGITS:
+            owner[last] = float(f"{value:.{digits}g}")
+            if owner[last] == value:
+                break
+            yield toml(made)
+
+
+def _paths(node: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Return the places of all that is in a document, tables before their keys."""
+    items = list(node.items() if isinstance(node, dict) else enumerate(node))
+    found: list[tuple[Any, ...]] = []
+    for key, item in reversed(items):
+        if key not in _KEPT:
+            found.append((*at, key))
+            if isinstance(item, dict | list):
+                found += _paths(item, (*at, key))
+    return sorted(found, key=len) if not at else found
+
+
+def _owner(document: Any, path: tuple[Any, ...]) -> tuple[Any, Any]:
+    for key in path[:-1]:
+        document = document[key]
+    return document, path[-1]

@@ -1,0 +1,156 @@
+"""The trial of one design: read, built, written, doubted, its remedies followed."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import time
+import traceback
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from gearcam import build, load, remedies
+from gearcam.console import all_lines, refusal_text, remedy_lines
+from gearcam.designs.kind import KINDS
+from gearcam.errors import DesignError, InfeasibleError
+from gearcam.fuzz.oracles import look_at
+from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
+
+SEARCH: Final = 0.6
+"""Patience of a search for remedies, s: a few designs."""
+
+_PACKAGE: Final = f"{Path(__file__).parents[1].name}/"
+
+
+class FaultError(Exception):
+    """A fault of the program was found."""
+
+    def __init__(self, failure: Failure) -> None:
+        self.failure = failure
+        super().__init__(failure.words)
+
+
+def tried(task: Task, folder: Path) -> Outcome:
+    """Return how the trial of a design, a `task`, in an empty `folder` ended."""
+    return Trial(task, folder).run()
+
+
+@dataclass
+class Trial:
+    """A design that is tried.
+
+    Parameters
+    ----------
+    task : Task
+        It, and what is done beside building it.
+    folder : Path
+        An empty one.
+    doubted : bool
+        Whether a study was held against it.
+    followed : int
+        Remedies that were built.
+    """
+
+    task: Task
+    folder: Path
+    doubted: bool = False
+    followed: int = 0
+
+    def run(self) -> Outcome:
+        """Return how it ended."""
+        start = time.process_time()
+        reason, failure = "", None
+        try:
+            end, reason = self._end()
+        except FaultError as fault:
+            end, failure = FAILED, fault.failure
+        except MemoryError as error:
+            end, failure = (
+                FAILED,
+                Failure(kind="memory", words="out of memory", place=_place(error)),
+            )
+        except Exception as error:
+            words = f"{type(error).__name__}: {error}"
+            end, failure = FAILED, Failure(kind="crash", words=words[:500], place=_place(error))
+        return Outcome(
+            end=end,
+            seconds=time.process_time() - start,
+            reason=reason,
+            failure=failure,
+            doubted=self.doubted,
+            followed=self.followed,
+        )
+
+    def _end(self) -> tuple[str, str]:
+        """Return how it ended and why; raise what is a fault."""
+        for name, text in self.task.files.items():
+            (self.folder / name).write_text(text, encoding="utf-8")
+        file = str(self.folder / next(iter(self.task.files)))
+        try:
+            result: Any = build(load(file))
+        except DesignError as error:
+            return WRONG, _told(error, file, error.problems[0].message)
+        try:
+            written = result.write(self.folder / "out")
+        except InfeasibleError as error:
+            self._follow(result, error)
+            return REFUSED, _told(error, file, error.what)
+        except DesignError as error:
+            return WRONG, _told(error, file, error.problems[0].message)
+        list(all_lines(written))
+        self._hold(look_at(result, written))
+        if self.task.doubt:
+            self._doubt(result)
+        if any(one.severity == "error" for one in written.findings):
+            self._follow(result, None)
+        return BUILT, ""
+
+    def _hold(self, found: Any) -> None:
+        for failure in found:
+            raise FaultError(failure)
+
+    def _doubt(self, result: Any) -> None:
+        with suppress(ModuleNotFoundError):
+            room = KINDS[result.design.kind].room("doubts")
+            self.doubted = True
+            self._hold(
+                Failure(kind="contradiction", words=words, place=place)
+                for place, words in room.doubts(result)
+            )
+
+    def _follow(self, result: Any, refusal: InfeasibleError | None) -> None:
+        """Build what is suggested, with all its files."""
+        if not self.task.follow:
+            return
+        found = remedies(result, refusal, patience=SEARCH)
+        list(remedy_lines(found))
+        for remedy in found.found:
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            try:
+                other: Any = build(remedy.design)
+                written = other.write(self.folder / "out")
+            except (DesignError, InfeasibleError) as error:
+                words = f"with {remedy.text} it should be built: {error}"
+                raise FaultError(Failure(kind="remedy", words=words)) from error
+            if any(one.severity == "error" for one in written.findings):
+                words = f"with {remedy.text} it should have no error"
+                raise FaultError(Failure(kind="remedy", words=words))
+            self._hold(look_at(other, written))
+            self.followed += 1
+
+
+def _told(error: DesignError | InfeasibleError, file: str, words: str) -> str:
+    """Tell a refusal, and return what is the same in those that differ by numbers and names."""
+    refusal_text(error, file, BUILT)
+    told = re.sub(r"\"[^\"]*\"|'[^']*'", "...", words.splitlines()[0])
+    return re.sub(r"[-+]?\d[\d.e+-]*", "#", told)[:80]
+
+
+def _place(error: BaseException) -> str:
+    """Return what was raised and the innermost function of the program that it came through."""
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [one for one in frames if _PACKAGE in one.filename.replace("\\", "/")]
+    last = own[-1] if own else frames[-1]
+    return f"{type(error).__name__} in {Path(last.filename).name}, {last.name}"

@@ -1,0 +1,98 @@
+"""What the accuracy block of a cam says: an estimate for each family of its numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+from gearcam.cams.moved import Moved, lost_lift_error, play_error, undercut_error
+from gearcam.parts.mass import quadrature_error
+
+if TYPE_CHECKING:
+    from gearcam.cams.cam import Cam
+    from gearcam.kinds.cam.build import CamResult
+
+Rows = dict[str, tuple[float, str]]
+"""Estimates and how each was made, by name."""
+
+_MOVED: Final = "largest change of the turn when every number that it comes from is moved by "
+_ROUNDED: Final = f"{_MOVED}its rounding"
+_UNKNOWN: Final = f"{_MOVED}its rounding, and the lift by what is not known of it beyond that"
+_GAUSS: Final = "Gauss-Legendre quadrature with fewer cells, and rounding"
+
+
+def error_rows(result: CamResult) -> Rows:
+    """Return the estimated errors of a cam.
+
+    Parameters
+    ----------
+    result : CamResult
+        A built design.
+
+    Returns
+    -------
+    dict of str to (float, str)
+        Each with how it was made, by name; chords and files are not among them.
+    """
+    cam, program = result.cam, result.program
+    moved, how = Moved(program), _UNKNOWN if any(program.errors) else _ROUNDED
+    rows = {name: (value, how) for name, value in _motion(result, moved)}
+    rows |= {name: (value, how) for name, value in _shape(cam, moved)}
+    rows |= dict(_trimming(result, moved))
+    rows |= dict(_sizes(result))
+    return rows
+
+
+def _motion(result: CamResult, moved: Moved) -> Iterator[tuple[str, float]]:
+    """Yield the errors of the motion, named as the columns of its table."""
+    driver, (scale, unit) = result.mechanism.driver, result.mechanism.outward
+    names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
+    for order, (name, off) in enumerate(zip(names, moved.lift, strict=True)):
+        yield name.format(unit, driver.per), scale * off / driver.rate**order
+
+
+def _shape(cam: Cam, moved: Moved) -> Iterator[tuple[str, float]]:
+    """Yield the errors of what is told of the contact and of curves, the largest of all walls."""
+    curves = [motion.curve for motion in cam.motions]
+    walls = [wall.curve for wall in cam.walls]
+    yield (
+        "pressure_angle_deg",
+        math.degrees(max(moved.error(one, "pressure angle") for one in curves)),
+    )
+    if curves[0].mechanism.flat:
+        yield "radius_mm", max(moved.error(one, "face radius") for one in walls)
+        yield "contact_mm", max(moved.error(one, "contact place") for one in walls)
+    else:
+        yield "curvature_per_mm", max(moved.error(one, "pitch curvature") for one in curves)
+    yield "profile_mm", max(moved.error(one, "profile") for one in walls)
+
+
+def _trimming(result: CamResult, moved: Moved) -> Iterator[tuple[str, tuple[float, str]]]:
+    """Yield the errors of what undercut costs, and of the lost motion between two walls."""
+    cam, driver, (scale, unit) = result.cam, result.mechanism.driver, result.mechanism.outward
+    if any(wall.undercut for wall in cam.walls):
+        off = driver.scale * max(undercut_error(moved, wall) for wall in cam.walls)
+        how = "change of the speed along the profile when all is moved by its rounding, over its "
+        yield f"undercut_{driver.unit}", (off, f"{how}slope")
+    if any(wall.corners for wall in cam.walls):
+        off = scale * max(lost_lift_error(moved, wall) for wall in cam.walls)
+        how = "the follower on a corner moved by as much as its two sides miss each other, and by "
+        yield f"lost_lift_{unit}", (off, f"{how}rounding")
+    if (lost := cam.lost_motion) is not None:
+        off = scale * play_error(moved, cam.motions[0], cam.walls, lost.theta)
+        yield f"lost_motion_{unit}", (off, "errors of both walls there, as the follower feels them")
+
+
+def _sizes(result: CamResult) -> Iterator[tuple[str, tuple[float, str]]]:
+    """Yield the errors of sizes: of walls as they are touched, and of parts."""
+    if not result.design.blank.clearance:
+        for wall in result.cam.walls:
+            prefix, size = f"{wall.key}_" if wall.key else "", wall.size
+            yield f"{prefix}perimeter_mm", (size.perimeter_error, _GAUSS)
+            if wall.program.closed:
+                yield f"{prefix}area_mm2", (size.area_error, _GAUSS)
+    if result.ordered and result.design.blank.density is not None:
+        off = max(quadrature_error(part) for part in result.parts)
+        how = "cubics through every second dense point of all edges, over their order, and rounding"
+        yield "volume_mm3", (off, how)

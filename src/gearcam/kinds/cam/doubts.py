@@ -1,0 +1,60 @@
+"""What the inverse problem holds against a cam: its follower, put on its own profile."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from gearcam.cams.wall import Wall
+from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.follow import followed
+from gearcam.numeric.arrays import Array
+
+_ANGLES: Final = 120
+"""Cam angles at which the lift is found."""
+
+_ROOM: Final = 3.0
+"""What the lift may miss, in chord tolerances along the normal: a follower on two chords."""
+
+_ROUNDING: Final = 1e-9
+"""The same over the size of the profile."""
+
+
+def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
+    """Yield where the lift of a wall's own polygon is not the one that was asked for.
+
+    Parameters
+    ----------
+    result : CamResult
+        Any.
+
+    Yields
+    ------
+    place, words : str
+        What is contradicted, and how.
+    """
+    theta = 2.0 * np.pi / _ANGLES * (np.arange(float(_ANGLES)) + 0.5)
+    for wall, contour in zip(result.cam.walls, result.profiles, strict=True):
+        vertices = contour.vertices
+        columns, _, _ = followed(
+            wall, vertices, np.zeros(len(vertices)), theta, result.design.limits
+        )
+        off = np.abs(columns["difference"])
+        room = _room(wall, theta)
+        worst = int((off - room).argmax())
+        if off[worst] > room[worst]:
+            at = wall.mechanism.driver.told(float(theta[worst]))
+            words = f"{wall.called} {wall.key}: the lift at {at} is {off[worst]} off"
+            yield "lift", f"{words}, {room[worst]} {wall.mechanism.outward[1]} are explained"
+
+
+def _room(wall: Wall, theta: Array) -> Array:
+    """Return what the lift may miss at cam angles, in the unit of files."""
+    mechanism, contact = wall.mechanism, wall.curve.contact(theta, 0)
+    lever = mechanism.lever * np.cos(contact.pressure.c[0])
+    if mechanism.flat:  # perpendicular to the face
+        lever = np.abs(contact.place.c[0]) if mechanism.oscillating else 1.0
+    normal = _ROOM * wall.tolerance + _ROUNDING * np.abs(wall.outline).max()
+    return mechanism.outward[0] * (normal / lever + wall.shortfall + np.zeros_like(theta))

@@ -1,0 +1,66 @@
+"""What is drawn of a gear pair: its centrodes, the assembled pair, the workshop drawings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.drawings import Drawing, Path, pair_drawing
+from gearcam.export.shared import sheet_rows
+from gearcam.kinds.gear_pair.files import placements
+from gearcam.numerals import shown
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.stages import PairStages
+    from gearcam.sheets.sheet import Sheet
+
+_PAIR_ROWS: Final = ("pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm")
+_RACK_ROWS: Final = (
+    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
+    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
+)  # fmt: skip
+_GEAR_ROWS: Final = (
+    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
+    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
+)  # fmt: skip
+"""Facts that stand in the tables of drawings."""
+
+
+def centrode_paths(result: PairStages) -> tuple[Path, Path]:
+    """Return the centrodes of a `result` as chains, each in its wheel's own frame, driver first."""
+    lobes = result.law.lobes
+    ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
+    if result.pair.on_rack:
+        ends[1] = result.centrode_angles()[-1]
+    paths = []
+    for gear, end in zip(result.gears, ends, strict=True):
+        closed = gear.toothing.closed
+        turn = np.linspace(0.0, end, 721)[: -1 if closed else None]
+        paths.append(Path(points=gear.centrode(turn), closed=closed))
+    first, second = paths
+    return first, second
+
+
+def assembled(result: PairStages) -> Drawing:
+    """Return the drawing of a `result` as it is assembled, with its centrodes."""
+    return pair_drawing(
+        result.parts, result.pair.shift, result.centrode_paths, placements=placements(result)
+    )
+
+
+def sheets(result: PairStages) -> tuple[Sheet, ...]:
+    """Return the workshop drawings of both wheels of a `result` and of the pair."""
+    from gearcam.sheets import pair_sheet, wheel_sheet
+
+    facts, title, pose = result.facts, result.design.name, result.design.output.pose
+    radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
+    made = []
+    for number, part in enumerate(result.parts):
+        own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
+        names = (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
+        made.append(wheel_sheet(part, sheet_rows(facts, names), title))
+    rows = {"law": result.design.law_type} | sheet_rows(facts, (*_PAIR_ROWS, *_RACK_ROWS))
+    rows["drawn at phi1"] = f"{shown(np.degrees(pose))} deg"
+    pair = pair_sheet(result.drawing, result.pair.shift, rows, title, pitch_radius=radius)
+    return *made, pair

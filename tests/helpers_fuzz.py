@@ -1,0 +1,50 @@
+"""Work for processes of the fuzzer that is done in other ways than it should be."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+from gearcam.fuzz.outcome import BUILT, FAILED, Failure, Outcome, Task
+from gearcam.fuzz.pool import MEMORY
+
+
+def text_of(task: Task) -> str:
+    return next(iter(task.files.values()))
+
+
+def odd(task: Task, folder: Path) -> Outcome:
+    """Do what the text of the design says."""
+    assert not [*folder.iterdir()]
+    text = text_of(task)
+    while text == "run for ever":
+        pass
+    if text == "sleep":
+        time.sleep(1e3)
+    if text == "die":
+        os._exit(7)
+    if text == "eat":
+        try:
+            bytearray(2 * MEMORY)
+        except MemoryError:
+            return Outcome(end=FAILED, failure=Failure(kind="memory", words="none left"))
+    return Outcome(end=BUILT, reason=text)
+
+
+def dislikes_cycloids(task: Task, folder: Path) -> Outcome:  # noqa: ARG001
+    """Fail at cycloidal rises, wherever they stand."""
+    text = text_of(task)
+    if '"cycloidal"' not in text:
+        return Outcome(end=BUILT, seconds=1.0)
+    words = f"no way\nwith {len(text)} letters"
+    return Outcome(end=FAILED, failure=Failure(kind="crash", words=words, place="x"))
+
+
+def late_at_first(task: Task, folder: Path) -> Outcome:  # noqa: ARG001
+    """Take for ever, but only the first time in the folder of all trials."""
+    mark = folder.parent / "tried"
+    if not mark.exists():
+        mark.touch()
+        time.sleep(1e3)
+    return Outcome(end=BUILT)

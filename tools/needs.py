@@ -1,0 +1,277 @@
+"""What each output computes and imports: found in processes of their own, shown in a table.
+
+The table stands in docs/performance.md; this tool writes it, and `make bench` with all the rest. A
+test holds it against what is found. An *output* is a kind of file or a command, asked of one small
+design of each kind.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+ROOT: Final = Path(__file__).resolve().parents[1]
+PAGE: Final = ROOT / "docs" / "performance.md"
+BEGIN: Final = "<!-- what each output needs: written by tools/needs.py -->"
+END: Final = "<!-- end of what each output needs -->"
+
+PACKAGES: Final = (
+    "numpy", "shapely", "ezdxf", "manifold3d", "trimesh", "networkx", "lxml", "jinja2", "rich",
+    "OCP", "matplotlib",
+)  # fmt: skip
+"""What the program may import, of which more is imported than the standard library has."""
+
+DESIGNS: Final = {"gear-pair": "ellipse", "cam": "plate_cam_offset_roller"}
+"""A profile of each kind: nothing is ordered besides the files that are asked for."""
+
+COMMANDS: Final = {
+    "check": ("check", "{file}"),
+    "mesh": ("mesh", "{file}"),
+    "follow": ("follow", "{file}", "{folder}/profile.csv"),
+    "accuracy": ("accuracy", "{file}", "--repeat", "1"),
+    "compare": ("compare", "{file}", "--set", "output.chord_tolerance_mm=0.001,0.002"),
+    "view": ("view", "{file}"),
+}
+"""Outputs that are no kinds of files, and their words; of the live view what a save has made."""
+
+ONLY: Final = {"mesh": "gear-pair", "follow": "cam"}
+"""Commands that one kind of design has."""
+
+STUDIES: Final = ("meshing", "follow")
+"""Stages of a result that are no properties of it."""
+
+REPEATS: Final = 3
+"""Processes of which the median counts."""
+
+HEAD: Final = "## What each output needs\n"
+
+ABOUT: Final = """\
+A process for each row, asked for that output alone: of the profile `ellipse`, 41 : 41 teeth, and of
+`plate_cam_offset_roller`. Processor time with the start of Python, and the largest memory held, of
+the middle one of {repeats} processes; a bare `python -c "import numpy, shapely"` takes {seconds}
+and {memory}. Stages are the properties of a result that were computed, each once, in their order;
+other results are those of designs that are compared or refined, or shown with coarser outlines.
+Rooms are those beyond a build of `csv`, which has, of both kinds, {rooms}."""
+
+COLUMNS: Final = (
+    "| kind | output | stages | packages | rooms besides | time | peak memory |",
+    "|---|---|---|---|---|---|---|",
+)
+
+CHILD: Final = '''
+import contextlib, io, json, resource, sys, time
+from functools import cached_property
+
+def kept():
+    """The most memory that this process held, bytes; the one that began it does not count."""
+    with contextlib.suppress(OSError), open("/proc/self/status") as told:
+        return 1024 * int(next(line.split()[1] for line in told if line.startswith("VmHWM")))
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return most if sys.platform == "darwin" else 1024 * most
+
+def run(words):
+    if words[0] == "view":
+        from gearcam.view.work import show
+        reply = show(None, words[1])
+        assert not reply["error"], reply
+        return
+    from gearcam.cli import main
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        code = main([*words, "-o", sys.argv[1]])
+    assert code == 0, (words, said.getvalue())
+
+def stages(made, studies):
+    result, *others = made
+    done = [
+        name for name in vars(result)
+        if isinstance(getattr(type(result), name, None), cached_property)
+    ]
+    done += [name for name in studies if name in result.timings]
+    return [*done, f"other results: {len(others)}"] if others else done
+
+def main():
+    asked, packages, studies = (json.loads(text) for text in sys.argv[2:])
+    made = []
+    if asked:
+        from gearcam.result import Result
+        begun = Result.__init__
+        def begin(result, *given, **named):
+            begun(result, *given, **named)
+            made.append(result)
+        Result.__init__ = begin
+    else:
+        import numpy, shapely
+    for words in asked or [()]:
+        made.clear()
+        if words:
+            run(words)
+        loaded = [name.split(".") for name in sys.modules]
+        print(json.dumps({
+            "stages": stages(made, studies) if made else [],
+            "packages": [name for name in packages if [name] in loaded],
+            "rooms": sorted({parts[1] for parts in loaded if parts[0] == "gearcam" and parts[1:]}),
+            "seconds": time.process_time(),
+            "memory": kept(),
+        }), flush=True)
+
+main()
+'''
+
+
+@dataclass(frozen=True, kw_only=True)
+class Needs:
+    """What was computed and imported until an output was made.
+
+    Parameters
+    ----------
+    stages : tuple of str
+        Properties of the result.
+    packages, rooms : frozenset of str
+        What is loaded, of `PACKAGES` and of gearcam.
+    seconds : float
+        Processor time of the process.
+    memory : float, bytes
+        The most that it held.
+    """
+
+    stages: tuple[str, ...]
+    packages: frozenset[str]
+    rooms: frozenset[str]
+    seconds: float
+    memory: float
+
+
+def outputs(kind: str) -> tuple[str, ...]:
+    """Return the outputs of a `kind` of design, ``follow`` after the file that it reads."""
+    from gearcam.designs.kind import KINDS
+
+    commands = [name for name in COMMANDS if ONLY.get(name, kind) == kind]
+    files = [name for name in KINDS[kind].formats if name != "csv"]
+    return "csv", *commands, *files
+
+
+def needs(kind: str, asked: Sequence[str]) -> Iterator[Needs]:
+    """Yield what is loaded after each of some outputs, made one after the other in one process.
+
+    Parameters
+    ----------
+    kind : str
+        The kind of design.
+    asked : sequence of str
+        Outputs; none for a bare start of numpy and shapely.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        words = [_words(kind, output, Path(folder)) for output in asked]
+        if list(asked[:1]) == ["follow"]:
+            _child(folder, [_words(kind, "csv", Path(folder))])
+        yield from _child(folder, words)
+
+
+def _words(kind: str, output: str, folder: Path) -> list[str]:
+    """Return the words of the command line for an output, its design written beside."""
+    name = DESIGNS[kind]
+    text = (ROOT / "profiles" / f"{name}.toml").read_text(encoding="utf-8")
+    wanted = "csv" if output in COMMANDS else output
+    file = folder / f"{output}.toml"
+    file.write_text(re.sub(r"files = \[.*\]", f'files = ["{wanted}"]', text), encoding="utf-8")
+    words = COMMANDS.get(output, ("build", "{file}"))
+    return [word.format(file=file, folder=folder / name) for word in words]
+
+
+def _child(folder: str, asked: Sequence[Sequence[str]]) -> list[Needs]:
+    told = [json.dumps(part) for part in (asked, PACKAGES, STUDIES)]
+    done = subprocess.run(
+        [sys.executable, "-c", CHILD, folder, *told],
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    return [_read(json.loads(line)) for line in done.stdout.splitlines()]
+
+
+def _read(row: Mapping[str, Any]) -> Needs:
+    return Needs(
+        stages=tuple(row["stages"]),
+        packages=frozenset(row["packages"]),
+        rooms=frozenset(row["rooms"]),
+        seconds=row["seconds"],
+        memory=row["memory"],
+    )
+
+
+def texts(found: Needs, usual: Iterable[str]) -> tuple[str, str, str]:
+    """Return stages, packages and rooms beyond the `usual` ones as the table has them."""
+    packages = [name for name in PACKAGES if name in found.packages]
+    return tuple(
+        ", ".join(each) for each in (found.stages, packages, sorted(found.rooms - set(usual)))
+    )  # pyright: ignore[reportReturnType]
+
+
+def section() -> str:
+    """Return the section of the page, measured."""
+    bare = _median([next(iter(needs("cam", ()))) for _ in range(REPEATS)])
+    rows, shared = [], None
+    for kind in DESIGNS:
+        usual: frozenset[str] = frozenset()
+        for output in outputs(kind):
+            found = _median([next(iter(needs(kind, [output]))) for _ in range(REPEATS)])
+            usual = found.rooms if output == "csv" else usual
+            cells = [kind, output, *texts(found, usual), _seconds(found), _memory(found)]
+            rows.append(f"| {' | '.join(cells)} |")
+            print(rows[-1], flush=True)
+        shared = usual if shared is None else shared & usual
+    about = ABOUT.format(
+        repeats=REPEATS,
+        seconds=_seconds(bare),
+        memory=_memory(bare),
+        rooms=", ".join(sorted(shared or ())),
+    )
+    return "\n".join([BEGIN, HEAD, textwrap.fill(about, 100), "", *COLUMNS, *rows, END, ""])
+
+
+def _median(found: Sequence[Needs]) -> Needs:
+    return sorted(found, key=lambda one: one.seconds)[len(found) // 2]
+
+
+def _seconds(found: Needs) -> str:
+    return f"{found.seconds:.2f} s"
+
+
+def _memory(found: Needs) -> str:
+    return f"{found.memory / 2**20:.0f} MiB"
+
+
+def table(page: str) -> dict[tuple[str, str], tuple[str, str, str]]:
+    """Return stages, packages and rooms that a page tells of, by kind and output."""
+    body = page.partition(BEGIN)[2].partition(END)[0]
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in body.splitlines()
+        if line.startswith("| ")
+    ]
+    return {(row[0], row[1]): (row[2], row[3], row[4]) for row in rows[1:]}
+
+
+def write(page: str) -> None:
+    """Write a `page` with a new section in the place of the one that it has, or at its end."""
+    before, _, rest = page.partition(BEGIN)
+    after = rest.partition(END)[2].lstrip("\n")
+    made = f"{before.rstrip()}\n\n{section()}" + (f"\n{after}" if after else "")
+    PAGE.parent.mkdir(exist_ok=True)
+    PAGE.write_text(made, encoding="utf-8")
+    print(f"wrote {PAGE.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    write(PAGE.read_text(encoding="utf-8"))
