@@ -232,8 +232,9 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
         earlier, changes = changes, np.abs(found - before)
         if np.all(changes <= _AGREED * found) or cells >= most:
             break
-    told = np.isfinite(earlier) & (earlier > 0.0)
-    falls = np.minimum(1.0, np.divide(2.0 * changes, earlier, out=np.ones(2), where=told))
+    falls = np.ones(2)
+    fell = np.isfinite(earlier) & (earlier > 0.0)
+    falls[fell] = np.minimum(1.0, 2.0 * changes[fell] / earlier[fell])
     perimeter, area = found.tolist()
     unknown = _unknown(segments, cells, nodes, found)
     errors = (changes * falls + unknown + _ROUNDING * found).tolist()

@@ -245,11 +245,13 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         off = misses[np.abs(points - corner.point).argmin()]
         theta = Jet([np.array([loss.theta])])
-        side, beside = wall.curve.mechanism.away, (*(corner.point + off), *(corner.point - off))
-        with np.errstate(invalid="ignore"):  # where a moved point cannot be touched any more
+        # moved, a corner may be out of the follower's reach: it has no lift then
+        with np.errstate(invalid="ignore"):
             lifts = [
-                resting(wall.mechanism, complex(point), side)(theta).derivatives()[0]
-                for point in (corner.point, *beside)
+                resting(wall.mechanism, complex(point), wall.curve.mechanism.away)(
+                    theta
+                ).derivatives()[0]
+                for point in (corner.point, *(corner.point + off), *(corner.point - off))
             ]
         change = float(np.nanmax(np.abs(np.subtract(lifts[1:], lifts[0])), initial=0.0))
         worst = max(worst, change + moved.lift[0])
