@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.cams.checks import pressure_angle
 from gearcam.cams.disc import make_cam
 from gearcam.cams.groove import make_groove
 from gearcam.errors import InfeasibleError
@@ -191,6 +192,12 @@ def test_lifts_beyond_all_numbers(lift: str) -> None:
         MotionFormula(lift=lift).program(DEFAULT, oscillating=True)
 
 
+def test_what_is_too_steep_to_tell_from_a_jump() -> None:
+    with pytest.raises(InfeasibleError, match=r"is not smooth .*some arc seconds counts as a jump"):
+        waves("5*tanh(1e6*(theta - 3)) - 5*tanh(1e6*(theta - 4))")
+    waves("5*tanh(1e3*(theta - 3)) - 5*tanh(1e3*(theta - 4))")
+
+
 # --- continuity -----------------------------------------------------------------------------------
 
 
@@ -219,6 +226,25 @@ def test_a_size_goes_through_the_limit_of_undercut_without_a_leap(kind: str) -> 
         assert bool(one.corners) == (depth > 0.0)
         assert one.shortfall <= max(depth, 0.0) ** 2 + 1e-12
         assert one.profile_radius[0] == pytest.approx(max(-depth, 0.0), abs=1e-11)
+
+
+def test_a_prime_radius_goes_through_the_limit_of_pressure_angles() -> None:
+    """Of steady velocity the angle is largest at the beginning, ``atan(s'/prime)``."""
+    limit = 10.0 / math.radians(60.0) / math.tan(math.radians(30.0))
+    for share in (-1e-6, -1e-12, 1e-12, 1e-6):
+        made = cam(
+            "point",
+            "constant-velocity",
+            10.0,
+            STEEP,
+            prime_radius=limit * (1.0 + share),
+            offset=0.0,
+        )
+        found = made.pressure("rise")
+        assert found is not None
+        assert found.largest == pytest.approx(math.radians(30.0), rel=abs(share) + 1e-13)
+        told = [one for one in pressure_angle(made, math.nan) if "rise" in one.message]
+        assert [one.where for one in told] == ["rise, at 0 deg"] * (share < 0.0)
 
 
 @pytest.mark.parametrize("law", ["cycloidal", "constant-velocity"])
