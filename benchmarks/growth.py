@@ -125,9 +125,15 @@ def measured(series: Series) -> list[Row]:
     ]
 
 
-def page(rows: list[Row]) -> str:
-    """The page as text."""
-    lines = [HEAD, *environment(("gearcam", "numpy", "shapely")), ""]
+def page(rows: list[Row], missing: int) -> str:
+    """The page as text, and how many series are still missing."""
+    stopped = f"The run was stopped before {missing} more series.\n"
+    lines = [
+        HEAD,
+        *([stopped] if missing else []),
+        *environment(("gearcam", "numpy", "shapely")),
+        "",
+    ]
     lines += ["| what grows | cost of | size | least | most | n^ | last n^ | memory | last n^ | |"]
     lines += ["|---|---|---|---|---|---|---|---|---|---|", *(row.line() for row in rows), ""]
     for row in rows:
@@ -139,14 +145,14 @@ def page(rows: list[Row]) -> str:
 def main() -> int:
     """Measure all series, or those whose names hold a word."""
     keep_freed_memory()  # as the command line does
-    words, rows = sys.argv[1:], []
-    for series in growth_cases.all_series():
+    words, rows, every = sys.argv[1:], [], growth_cases.all_series()
+    for number, series in enumerate(every, start=1):
         if not words or any(word in series.name for word in words):
             found = measured(series)
             rows += found
             print("\n".join(row.line() for row in found), flush=True)
             if not words:
-                PAGE.write_text(page(rows), encoding="utf-8")
+                PAGE.write_text(page(rows, len(every) - number), encoding="utf-8")
     return 0 if all(row.passed or row.given_up for row in rows) else 1
 
 
