@@ -5,6 +5,7 @@
 # make slow    the slow tests    make bench   measure, and write docs/performance.md
 # make needs   what each output computes and imports, into docs/performance.md
 # make peers   compare flanks with those of another package
+# make growth   how time and memory grow with the size of designs; write docs/growth.md
 # make accuracy  compare methods, error against run time, and write docs/accuracy.md
 # make compare BASE=COMMIT [N=50] [SEED=1] [MORE=...]   what both make of N random designs of each
 #              kind and of the gallery; MORE goes to tools/compare.py, which tells of its options
@@ -26,7 +27,7 @@ RUN    := run install
 TEST   := $(RUN) step plot test
 
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench needs peers accuracy compare matrix notebooks lock clean help
+.PHONY: demo test lint slow bench needs growth peers accuracy compare matrix notebooks lock clean help
 
 help:
 	@sed -n '/^$$/q; s/^# \{0,1\}//p' Makefile
@@ -51,8 +52,7 @@ slow: $(VENV)/.test
 bench: $(VENV)/.bench
 	$(BIN)/python benchmarks/run.py
 
-needs: $(VENV)/.test
-	$(BIN)/python tools/needs.py
+.PHONY: demo test lint slow bench needs growth peers accuracy compare matrix notebooks lock clean help
 
 peers: $(VENV)/.bench
 	$(BIN)/python benchmarks/agreement.py

@@ -112,9 +112,9 @@ def table(timings: Sequence[Timing]) -> list[str]:
     return ["| what | median | samples |", "|---|---|---|", *(timing.line() for timing in timings)]
 
 
-def environment() -> list[str]:
-    """What a reader needs to judge the numbers: machine, versions, commit, date."""
-    packages = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
+def environment(named: Sequence[str] = PACKAGES) -> list[str]:
+    """What a reader needs to judge the numbers: machine, versions of packages, commit, date."""
+    packages = ", ".join(f"{name} {version(name)}" for name in named)
     system = f"{platform.system()} {platform.machine()}"
     return [
         f"- machine: {_processor()}, {os.cpu_count()} cores, {system}",

@@ -58,10 +58,21 @@ class PolarCurve:
         )
 
     def clear(self, points: Plane, beyond: Array) -> Array:
-        """Return how far points have to go at least, mm, until `beyond` them changes its sign.
+        """Return how far points have to go at least until what is beyond the curve changes.
 
         On a way that keeps off the shaft it changes by the length and by the radius that is turned
         past; any other way leads through the space within the least radius.
+
+        Parameters
+        ----------
+        points : (n,) complex array, mm
+            In the frame of its wheel or ring.
+        beyond : (n,) array, mm
+            What `PolarCurve.beyond` tells of them.
+
+        Returns
+        -------
+        (n,) array, mm
         """
         least = float(self._radii.min())
         steep = float(np.abs(np.diff(self._radii) / np.diff(self._polar)).max())

@@ -68,6 +68,15 @@ class _Seen(NamedTuple):
     depth: Array
     clear: Array
 
+    def before(self, index: Ints, more: _Seen) -> _Seen:
+        """Return these with `more`, one before each of numbers `index`."""
+        return _Seen(
+            np.insert(self.corner, index, more.corner),
+            np.insert(self.roll, index, more.roll),
+            np.insert(self.depth, index, more.depth),
+            np.insert(self.clear, index, more.clear),
+        )
+
 
 def rolls_of(own: Toothing, mate: Toothing, phi: Array) -> Rolls:
     """Return a wheel `own` and its `mate` at driver angles `phi`, rad, that do not fall."""
@@ -116,8 +125,7 @@ def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: Polar
         if not k.size:
             corner, deep, end = _ends(seen, count - 1)
             return Stays(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])
-        more = look(seen.corner[k], (seen.roll[k] + seen.roll[k + 1]) // 2)
-        seen = _Seen(*(np.insert(old, k + 1, new) for old, new in zip(seen, more, strict=True)))
+        seen = seen.before(k + 1, look(seen.corner[k], (seen.roll[k] + seen.roll[k + 1]) // 2))
 
 
 def _open(seen: _Seen, moved: Array) -> Mask:

@@ -98,7 +98,7 @@ class HalfTeeth:
         at: Any = shapely.points(points.real, points.imag)
         body = self.points[self.starts[self.count] :]  # by its edges, of which it has many
         ends = np.stack([body, np.roll(body, -1)], axis=1)
-        edges = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
+        edges: Any = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
         tree = shapely.STRtree(np.concatenate([self.polygons[: self.count], edges]))
         least = tree.query_nearest(at, return_distance=True, all_matches=False)[1]
         for whole in self.polygons[self.count :]:
