@@ -27,6 +27,8 @@ _SAME = 1e-9
 _INSET = 1e-12
 """Share of an interval that its outermost places keep from the knots: still of its own piece."""
 
+_ENDS = [0, -1]
+
 _PLACES, _LEAST = 192, 48
 """Places in all intervals together, and at least in each."""
 
@@ -306,6 +308,9 @@ def extremes_of_each(
     """
     x = places_between(knots, cells=cells)
     values, slopes = (found.reshape(-1, *x.shape) for found in functions(x.ravel()))
+    # the outermost places keep from the knots, the values are those at them
+    inset = _INSET / (1.0 - 2.0 * _INSET) * (x[:, -1:] - x[:, :1]) * [-1.0, 1.0]
+    values[..., _ENDS] += slopes[..., _ENDS] * inset
     return _extremes_among(functions, x, values, slopes)
 
 
@@ -346,21 +351,16 @@ def _extremes_among(
         (slopes[which, piece, cell], slopes[which, piece, cell + 1]),
     )
     tops = functions(roots)[0, which, number] if roots.size else roots
-    ends = [0, -1]
-    # the outermost places keep from the knots, the values are those at them
-    inset = _INSET / (1.0 - 2.0 * _INSET) * (x[:, -1:] - x[:, :1]) * [-1.0, 1.0]
-    sides = values[..., ends] + slopes[..., ends] * inset
     # a slope that is rounded to 0 changes no sign: where it begins and ends to be
     flat = slopes == 0.0
     edge = flat.copy()
     edge[..., 1:-1] &= ~(flat[..., :-2] & flat[..., 2:])
-    edge[..., ends] = False
+    edge[..., _ENDS] = True
     found = []
-    for k, own in enumerate(sides):
-        places = np.concatenate([x[:, ends].ravel(), roots[which == k], x[edge[k]]])
+    for k, own in enumerate(values):
+        places = np.concatenate([x[edge[k]], roots[which == k]])
         order = np.argsort(places, kind="stable")
-        own = np.concatenate([own.ravel(), tops[which == k], values[k][edge[k]]])
-        found.append((places[order], own[order]))
+        found.append((places[order], np.concatenate([own[edge[k]], tops[which == k]])[order]))
     return found
 
 
