@@ -18,13 +18,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
 from gearcam.gears.guide import Guide, RingShaft, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import RACK, RING, WHEEL, angle_text
+from gearcam.laws.ratio.span import RACK, RING, WHEEL, demand_smooth
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.quadrature import missed
 from gearcam.tolerances import Tolerances
@@ -265,7 +264,7 @@ def roll(
     Raises
     ------
     InfeasibleError
-        Where the ratio changes too fast for an arc length.
+        Where the ratio changes so fast that the centrodes have no smooth length.
     ValueError
         If not exactly one of the two sizes is given.
     """
@@ -274,13 +273,8 @@ def roll(
         _, r, dr = _radii(law.ratio.derivatives(phi, 1), law.mate)
         return np.sqrt(r * r + dr * dr)
 
-    try:
+    with demand_smooth("the way along the centrodes"):
         unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()
-    except NotSmoothError as error:
-        raise InfeasibleError(
-            "the ratio changes so fast that the centrodes have no length to be told",
-            where=angle_text(error.place),
-        ) from error
     lobes = law.lobes
     if not lobes.closed:
         unit = unit.shifted(-float(unit(0.0)))
