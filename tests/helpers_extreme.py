@@ -74,7 +74,8 @@ def outcome(path: Path, *, searched: bool = False) -> tuple[list[str], Any]:
         result = gearcam.build(gearcam.load(path))
         codes = whole(result)
     except DesignError as error:
-        return _untold(must, "refused by reading", str(error)), None
+        words = str(error).replace(str(path), "")  # whose digits are no value
+        return _untold(must, "refused by reading", words), None
     except InfeasibleError as error:
         wrong = _untold(must, "refused", str(error))
         if must.ending == "refused" and wrong:
