@@ -52,7 +52,11 @@ slow: $(VENV)/.test
 bench: $(VENV)/.bench
 	$(BIN)/python benchmarks/run.py
 
-.PHONY: demo test lint slow bench needs growth peers accuracy compare matrix notebooks lock clean help
+needs: $(VENV)/.test
+	$(BIN)/python tools/needs.py
+
+growth: $(VENV)/.test
+	$(BIN)/python benchmarks/growth.py
 
 peers: $(VENV)/.bench
 	$(BIN)/python benchmarks/agreement.py

@@ -46,7 +46,7 @@ def small(**given: Any) -> GearPairResult:
     return job(law, given.pop("teeth", (22, 22)), **{"tolerance": 0.01, **sizes, **given})
 
 
-GIVEN = ("design", "tolerances", "timings", "sizes")
+GIVEN = ("design", "tolerances", "timings", "sizes", "sought")
 """What a job has from the beginning."""
 
 

@@ -149,7 +149,7 @@ def test_files_that_hold_no_rise_are_told(tmp_path: Path, text: str, message: st
 
 
 def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
-    with pytest.raises(ColumnsError, match="cannot be read: No such file"):
+    with pytest.raises(ColumnsError, match="cannot be read: there is no such file"):
         read_rows(str(tmp_path / "none.csv"))
     (tmp_path / "picture.csv").write_bytes(b"\xff\xfe\x00\x81")
     with pytest.raises(ColumnsError, match="not a text file in UTF-8"):

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Final
 
 from gearcam.errors import WriteError
+from gearcam.numerals import shown
 
 _TEMPORARY: Final = ".gearcam-"
 """Beginning of temporary names."""
@@ -125,7 +126,7 @@ def lock(folder: Path) -> Iterator[bool]:
                 locked = True
             except BlockingIOError as error:
                 if time.monotonic() > end:
-                    words = f"another gearcam has been writing to it for {_PATIENCE:.0f} s"
+                    words = f"another gearcam has been writing to it for {shown(_PATIENCE)} s"
                     raise OSError(errno.EBUSY, words, str(folder)) from error
                 time.sleep(_PAUSE)
             except OSError:  # a disk of another computer may know no locks

@@ -36,6 +36,9 @@ _EVEN = 1e-12
 _ONE = 1e-12
 """Difference of the ends of arcs, in travels, that is rounding: they are one."""
 
+_ALIKE = 1e-9
+"""Difference of contact ratios that is none: what symmetry makes equal rounding makes differ."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FlankPairs(Mounting):
@@ -174,6 +177,12 @@ class FlankPairs(Mounting):
         """
         start, end = (self.track.arc_length(edge) for edge in self.arcs)
         return np.maximum(end - start, 0.0) / self.pitch
+
+    @property
+    def weakest(self) -> int:
+        """Place of the smallest contact ratio, the first of those that only rounding tells apart."""
+        ratios = self.contact_ratios
+        return int(np.argmax(ratios <= ratios.min() + _ALIKE))
 
     @cached_property
     def stretches(self) -> tuple[Array, Array, Ints]:

@@ -69,7 +69,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
         worst, found = float(pairs.contact_ratios.min()), non_contact(pairs)
         if worst >= limit and not found:
             continue
-        tooth = int(pairs.tooth(1, pairs.numbers)[pairs.contact_ratios.argmin()])
+        tooth = int(pairs.tooth(1, pairs.numbers)[pairs.weakest])
         message = _FEW
         if found and all(stretch.edges for stretch in found):
             apart = max(stretch.apart for stretch in found)

@@ -120,7 +120,8 @@ def _mesh(result: GearPairResult) -> Tree:
     thin = limit_of(KIND, "thin-tip", limits) * module
     gear = min(result.gears, key=lambda gear: gear.profile.tip_thickness.min())
     tooth = int(gear.profile.tip_thickness.argmin()) + 1
-    way, (phi1, angle) = max(subject.pressure_angles.items(), key=lambda item: item[1][1])
+    # where symmetry makes both ways alike, the first is told, not what rounding makes larger
+    way, (phi1, angle) = max(subject.pressure_angles.items(), key=lambda item: round(item[1][1], 9))
     places, values = subject.accelerations
     worst = int(np.argmax(np.abs(values)))
     return {
