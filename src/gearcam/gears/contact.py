@@ -180,7 +180,7 @@ class FlankPairs(Mounting):
 
     @property
     def weakest(self) -> int:
-        """Place of the smallest contact ratio, the first of those that only rounding tells apart."""
+        """Place of the smallest contact ratio, the first where only rounding tells them apart."""
         ratios = self.contact_ratios
         return int(np.argmax(ratios <= ratios.min() + _ALIKE))
 
