@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -145,7 +146,7 @@ def test_it_stays_near_a_long_step_beside_a_bend(radius: float, length: float) -
         points = np.append(radius * (np.exp(1j * (angle - np.pi / 2)) + 1j), length)
         tangents = np.append(np.exp(1j * angle), 1.0)
         run = Run(points=as_pairs(points), tangents=as_pairs(tangents))
-        made = drawn(fit_splines([run], tolerance)[0])
+        made: Any = drawn(fit_splines([run], tolerance)[0])
         straight = made.real > 0.0
         assert np.abs(made[straight].imag).max() <= tolerance
 

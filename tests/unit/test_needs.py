@@ -21,7 +21,8 @@ QUICK = {kind: [one for one in needs.outputs(kind) if one not in SLOW] for kind 
 def told(kind: str, output: str) -> tuple[str, set[str], set[str]]:
     """Stages, packages and rooms of a row; rooms those beyond a build of csv."""
     stages, packages, rooms = TABLE[kind, output]
-    return stages, *({name for name in one.split(", ") if name} for one in (packages, rooms))
+    listed = [{name for name in one.split(", ") if name} for one in (packages, rooms)]
+    return stages, listed[0], listed[1]
 
 
 def test_every_output_stands_in_the_table() -> None:
