@@ -19,7 +19,7 @@ from gearcam.cams.curve import CamCurve, ProfileSegments
 from gearcam.display import Brief
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes, extremes_among
+from gearcam.numeric.piecewise import extremes_among, places_between
 from gearcam.numeric.roots import bracketed_root
 
 _GAP = 1e-11
@@ -93,11 +93,17 @@ def range_of(
     if not stretches:
         return None
     cuts = [curve.program.cuts_between(*ends) for ends in stretches]
-    found = [extremes(function, own) for own in cuts]
-    # extremes keep off the knots: what is largest there is taken from each side's own piece
-    ends, states = curve.program.sides(cuts)
-    at_ends = pick(curve.contact_of(states, 0)).c[0] + np.zeros_like(ends)
-    theta, value = np.concatenate([*found, [ends, at_ends]], axis=1)
+    # at the ends of cells each side's own piece tells, and not what lies beside the knot
+    _, states = curve.program.sides(cuts)
+    at_ends = pick(curve.contact_of(states, 0)).c[0] + np.zeros(states.shape[1])
+    found = []
+    shares = np.cumsum([len(own) - 1 for own in cuts])[:-1]
+    for own, sides in zip(cuts, np.split(at_ends.reshape(2, -1), shares, axis=1), strict=True):
+        x = places_between(own)
+        values, slopes = (row.reshape(x.shape) for row in function(x.ravel()))
+        x[:, [0, -1]], values[:, [0, -1]] = np.stack([own[:-1], own[1:]], axis=1), sides.T
+        found.append(extremes_among(function, x, values, slopes))
+    theta, value = np.concatenate(found, axis=1)
     low, high = (
         Extreme(theta=float(theta[k]), value=float(value[k]))
         for k in (value.argmin(), value.argmax())
