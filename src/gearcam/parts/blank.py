@@ -7,7 +7,7 @@ holes* lie between hub and rim and are as large as the rim that they keep allows
 takes a pin that stands in the housing and ends the way of an open wheel. *Clearance* is what is
 taken off the outline all around; if asked, what a shaft, a bolt or a pin goes through follows it.
 
-Refused by reading: sizes that contradict each other or lack their partner.
+Refused by reading: sizes that contradict each other or lack their partner, and too fine keyways.
 
 Depends on quantities only.
 """
