@@ -190,6 +190,9 @@ def test_a_hollow_too_tight_for_the_outside_is_refused() -> None:
     assert isinstance(edge, Contour)
     (edge,) = nearest(refused.value, design, 1).parts[1].contours
     assert isinstance(edge, Circle)
+    tables = replace(design, output=replace(design.output, files=("csv",)))
+    with pytest.raises(InfeasibleError, match="follow its roots"):
+        _ = gearcam.build(tables).findings
 
 
 def test_bolts_lie_in_the_rim() -> None:

@@ -7,7 +7,7 @@ holes* lie between hub and rim and are as large as the rim that they keep allows
 takes a pin that stands in the housing and ends the way of an open wheel. *Clearance* is what is
 taken off the outline all around; if asked, what a shaft, a bolt or a pin goes through follows it.
 
-Refused by reading: sizes that contradict each other or lack their partner.
+Refused by reading: sizes that contradict each other or lack their partner, and too fine keyways.
 
 Depends on quantities only.
 """
@@ -27,6 +27,10 @@ KIND: Final = "parts"
 
 _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
 """Sizes of what a shaft, a bolt or a pin goes through."""
+
+_KEYED: Final = 1e-4
+"""Part of a bore from which on a keyway is one, a micrometre in 10 mm: its corners stay apart in
+the single precision of meshes too."""
 
 _COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores")
 """Given once for both wheels."""
@@ -142,6 +146,11 @@ def _bore_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
     if bool(one.keyway_width) != bool(one.keyway_depth):
         missing = "keyway_width" if one.keyway_depth else "keyway_depth"
         yield missing, "a keyway has width and depth", "keyway_width_mm with keyway_depth_mm"
+    least = shown(_KEYED * bore)
+    for name in ("keyway_width", "keyway_depth"):
+        if 0.0 < getattr(one, name) < float(least):
+            rule = f"{least} mm or more in this bore, or 0 of both for no keyway"
+            yield name, "is too fine for a keyway", rule
     if bore and one.keyway_width >= bore:
         yield "keyway_width", "is as wide as the bore", f"below the bore's {shown(bore)} mm"
     if one.keyway_width and one.bore_flat:

@@ -203,8 +203,12 @@ class PairStages(Result):
 
     @property
     def ordered(self) -> bool:
-        """Whether the design orders parts: a blank, or files that are made from parts."""
-        return self.design.blank != Blank() or not set(self.design.output.files) <= _PLAIN
+        """Whether the design orders parts: a blank, files of parts, an outside that follows roots.
+
+        Whether there is such an outside is known when it is made; of a round one its rim tells.
+        """
+        asked = self.design.blank != Blank() or self.design.ring.outer == "follow"
+        return asked or not set(self.design.output.files) <= _PLAIN
 
     @cached_property
     def parts(self) -> tuple[Part, Part]:
