@@ -208,8 +208,11 @@ def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> Non
     slot = next(o for o in part.openings if o.kind == "SLOT")
     assert isinstance(slot.shape, Loop)
     assert np.abs(slot.shape.bulges).max() <= 1.0, "an arc beyond a half circle"
-    # midway between bore and roots
-    radius = 30.0
+    # midway between bore and roots; farther out where the slot's own ends come near each other
+    ends = np.hypot(*slot.shape.vertices.T)
+    radius = 0.5 * float(ends.max() + ends.min())
+    roomiest = 50.0 / (1.0 + math.sin(0.5 * travel)) if travel > math.pi else 30.0
+    assert radius == pytest.approx(roomiest, abs=0.5)
     wanted = travel * radius * pin + math.pi * pin**2 / 4
     assert slot.shape.moments.area == pytest.approx(wanted, abs=travel * pin * 1e-3)
     grown = region(slot, 1e-5).buffer(1e-3, quad_segs=8)
@@ -226,6 +229,18 @@ def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> Non
     beyond = math.radians(0.1)
     for phi in (-beyond, travel + beyond):
         assert not grown.contains(seat(phi))
+
+
+@pytest.mark.parametrize("wheel", [1, 2])
+def test_the_ends_of_a_long_slot_do_not_meet(wheel: int) -> None:
+    """On a disc of 100 mm: room to the edge, 50 - r, and to the other end, r*sin(travel/2)."""
+    travel = 5.8
+    widest = 100.0 * math.sin(0.5 * travel) / (1.0 + math.sin(0.5 * travel))
+    place = Workpiece(name=f"wheel {wheel}", wheel=wheel, rim=5.4, travel=travel)
+    (slot,) = openings(blank(stop_pin=0.98 * widest), [disc_contour(50.0)], place)
+    assert region(slot, 1e-3).is_valid
+    with pytest.raises(InfeasibleError, match="no room for the slot"):
+        openings(blank(stop_pin=1.001 * widest), [disc_contour(50.0)], place)
 
 
 @pytest.mark.parametrize("wheel", [1, 2])

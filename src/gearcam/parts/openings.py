@@ -208,7 +208,9 @@ def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tupl
     made: Any = points(places.real, places.imag)
     _, away = STRtree(segments).query_nearest(made, return_distance=True, all_matches=False)
     free = np.where(np.asarray(solid.contains(made)), away, 0.0)
-    room = np.minimum(free.reshape(len(radii), _RAYS).min(axis=1), radii - inner)
+    # past half a turn the two ends of the slot come to meet each other
+    apart = radii * math.sin(0.5 * travel) if travel > math.pi else np.inf
+    room = np.minimum(np.minimum(free.reshape(len(radii), _RAYS).min(axis=1), radii - inner), apart)
     best = int(room.argmax())
     return float(radii[best]), 2.0 * float(room[best])
 
