@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 from gearcam.gears.flank import trace
+from gearcam.numeric.hermite import on_cubics
+from gearcam.numeric.sampling import Sampler
 from helpers_pairs import profile
 
 NAMES = ["rounded_square", "log_spiral"]
@@ -53,3 +57,31 @@ def test_joints_are_where_curves_change() -> None:
     teeth = gear.toothing.teeth
     assert sum(len(run.pieces) for run in runs) == 6 * teeth
     assert len(runs) == 2 * teeth
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """One curve: straight as far as 0, where a unit circle begins."""
+
+    before: float
+    start = property(lambda self: np.array([-self.before]))
+    end = np.array([0.8])
+    corner = np.array([True])
+    breaks = np.array([0]), np.array([0.0])
+
+    def at(self, _: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        angle = np.maximum(way, 0.0)
+        return np.minimum(way, 0.0) + np.sin(angle) + 1j * (1 - np.cos(angle)), np.exp(1j * angle)
+
+
+@pytest.mark.parametrize("before", [1.0, 3.3, 7.7])
+def test_between_dense_points_are_cubics_where_the_curvature_jumps_too(before: float) -> None:
+    """So are fits measured: a step across the jump would hide the bend in a cubic of its own."""
+    tolerance = 1e-3
+    (run,) = Sampler(curves=Rounded(before), tolerance=tolerance, closed=False).runs(6, False)
+    p, t = run.points @ [1, 1j], run.tangents @ [1, 1j]
+    assert np.abs(p).min() < 1e-9
+    steps = np.repeat(np.arange(len(p) - 1), 9)
+    places = on_cubics(p, t, steps, np.tile(np.arange(1, 10) / 10, len(p) - 1))[0]
+    off = np.where(places.real < 0, np.abs(places.imag), np.abs(np.abs(places - 1j) - 1))
+    assert off.max() < 1e-3 * tolerance
