@@ -197,20 +197,16 @@ def test_a_long_step_is_checked_within_though_short_ones_lead_to_the_bend(
     assert 0.2 * TOLERANCE < worst < 1.05 * TOLERANCE
 
 
-def off_run(fitted: Any, run: Run) -> float:
+def off_run(fitted: Spline | tuple[np.ndarray, np.ndarray], run: Run) -> float:
     """The largest distance of many places of arcs, or of a spline, to the run's chords."""
     if isinstance(fitted, Spline):
-        share = np.linspace(0.0, 1.0, 101)[:, None, None]
-        places = np.vstack(bernstein(share, cubics(fitted)))
+        share, poles = np.linspace(0.0, 1.0, 101)[:, None, None], cubics(fitted)
+        weights = [math.comb(3, i) * share**i * (1 - share) ** (3 - i) for i in range(4)]
+        places = np.sum([weights[i] * poles[:, i] for i in range(4)], axis=0).reshape(-1, 2)
     else:
-        places = flatten_bulges(*fitted, math.inf, closed=False, least=100)
+        vertices, bulges = fitted
+        places = flatten_bulges(vertices, bulges, math.inf, closed=False, least=100)
     return distances(places, run.points, np.zeros(len(run.points) - 1), closed=False).max()
-
-
-def bernstein(share: np.ndarray, poles: np.ndarray) -> np.ndarray:
-    """Places on Bezier cubics, (n, k, 2)."""
-    weights = (math.comb(3, i) * share**i * (1 - share) ** (3 - i) for i in range(4))
-    return sum(weight * poles[:, i] for i, weight in enumerate(weights))
 
 
 def test_between_coarse_points_the_tangents_tell_the_curve() -> None:

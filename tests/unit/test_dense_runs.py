@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearcam.gears.flank import trace
+from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.hermite import on_cubics
 from gearcam.numeric.sampling import Sampler
 from helpers_pairs import profile
@@ -63,23 +64,24 @@ def test_joints_are_where_curves_change() -> None:
 class Rounded:
     """One curve: straight as far as 0, where a unit circle begins."""
 
-    before: float
-    start = property(lambda self: np.array([-self.before]))
+    start: np.ndarray
     end = np.array([0.8])
     corner = np.array([True])
     breaks = np.array([0]), np.array([0.0])
 
-    def at(self, _: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        angle = np.maximum(way, 0.0)
-        return np.minimum(way, 0.0) + np.sin(angle) + 1j * (1 - np.cos(angle)), np.exp(1j * angle)
+    def at(self, index: np.ndarray, parameter: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        del index  # there is one curve
+        side, angle = np.minimum(parameter, 0.0), np.maximum(parameter, 0.0)
+        return side + np.sin(angle) + 1j * (1 - np.cos(angle)), np.exp(1j * angle)
 
 
 @pytest.mark.parametrize("before", [1.0, 3.3, 7.7])
 def test_between_dense_points_are_cubics_where_the_curvature_jumps_too(before: float) -> None:
     """So are fits measured: a step across the jump would hide the bend in a cubic of its own."""
     tolerance = 1e-3
-    (run,) = Sampler(curves=Rounded(before), tolerance=tolerance, closed=False).runs(6, False)
-    p, t = run.points @ [1, 1j], run.tangents @ [1, 1j]
+    curves = Rounded(np.array([-before]))
+    (run,) = Sampler(curves=curves, tolerance=tolerance, closed=False).runs(6, False)
+    p, t = as_complex(run.points), as_complex(run.tangents)
     assert np.abs(p).min() < 1e-9
     steps = np.repeat(np.arange(len(p) - 1), 9)
     places = on_cubics(p, t, steps, np.tile(np.arange(1, 10) / 10, len(p) - 1))[0]

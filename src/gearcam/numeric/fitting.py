@@ -38,8 +38,8 @@ _SHARPER: Final = 2.0
 """How many times as sharp as its neighbour a bend is not even."""
 
 _LONE_CHECKS: Final = 16
-"""Parts of a step that is so many times as long as one beside it, or longer: a curve that fits at
-its ends may bow between them, whatever bends beyond."""
+"""Most parts of a step for being longer than one beside it: a curve that is long enough for it and
+fits at its ends may bow between them."""
 
 _MOST_CHECKS: Final = 50
 """Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
@@ -113,8 +113,8 @@ def checks_of(rows: RunPoints, tolerance: float, *, even: bool) -> Checks:
     """Return where the distances of a fit are taken.
 
     Next to a sharp bend what is fitted may carry on the bend's curvature over a long, flat step and
-    leave the curve between its ends: such a step is cut as finely as the bend asks for. So is one
-    beside much shorter ones, which alone would hardly be looked at.
+    leave the curve between its ends: such a step is cut as finely as the bend asks for. One
+    that is longer than those beside it is cut, too, or most of a curve would not be looked at.
 
     Parameters
     ----------
