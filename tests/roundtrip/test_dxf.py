@@ -14,6 +14,7 @@ from ezdxf.document import Drawing as Document
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.math import bulge_to_arc
 
+import gearcam
 from gearcam.drawings import Drawing, pair_drawing, wheel_drawing
 from gearcam.drawings import Path as Chain
 from gearcam.export.dxf import DxfStyle, dxf_bytes
@@ -21,6 +22,7 @@ from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
 from helpers_contour import bore, gear_contour, layers, square_contour
+from helpers_extreme import EXTREME
 
 TOLERANCE = 1e-3
 
@@ -112,6 +114,14 @@ def test_the_measured_error_stays_within_the_tolerance(curves: str, tolerance: f
     drawing = wheel_drawing(wheel(tolerance))
     error = measure_dxf(dxf_bytes(drawing, style(curves, tolerance=tolerance)), drawing.contours)
     assert 0.8 * tolerance < error <= tolerance
+
+
+@pytest.mark.parametrize("name", ["straight_into_round", "long_flank_short_bend"])
+def test_straight_flanks_that_end_in_bends_keep_the_tolerance(name: str) -> None:
+    result = gearcam.build(gearcam.load(EXTREME / f"{name}.toml"))
+    part = result.parts[0]
+    data = dxf_bytes(wheel_drawing(part), style(tolerance=part.tolerance))
+    assert measure_dxf(data, wheel_drawing(part).contours) <= part.tolerance
 
 
 def test_the_pair_is_measured_in_its_place(pair: Drawing) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +12,10 @@ import pytest
 from gearcam.numeric.arcs import fit_arcs, fit_closed
 from gearcam.numeric.bulges import deviation, farthest, flatten_bulges
 from gearcam.numeric.contour import Run
+from gearcam.numeric.splines import Spline, fit_splines
 from helpers_bulges import distances
-from helpers_contour import arc, disc_contour, gear_contour, line, sample, squashed
+from helpers_contour import arc, as_pairs, disc_contour, gear_contour, line, sample, squashed
+from helpers_splines import cubics
 
 TOLERANCE = 1e-3
 
@@ -167,6 +171,42 @@ def test_a_flat_step_beside_a_sharp_bend_is_checked_within(flat_radius: float) -
         vertices, bulges = fit_arcs([run], TOLERANCE)[0]
         worst = max(worst, distances(true, vertices, bulges, closed=False).max())
     assert 0.4 * TOLERANCE < worst < 1.02 * TOLERANCE
+
+
+@pytest.mark.parametrize("short", [0.01, 0.05])
+@pytest.mark.parametrize("fit", [fit_arcs, fit_splines], ids=["arcs", "splines"])
+def test_a_long_step_is_checked_within_though_short_ones_lead_to_the_bend(
+    fit: Callable[..., Any], short: float
+) -> None:
+    """A straight side ends in short steps, still straight; a wide bend follows.
+
+    One curve over the side and part of the bend leaves the side most in the middle of its long
+    step, where nothing bends nearby.
+    """
+    side = np.append(0.0, 10.0 + short * np.arange(6)) + 0j
+    worst = 0.0
+    for radius in np.geomspace(5.0, 500.0, 12):
+        bend, _ = sample(
+            arc(side[-1] + 1j * radius, radius, -np.pi / 2, -np.pi / 2 + 0.1), TOLERANCE / 50
+        )
+        run = Run(
+            points=np.vstack([as_pairs(side), bend.points[1:]]),
+            tangents=np.vstack([np.tile(bend.tangents[:1], (6, 1)), bend.tangents]),
+        )
+        worst = max(worst, off_run(fit([run], TOLERANCE)[0], run))
+    assert 0.2 * TOLERANCE < worst < 1.05 * TOLERANCE
+
+
+def off_run(fitted: Spline | tuple[np.ndarray, np.ndarray], run: Run) -> float:
+    """The largest distance of many places of arcs, or of a spline, to the run's chords."""
+    if isinstance(fitted, Spline):
+        share, poles = np.linspace(0.0, 1.0, 101)[:, None, None], cubics(fitted)
+        weights = [math.comb(3, i) * share**i * (1 - share) ** (3 - i) for i in range(4)]
+        places = np.sum([weights[i] * poles[:, i] for i in range(4)], axis=0).reshape(-1, 2)
+    else:
+        vertices, bulges = fitted
+        places = flatten_bulges(vertices, bulges, math.inf, closed=False, least=100)
+    return distances(places, run.points, np.zeros(len(run.points) - 1), closed=False).max()
 
 
 def test_between_coarse_points_the_tangents_tell_the_curve() -> None:

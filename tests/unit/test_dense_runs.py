@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 from gearcam.gears.flank import trace
+from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.hermite import on_cubics
+from gearcam.numeric.sampling import Sampler
 from helpers_pairs import profile
 
 NAMES = ["rounded_square", "log_spiral"]
@@ -53,3 +58,32 @@ def test_joints_are_where_curves_change() -> None:
     teeth = gear.toothing.teeth
     assert sum(len(run.pieces) for run in runs) == 6 * teeth
     assert len(runs) == 2 * teeth
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """One curve: straight as far as 0, where a unit circle begins."""
+
+    start: np.ndarray
+    end = np.array([0.8])
+    corner = np.array([True])
+    breaks = np.array([0]), np.array([0.0])
+
+    def at(self, index: np.ndarray, parameter: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        del index  # there is one curve
+        side, angle = np.minimum(parameter, 0.0), np.maximum(parameter, 0.0)
+        return side + np.sin(angle) + 1j * (1 - np.cos(angle)), np.exp(1j * angle)
+
+
+@pytest.mark.parametrize("before", [1.0, 3.3, 7.7])
+def test_between_dense_points_are_cubics_where_the_curvature_jumps_too(before: float) -> None:
+    """So are fits measured: a step across the jump would hide the bend in a cubic of its own."""
+    tolerance = 1e-3
+    curves = Rounded(np.array([-before]))
+    (run,) = Sampler(curves=curves, tolerance=tolerance, closed=False).runs(6, False)
+    p, t = as_complex(run.points), as_complex(run.tangents)
+    assert np.abs(p).min() < 1e-9
+    steps = np.repeat(np.arange(len(p) - 1), 9)
+    places = on_cubics(p, t, steps, np.tile(np.arange(1, 10) / 10, len(p) - 1))[0]
+    off = np.where(places.real < 0, np.abs(places.imag), np.abs(np.abs(places - 1j) - 1))
+    assert off.max() < 1e-3 * tolerance

@@ -37,6 +37,10 @@ _REACH: Final = 3
 _SHARPER: Final = 2.0
 """How many times as sharp as its neighbour a bend is not even."""
 
+_LONE_CHECKS: Final = 16
+"""Most parts of a step for being longer than one beside it: a curve that is long enough for it and
+fits at its ends may bow between them."""
+
 _MOST_CHECKS: Final = 50
 """Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
 
@@ -109,7 +113,8 @@ def checks_of(rows: RunPoints, tolerance: float, *, even: bool) -> Checks:
     """Return where the distances of a fit are taken.
 
     Next to a sharp bend what is fitted may carry on the bend's curvature over a long, flat step and
-    leave the curve between its ends: such a step is cut as finely as the bend asks for.
+    leave the curve between its ends: such a step is cut as finely as the bend asks for. One
+    that is longer than those beside it is cut, too, or most of a curve would not be looked at.
 
     Parameters
     ----------
@@ -125,17 +130,19 @@ def checks_of(rows: RunPoints, tolerance: float, *, even: bool) -> Checks:
     length = np.abs(np.diff(points))
     inside = of[1:] == of[:-1]
     bend = np.divide(np.abs(turns(tangents)), length, out=np.zeros_like(length), where=inside)
-    sharpest = bend.copy()
+    sharpest, shortest = bend.copy(), np.full_like(length, np.inf)
     for away in range(1, _REACH + 1):
-        beside = of[1:-away] == of[1 + away :]
+        beside = of[: -1 - away] == of[1 + away :]
         for near, far in (
             (slice(None, -away), slice(away, None)),
             (slice(away, None), slice(None, -away)),
         ):
             sharpest[near] = np.maximum(sharpest[near], np.where(beside, bend[far], 0.0))
+            shortest[near] = np.minimum(shortest[near], np.where(beside, length[far], np.inf))
     if not even:
         sharpest[sharpest < _SHARPER * bend] = 0.0
     parts = np.ceil(length * np.sqrt(sharpest / (8 * _CHECK_PART * tolerance)))
+    parts = np.maximum(parts, np.minimum(np.ceil(length / shortest), _LONE_CHECKS))
     parts = np.where(inside, np.clip(parts, 1, _MOST_CHECKS), 1).astype(np.int64)
     return _between(points, tangents, parts)
 

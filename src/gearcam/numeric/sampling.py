@@ -282,21 +282,22 @@ class Sampler(Brief):
         return largest
 
     def _rough(self, vertices: Array) -> Mask:
-        """Whether chords hold a break inside."""
-        chord = np.searchsorted(vertices, self._breaks, side="right") - 1
-        inside = (chord < len(vertices) - 1) & (self._breaks > vertices[chord])
+        """Whether the curvature may jump inside chords: at ends of curves, and at breaks."""
+        jumps = np.append(self.density[::_PROBES], self._breaks)
+        chord = np.searchsorted(vertices, jumps, side="right") - 1
+        inside = (chord < len(vertices) - 1) & (jumps > vertices[chord])
         rough = np.zeros(len(vertices) - 1, dtype=bool)
         rough[chord[inside]] = True
         return rough
 
     @cached_property
     def _breaks(self) -> Array:
-        """J where the curvature may jump: at the ends of curves, and at the breaks inside them."""
+        """J at the breaks inside curves."""
         index, parameter = self.curves.breaks
         start, end = self.curves.start[index], self.curves.end[index]
         share = (parameter - start) / (end - start)
         steps = np.arange(len(self.density)) / _PROBES
-        return np.append(self.density[::_PROBES], np.interp(index + share, steps, self.density))
+        return np.interp(index + share, steps, self.density)
 
     def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
         """Return the dense runs between corners.
@@ -311,15 +312,15 @@ class Sampler(Brief):
         Returns
         -------
         tuple of Run
-            Counter-clockwise; the vertices of the polygon and the ends of the curves, their
-            joints, are among their points.
+            Counter-clockwise; the vertices of the polygon, the ends of the curves, their joints,
+            and the breaks are among their points: between two of them the curvature is smooth.
         """
         vertices = self.chords[0]
         steps = np.arange(oversampling) / oversampling
         j = (vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel()
         smooth = self.density[:-1:_PROBES][~self.curves.corner]
         fixed = np.append(self.corners, self.least)
-        groups = (fixed, smooth, j)
+        groups = (fixed, smooth, self._breaks, j)
         rank = np.repeat(range(len(groups)), [len(group) for group in groups])
         j = np.concatenate(groups)
         order = np.lexsort((rank, j))
