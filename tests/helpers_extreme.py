@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import gearcam
+from gearcam.advice import demand_files
 from gearcam.designs.design import path_of
 from gearcam.errors import DesignError, InfeasibleError
 from helpers_pairs import PROFILES
@@ -101,6 +102,7 @@ def whole(result: Any) -> frozenset[str]:
     """Build all of a result, every fact a number: the codes of its findings at error level."""
     _ = result.parts
     json.dumps(result.facts.document, allow_nan=False)
+    demand_files(result)
     return frozenset(one.code for one in result.findings if one.severity == "error")
 
 

@@ -2,7 +2,8 @@
 
 What a refusal or a finding suggests is not told before it has been followed: each change is made
 in the design's own keys, the design is built through the same steps, wheels, checks and parts, and
-the change is kept if it is not refused, what was an error is gone, and no other error has come.
+the change is kept if neither it nor a file that it asks for is refused, what was an error is gone,
+and no other error has come.
 """
 
 from __future__ import annotations
@@ -155,6 +156,25 @@ def _value(value: object) -> str:
     return json.dumps(value)
 
 
+def demand_files(result: Result) -> None:
+    """Raise what refuses files that a design asks for, where its parts can be made.
+
+    Parameters
+    ----------
+    result : Result
+        Of the design.
+
+    Raises
+    ------
+    InfeasibleError
+        If one of the files cannot be made.
+    """
+    demands = KINDS[result.design.kind].room("advice").FILE_DEMANDS
+    for kind in result.design.output.files:
+        if kind in demands:
+            demands[kind](result)
+
+
 def _builds(result: Result) -> bool:
     """Whether the design is not refused when it is built."""
     try:
@@ -223,6 +243,7 @@ class Search:
             if self.advice.hopeless(other):
                 return None
             findings = other.findings
+            demand_files(other)
         except InfeasibleError as error:
             if self.refusal is None or error.what != self.refusal.what:
                 self.second = error

@@ -25,7 +25,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from helpers_documents import followed, job_of, written
 from helpers_pairs import job
-from helpers_remedies import CIRCLE, ERRORS, NAIL, REFUSED, UNDER, WARNED, pair
+from helpers_remedies import CIRCLE, ERRORS, NAIL, REFUSED, ROLLER, UNDER, WARNED, cam, pair
 
 DESIGNS = {name: (made[0], made[-1]) for name, made in (REFUSED | ERRORS).items()}
 
@@ -200,6 +200,59 @@ def test_a_refusal_comes_without_a_search(folder: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr("gearcam.advice.remedies", None)
     with pytest.raises(InfeasibleError):
         _ = job_of(DESIGNS["concave part too tight"][0], folder).findings
+
+
+LARGE_BORE = {"bore_diameter_mm": 90}
+GROOVE = {"prime_radius_mm": 60, "form": "groove", "outer_diameter_mm": 180, "groove_depth_mm": 5}
+NARROW = {"bore_diameter_mm": [60, 0], "bolts": [0, 3], "bolt_circle_mm": [0, 20]}
+
+LATE = {
+    "a bolt no wider than the kerf": (
+        pair(CIRCLE, [20, 20], blank=NARROW | {"bolt_diameter_mm": [0, 0.3]}),
+        {"files": ["dxf"], "kerf_mm": 0.4},
+        "blank.bore_diameter_mm[0]",
+    ),
+    "a bore no wider than the kerf": (
+        cam(ROLLER, {"prime_radius_mm": 40}, blank=LARGE_BORE),
+        {"files": ["cut-svg"], "kerf_mm": 75},
+        "blank.bore_diameter_mm",
+    ),
+    "a cutter wider than the groove": (
+        cam(ROLLER, GROOVE, blank={"bore_diameter_mm": 120}),
+        {"files": ["tool-path"], "tool_radius_mm": 6.1},
+        "blank.bore_diameter_mm",
+    ),
+    "no curvature at cusps": (
+        cam({"type": "flat"}, {"base_radius_mm": 12}, blank=LARGE_BORE, limits={"lost_lift_mm": 9}),
+        {"files": ["curvature"]},
+        "blank.bore_diameter_mm",
+    ),
+}
+"""Designs without and with a file that is refused though the parts are made, and what helped."""
+
+
+@pytest.mark.parametrize("name", LATE)
+def test_a_remedy_makes_all_files_that_are_asked_for(name: str, folder: Path) -> None:
+    document, output, key = LATE[name]
+
+    def helpful(asked: Mapping[str, Any]) -> set[str]:
+        document_of_all = document | {"output": document["output"] | asked}
+        found = gearcam.remedies(job_of(document_of_all, folder)).found
+        for remedy in found:
+            assert gearcam.build(remedy.design).files(remedy.design.output.files[0])
+        return {changed for remedy in found for changed in remedy.changes}
+
+    assert key in helpful({})
+    assert key not in helpful(output)
+
+
+def test_of_a_cutter_too_wide_only_the_cutter_is_changed(folder: Path) -> None:
+    output = {"files": ["tool-path"], "tool_radius_mm": 7}
+    result = job_of(cam(ROLLER, GROOVE, output=output), folder)
+    with pytest.raises(InfeasibleError, match="wider than the groove") as caught:
+        result.files("tool-path")
+    found = gearcam.remedies(result, caught.value).found
+    assert [remedy.changes for remedy in found] == [{"output.tool_radius_mm": 6.0}]
 
 
 def test_a_sound_design_needs_no_remedy(folder: Path) -> None:

@@ -11,7 +11,8 @@ names it, and only that of a file is loaded. Its modules:
   a notebook shows;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
 - `advice`: ``seek(search, refusal)`` leads the search for changes that help where it is refused
-  or has errors, ``hopeless(result)`` tells what need not be built to its end;
+  or has errors, ``hopeless(result)`` tells what need not be built to its end, ``FILE_DEMANDS`` by
+  kinds of files what refuses those though all parts can be made;
 - `public`: in its ``__all__`` the classes that people who write Python make designs of (the
   package `gearcam.kinds` tells type checkers of them);
 - `describe`: what schema, template and list of laws say of its main part, and the table of each

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 from typing import Any
 
+FILE_DEMANDS: dict[str, Any] = {}
+
 
 def seek(search: Any, refusal: Any) -> None:
     search.follow(refusal.ways if refusal else ())

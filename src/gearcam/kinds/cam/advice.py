@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.design import value_at
@@ -15,6 +15,27 @@ if TYPE_CHECKING:
 _LARGER: Final = 5.0
 _SMALLER: Final = 0.05
 """How far a cam grows and a roller or a lift shrinks in the search, over what is given."""
+
+
+def _paths(result: Any) -> object:
+    return result.form.paths(result, result.design.output.tool_radius)
+
+
+def _kerf(result: Any) -> object:
+    return result.design.output.kerf and result.to_cut
+
+
+def _curvature(result: Any) -> object:
+    return result.files("curvature")
+
+
+FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
+    "tool-path": _paths,
+    "dxf": _kerf,
+    "cut-svg": _kerf,
+    "curvature": _curvature,
+}
+"""What refuses, by their kinds, files of cams that can be made."""
 
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:

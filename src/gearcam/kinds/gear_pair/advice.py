@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
@@ -32,6 +32,14 @@ _TIMES: Final = (1, 2, 4)
 
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges as they are cut."""
+
+
+def _kerf(result: Any) -> object:
+    return result.design.output.kerf and result.to_cut
+
+
+FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {"dxf": _kerf, "cut-svg": _kerf}
+"""What refuses, by their kinds, files of pairs that can be made."""
 
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
