@@ -243,6 +243,16 @@ def test_the_ends_of_a_long_slot_do_not_meet(wheel: int) -> None:
         openings(blank(stop_pin=1.001 * widest), [disc_contour(50.0)], place)
 
 
+def test_chords_of_the_widest_slot_keep_off_the_bore() -> None:
+    place, sizes = Workpiece(name="wheel 1", wheel=1, rim=5.4, travel=2.0), {"bore_diameter": 20.0}
+    outline = replace(disc_contour(50.0), tolerance=0.02)
+    with pytest.raises(InfeasibleError, match="no room for the slot") as caught:
+        openings(blank(**sizes, stop_pin=40.0), [outline], place)
+    fits = blank(**sizes, stop_pin=float(caught.value.limit or 0.0) - 1e-9)
+    bore, slot = openings(fits, [outline], place)
+    assert not region(bore, 0.02).intersects(region(slot, 0.02))
+
+
 @pytest.mark.parametrize("wheel", [1, 2])
 def test_the_slot_of_an_open_pair_takes_its_own_travel(wheel: int) -> None:
     job = profile("log_spiral")

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.errors import InfeasibleError, Way
+from gearcam.numeric.contour import Contour
 from gearcam.parts.apart import demand_apart
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge, Opening
@@ -150,18 +151,20 @@ def openings(
     found = [Opening(kind="BORE", shape=bore(wide), name="bore")] if blank.bore else []
     found += _bolts(wide)
     if blank.stop_pin:
-        found.append(_slot(blank, solid, work))
+        chord = max((one.tolerance for one in contours if isinstance(one, Contour)), default=0.0)
+        found.append(_slot(blank, solid, work, chord))
     demand_apart(found, blank, solid, work)
     if blank.lightening_holes:
         found += _lightening(wide, solid, found, work)
     return tuple(found)
 
 
-def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece) -> Opening:
+def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> Opening:
     """Return the slot in which the stop pin of an open wheel runs.
 
     Wheel 1 turns by -phi1 and wheel 2 by phi2: in the wheel's frame the pin, on the line of
-    centres, goes from the polar angle 0 to the travel, or from pi back by the travel.
+    centres, goes from the polar angle 0 to the travel, or from pi back by the travel. Chords of
+    its inner edge, off by `chord`, mm, come nearer to the shaft than the edge.
     """
     if work.travel is None:
         raise work.refusal(
@@ -175,7 +178,7 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece) -> Opening:
     wide = blank.widened
     inner = max(wide.bore_reach, 0.5 * blank.hub_diameter)
     radius, room = _roomiest(solid, start, work.travel, inner)
-    room -= blank.widening
+    room -= blank.widening + 2.0 * chord
     if blank.stop_pin >= room:
         raise work.refusal(
             "no room for the slot of the stop pin between shaft and roots",
