@@ -16,7 +16,7 @@ from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
 from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, join, regular_rows, select, untangle
 from gearcam.gears.spec import RingSpec
-from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings
+from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings, near
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.laws.ratio.span import angle_text
 from gearcam.numerals import shown
@@ -301,7 +301,7 @@ def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> t
     pointed = (joined.kind == Curve.TIP) & (joined.start == joined.end)
     joined = select(joined, np.flatnonzero(~pointed))
     highest = flanks.highest
-    if toothing.rounding:
+    if toothing.rounding > near(toothing):  # below, it moves nothing
         joined, reach = round_tips(toothing, joined, flanks.tips)
         highest = np.where(np.isfinite(reach), reach, highest)
     return joined, replace(flanks, lowest=lowest, highest=highest)

@@ -1,21 +1,35 @@
 """Making a part: outlines as made, openings, hub and mark.
 
-Refused: what openings and marks refuse.
+Refused: lengths too fine for their part, and what openings and marks refuse.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Final
 
 import numpy as np
 
 from gearcam.errors import Way
+from gearcam.numerals import shown
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part, Recess
 from gearcam.parts.openings import Workpiece, openings, solid_of
 from gearcam.parts.shapes import Circle
+from gearcam.quantities import LENGTH, params_of
+
+_LEAST: Final = 1e-5
+"""Share of a part's reach from which on a length is one. Single precision, that of meshes, takes
+places to 6e-8 of the reach: vertices of the coarsest circle of this size stay apart by dozens."""
+
+_SHAPED: Final = tuple(
+    name
+    for name, one in params_of(WheelBlank).items()
+    if one.quantity is LENGTH and name != "clearance"
+)
+"""Lengths that give vertices of their own: a clearance only moves those of the outline."""
 
 
 def make_part(
@@ -60,8 +74,10 @@ def make_part(
     Raises
     ------
     InfeasibleError
-        If something has no room, or meets something else.
+        If a length is too fine for the part, if something has no room, or meets something else.
     """
+    height = width + blank.hub_front + blank.hub_back
+    _demand_coarse(blank, max(height, *(edge.reach for edge in contours)), work)
     found = openings(blank, room or contours, work, inner)
     hub = None
     if blank.hub_diameter:
@@ -114,6 +130,23 @@ def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
     return sized(
         lambda size: rounded(clear, size), blank.tip_rounding, f"{where}.tip_rounding_mm", "radius"
     )
+
+
+def _demand_coarse(blank: WheelBlank, reach: float, work: Workpiece) -> None:
+    """Refuse lengths that are no lengths in a part of this `reach`, mm."""
+    least = float(shown(_LEAST * reach, 3))
+    for name in _SHAPED:
+        length = getattr(blank, name)
+        if length and length < least:
+            key = work.key(f"{name}_mm")
+            raise work.refusal(
+                "the length is too fine for a part of this size",
+                f"blank.{name}_mm",
+                value=length,
+                limit=least,
+                nearest="the limit is 1/100000 of the part's reach, from its axis or along it",
+                ways=(Way(near={key: least}, far={key: 100.0 * least}),),
+            )
 
 
 def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpiece) -> None:
