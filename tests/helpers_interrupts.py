@@ -199,6 +199,8 @@ def run(name: str, signal_name: str, home: Path) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
+    # whoever runs the tests may have it ignored, as nohup does, and the command would heed that
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     home = Path(sys.argv[1]) / "home"
     home.mkdir()
     os.chdir(home)
