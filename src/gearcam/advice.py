@@ -156,6 +156,17 @@ def _value(value: object) -> str:
     return json.dumps(value)
 
 
+def kerf_paths(result: Any) -> object:
+    """Return what paths with a kerf are made from, or raise what refuses them.
+
+    Parameters
+    ----------
+    result : Result
+        Of a design whose parts may be cut.
+    """
+    return result.design.output.kerf and result.to_cut
+
+
 def demand_files(result: Result) -> None:
     """Raise what refuses files that a design asks for, where its parts can be made.
 

@@ -142,12 +142,17 @@ def size_of(rolling: Rolling) -> tuple[float, float]:
     angle, mm.
     """
     law = rolling.law
-    extremes = [places for places, _ in rolling.curvature_extremes]
-    phi = np.concatenate([np.linspace(0.0, law.period, _PLACES), *extremes])
+    phi = _places(rolling)
     frames = [track.frames(phi, curved=False) for track in rolling.tracks]
     far = max(float(np.abs(frame.p).max()) for frame in frames)
     long = 0.5 * rolling.tracks[0].length + law.period * float(frames[0].speed.max())
     return far, _EPS * (_FEW * far + long)
+
+
+def _places(rolling: Rolling) -> Array:
+    """Return driver angles all over a lobe, and those at which a centrode bends most, rad."""
+    extremes = [places for places, _ in rolling.curvature_extremes]
+    return np.concatenate([np.linspace(0.0, rolling.law.period, _PLACES), *extremes])
 
 
 def own_error(pair: GearPair, phi: Array, rounding: float) -> Array:
@@ -189,8 +194,7 @@ def flank_error(pair: GearPair, far: float, rounding: float) -> float:
         That of their own teeth's, of arc lengths, and of the driven wheel's angle.
     """
     rolling, law = pair.rolling, pair.law
-    extremes = [places for places, _ in rolling.curvature_extremes]
-    phi = np.concatenate([np.linspace(0.0, law.period, _PLACES), *extremes])
+    phi = _places(rolling)
     own = own_error(pair, phi[(phi >= 0.0) & (phi <= law.period)], rounding)
     lever = rolling.center_distance if pair.on_rack else far
     return float(rolling.arc_error + lever * law.integral_error + own.max())

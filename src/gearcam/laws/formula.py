@@ -73,7 +73,7 @@ def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
 
 
 def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], Jet]:
-    """Return a formula as a function of jets, and the estimated error of its values.
+    """Return a formula as a function of jets.
 
     Parameters
     ----------

@@ -144,11 +144,6 @@ class Expanded:
     misses: tuple[float, ...]
 
     @property
-    def error(self) -> float:
-        """Estimated error of the function."""
-        return self.misses[0]
-
-    @property
     def errors(self) -> tuple[float, ...]:
         """Estimated errors of the function and its first three derivatives, given or made."""
         last = len(self.curves) - 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.advice import kerf_paths
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
 
@@ -21,18 +22,14 @@ def _paths(result: Any) -> object:
     return result.form.paths(result, result.design.output.tool_radius)
 
 
-def _kerf(result: Any) -> object:
-    return result.design.output.kerf and result.to_cut
-
-
 def _curvature(result: Any) -> object:
     return result.files("curvature")
 
 
 FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
     "tool-path": _paths,
-    "dxf": _kerf,
-    "cut-svg": _kerf,
+    "dxf": kerf_paths,
+    "cut-svg": kerf_paths,
     "curvature": _curvature,
 }
 """What refuses, by their kinds, files of cams that can be made."""

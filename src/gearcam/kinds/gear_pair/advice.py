@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.advice import kerf_paths
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
 from gearcam.kinds.gear_pair.shorter import lower, shorter
@@ -34,11 +35,10 @@ _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.cleara
 """Ways to edges as they are cut."""
 
 
-def _kerf(result: Any) -> object:
-    return result.design.output.kerf and result.to_cut
-
-
-FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {"dxf": _kerf, "cut-svg": _kerf}
+FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
+    "dxf": kerf_paths,
+    "cut-svg": kerf_paths,
+}
 """What refuses, by their kinds, files of pairs that can be made."""
 
 
