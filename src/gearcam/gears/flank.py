@@ -22,7 +22,7 @@ from gearcam.gears.cutter import Cutter
 from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
-_BLOCK = 1 << 16
+_BLOCK = 1 << 15
 """Points of rows that are found at once: of more, the arrays between leave the processor's cache,
 and the allocator gives them back (see `gearcam.numeric.memory`)."""
 

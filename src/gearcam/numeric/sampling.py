@@ -23,6 +23,9 @@ from gearcam.numeric.contour import Run
 _PROBES = 24
 """Intervals per curve on which the density of points is found."""
 
+_CURVES = 1 << 11
+"""Curves whose density is found at once: the probes of more need not be in memory together."""
+
 _EIGHTHS = np.arange(1, 8) / 8.0
 _QUARTERS = _EIGHTHS[1::2]
 _AROUND = np.array([-3, -2, -1, 1, 2, 3]) / 32.0
@@ -121,22 +124,32 @@ class Sampler(Brief):
     @cached_property
     def probes(self) -> tuple[Plane, Plane]:
         """Points and tangents at even places of every curve and at its ends, a curve a line."""
-        count = len(self.curves.start)
-        index = np.repeat(np.arange(count), _PROBES + 1)
-        shares = np.tile(np.linspace(0.0, 1.0, _PROBES + 1), count)
+        return self._probed(0, len(self.curves.start))
+
+    def _probed(self, first: int, last: int) -> tuple[Plane, Plane]:
+        """Return the probes of the curves from `first` to before `last`."""
+        index = np.arange(first, last).repeat(_PROBES + 1)
+        shares = np.tile(np.linspace(0.0, 1.0, _PROBES + 1), last - first)
         points, tangents = self._along(index, shares)
-        return points.reshape(count, -1), tangents.reshape(count, -1)
+        return points.reshape(last - first, -1), tangents.reshape(last - first, -1)
 
     @cached_property
     def density(self) -> Array:
         """J from the start at ``_PROBES`` places a curve, rising; one more for the end."""
-        points, tangents = self.probes
+        count = len(self.curves.start)
+        cuts = range(0, count, _CURVES)
+        blocks = (self._probed(k, min(k + _CURVES, count)) for k in cuts)
+        probes = blocks if len(cuts) > 1 else [self.probes]
+        steps = np.concatenate([self._chords_at(*block) for block in probes])
+        steps += _RISING * max(1.0, float(steps.max()))
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    def _chords_at(self, points: Plane, tangents: Plane) -> Array:
+        """Return the chords that the curvature asks for between probes."""
         turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
         turning[turning <= _STRAIGHT] = 0.0  # the root of rounding would be no small number
         chords = np.abs(np.diff(points, axis=1))
-        steps = np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
-        steps += _RISING * max(1.0, float(steps.max()))
-        return np.concatenate([[0.0], np.cumsum(steps)])
+        return np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
 
     @property
     def least(self) -> float:
