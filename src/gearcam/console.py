@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
+from gearcam.designs.faults import TOLD
 from gearcam.errors import DesignError, InfeasibleError, WriteError
 from gearcam.facts import lined_up
 from gearcam.numerals import size_of, with_unit
@@ -30,9 +31,6 @@ DEBUG: Final = "GEARCAM_DEBUG"
 """The variable that asks for tracebacks."""
 
 _WIDTH: Final = 96
-
-_MOST: Final = 100
-"""Problems of a file that are told at once."""
 
 _STEERING: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 """Characters that are no text: of control, but for the end of a line, and of direction."""
@@ -112,8 +110,8 @@ def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> 
     if isinstance(error, InfeasibleError):
         return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
     count = len(error.problems)
-    lines = [str(problem) for problem in error.problems[:_MOST]]
-    lines += [f"and {count - _MOST} more"] if count > _MOST else []
+    lines = [str(problem) for problem in error.problems[:TOLD]]
+    lines += [f"and {count - TOLD} more"] if count > TOLD else []
     told = textwrap.indent("\n".join(lines), "  ")
     return f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}\n{told}"
 

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any, Final
 
 from gearcam.designs.faults import (
     TOO_DEEP,
     Fault,
     did_you_mean,
+    hinted,
     is_deep,
     key_hint,
     nearest,
@@ -114,14 +116,17 @@ def _kind_faults(document: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault]:
-    for key, value in document.items():
-        if key not in kind.titles:
-            what = "table" if _holds_tables(value) else "key"
-            shown = "" if what == "table" else f" (its value is {show(value)})"
-            hint = home_of(kind, key) or _other_kind(key)
-            hint = hint or key_hint(key, kind.titles) or _near_home(kind, key)
-            rule = ", ".join(kind.titles)
-            yield Fault((key,), f"unknown {what}{shown}", value, rule, hint)
+    titles, rule = kind.titles, ", ".join(kind.titles)
+    unknown = (key for key in document if key not in titles)
+    for key, hint in hinted(unknown, partial(_top_hint, kind)):
+        value = document[key]
+        what = "table" if _holds_tables(value) else f"key (its value is {show(value)})"
+        yield Fault((key,), f"unknown {what}", value, rule, hint)
+
+
+def _top_hint(kind: DesignKind, key: str) -> str:
+    hint = home_of(kind, key) or _other_kind(key)
+    return hint or key_hint(key, kind.titles) or _near_home(kind, key)
 
 
 def _holds_tables(value: Any) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -22,6 +22,9 @@ MISSING: Final = object()
 _SUFFIX = re.compile(r"_(deg|rad|mm|cm|m|in|inch|rpm|um)$")
 _KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 _SHOWN: Final = 60
+
+TOLD: Final = 100
+"""Problems of a file that people are told of at once."""
 
 TOO_DEEP: Final = "lists or tables are nested too deep"
 _DEEPEST: Final = 50
@@ -98,7 +101,7 @@ def show(value: Any) -> str:
     elif callable(value):
         text = "a Python function"
     elif isinstance(value, int) and abs(value) > 10**15:
-        text = f"{value // 10**15}..." if value < 10**40 else "a very large number"
+        text = f"{value // 10**15}..." if abs(value) < 10**40 else "a very large number"
     else:
         text = str(value)
     return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
@@ -143,6 +146,12 @@ def key_hint(key: str, known: Mapping[str, Key] | Iterable[str]) -> str:
     stem = _SUFFIX.sub("", key)
     near = stem if stem in named else nearest(key, named)
     return f"did you mean {named[near].key}?" + _unit_words(key, named[near]) if near else ""
+
+
+def hinted(unknown: Iterable[str], hint: Callable[[str], str]) -> Iterator[tuple[str, str]]:
+    """Yield `unknown` keys, each with its `hint` as far as it is told: a search takes a while."""
+    for number, key in enumerate(unknown):
+        yield key, hint(key) if number < TOLD else ""
 
 
 def _unit_words(key: str, entry: Key) -> str:

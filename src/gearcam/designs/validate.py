@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from gearcam.designs.faults import Fault, allowed, is_of, key_hint, show, value_fault
+from gearcam.designs.faults import Fault, allowed, hinted, is_of, key_hint, show, value_fault
 from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Key, Table
@@ -50,11 +50,10 @@ def faults_of(
             yield from _of_value(key, raw[name], (*at, name))
         elif key.required:
             yield Fault((*at, name), "is missing", allowed=allowed(key))
-    for name, value in raw.items():
-        if name not in table.entries:
-            hint = key_hint(name, table.entries) or home(name)
-            message = f"unknown key (its value is {show(value)})"
-            yield Fault((*at, name), message, value, known, hint)
+    unknown = (name for name in raw if name not in table.entries)
+    for name, hint in hinted(unknown, lambda name: key_hint(name, table.entries) or home(name)):
+        message = f"unknown key (its value is {show(raw[name])})"
+        yield Fault((*at, name), message, raw[name], known, hint)
 
 
 def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
