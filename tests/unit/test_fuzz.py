@@ -206,6 +206,18 @@ def test_a_follower_contradicts_a_profile_that_is_off(name: str) -> None:
     assert {place for place, _ in doubts_of_cam(result)} == {"lift"}
 
 
+def test_a_library_that_a_study_misses_is_a_failure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise ModuleNotFoundError("x")
+
+    monkeypatch.setattr(of_pair, "study", broken)
+    failure = tried(tmp_path, doubt=True).failure
+    assert failure is not None
+    assert failure.place == "ModuleNotFoundError in doubts.py, doubts"
+
+
 # --- designs ------------------------------------------------------------------------------------
 
 

@@ -190,12 +190,15 @@ KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
 
 
+def find_room(kind: str, name: str) -> ModuleType | None:
+    """Return the module of a `name` that a `kind` may have; its designs are not loaded."""
+    home = f"{_package(kind)}.{name}"
+    return importlib.import_module(home) if importlib.util.find_spec(home) else None
+
+
 def rooms(name: str) -> Iterator[ModuleType]:
     """Yield the modules of a `name` that kinds have, without loading anything of their designs."""
-    for kind in _names():
-        home = f"{_package(kind)}.{name}"
-        if importlib.util.find_spec(home) is not None:
-            yield importlib.import_module(home)
+    return (room for kind in _names() if (room := find_room(kind, name)) is not None)
 
 
 def all_formats() -> tuple[str, ...]:

@@ -7,12 +7,11 @@ drawn. Laws, rises and followers take turns.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from gearcam.designs.kind import KINDS
+from gearcam.designs.kind import KINDS, find_room
 from gearcam.draws.broken import broken
 from gearcam.draws.documented import places, value
 from gearcam.draws.draw import Draw
@@ -54,12 +53,7 @@ class Drawn:
 
 def drawn_kinds() -> tuple[str, ...]:
     """Return the kinds of which designs are drawn: those whose folder has a ``draw``."""
-    found = []
-    for name, kind in KINDS.items():
-        with suppress(ModuleNotFoundError):
-            kind.room("draw")
-            found.append(name)
-    return tuple(found)
+    return tuple(kind for kind in KINDS if find_room(kind, "draw") is not None)
 
 
 def design(kind: str, seed: int, index: int) -> Drawn:

@@ -6,20 +6,22 @@ import re
 import shutil
 import time
 import traceback
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 from gearcam import build, load, remedies
 from gearcam.console import all_lines, refusal_text, remedy_lines
-from gearcam.designs.kind import KINDS
+from gearcam.designs.kind import find_room
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.fuzz.oracles import look_at
 from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 
 SEARCH: Final = 0.6
 """Patience of a search for remedies, s: a few designs."""
+
+_SHOWN: Final = 500
+"""Characters of what was raised that are told."""
 
 _PACKAGE: Final = f"{Path(__file__).parents[1].name}/"
 
@@ -66,14 +68,10 @@ class Trial:
             end, reason = self._end()
         except FaultError as fault:
             end, failure = FAILED, fault.failure
-        except MemoryError as error:
-            end, failure = (
-                FAILED,
-                Failure(kind="memory", words="out of memory", place=_place(error)),
-            )
         except Exception as error:
+            kind = "memory" if isinstance(error, MemoryError) else "crash"
             words = f"{type(error).__name__}: {error}"
-            end, failure = FAILED, Failure(kind="crash", words=words[:500], place=_place(error))
+            end, failure = FAILED, Failure(kind=kind, words=words[:_SHOWN], place=_place(error))
         return Outcome(
             end=end,
             seconds=time.process_time() - start,
@@ -112,8 +110,8 @@ class Trial:
             raise FaultError(failure)
 
     def _doubt(self, result: Any) -> None:
-        with suppress(ModuleNotFoundError):
-            room = KINDS[result.design.kind].room("doubts")
+        room = find_room(result.design.kind, "doubts")
+        if room is not None:
             self.doubted = True
             self._hold(
                 Failure(kind="contradiction", words=words, place=place)

@@ -12,14 +12,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from gearcam.charts import Chart, Line
 from gearcam.designs.design import Design
 from gearcam.designs.faults import did_you_mean, show
-from gearcam.designs.kind import KINDS
+from gearcam.designs.kind import KINDS, find_room
 from gearcam.display import Brief
 from gearcam.errors import DesignError, GearcamError, Problem
 from gearcam.facts import Facts, lined_up
@@ -370,11 +370,8 @@ def _rungs(
 
 def _ladders(kind: str) -> Ladders:
     """Return the ladders of a kind of design; none where it has no room for them."""
-    try:
-        room: Any = KINDS[kind].room("ladder")
-    except ModuleNotFoundError:
-        return {}
-    return room.LADDERS
+    room = find_room(kind, "ladder")
+    return {} if room is None else room.LADDERS
 
 
 def _right(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
