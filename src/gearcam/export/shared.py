@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from gearcam.facts import Facts
     from gearcam.parts.body import Part
     from gearcam.parts.tools import ToolLimits
+    from gearcam.sheets.sheet import Sheet
     from gearcam.solids import Mesh
 
 Files = dict[str, bytes]
@@ -108,13 +109,13 @@ def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
     }
 
 
-def sheet_bytes(sheet: Any, style: DxfStyle, ending: str) -> Files:
-    """Return a workshop drawing as a file.
+def sheet_files(sheets: Sequence[Sheet], style: DxfStyle, ending: str) -> Files:
+    """Return workshop drawings as files.
 
     Parameters
     ----------
-    sheet : Sheet
-        The drawing.
+    sheets : sequence of Sheet
+        The drawings.
     style : DxfStyle
         How DXF is written.
     ending : {"svg", "dxf"}
@@ -128,8 +129,10 @@ def sheet_bytes(sheet: Any, style: DxfStyle, ending: str) -> Files:
     from gearcam.export.sheet_dxf import sheet_dxf
     from gearcam.export.sheet_svg import sheet_svg
 
-    data = sheet_svg(sheet) if ending == "svg" else sheet_dxf(sheet, style)
-    return {f"{sheet.name}_drawing.{ending}": data}
+    return {
+        f"{one.name}_drawing.{ending}": sheet_svg(one) if ending == "svg" else sheet_dxf(one, style)
+        for one in sheets
+    }
 
 
 def dxf_style(output: Any, tolerance: float) -> DxfStyle:
@@ -212,8 +215,14 @@ def cut_files(drawings: Sequence[Drawing], title: str, kerf: float) -> Files:
     return files | {"cut.svg": cut_svg(sheet, title, kerf)}
 
 
-def solid_facts(parts: Sequence[Part], solids: Mapping[str, Mesh]) -> dict[str, Any]:
-    """Return what was measured on solids.
+def mesh_files(
+    parts: Sequence[Part],
+    solids: Mapping[str, Mesh],
+    together: Mapping[str, dict[str, Mesh]],
+    kind: str,
+    measured: dict[str, Any],
+) -> Files:
+    """Return solids as files, each in one of its own and those that stand together in one.
 
     Parameters
     ----------
@@ -221,15 +230,22 @@ def solid_facts(parts: Sequence[Part], solids: Mapping[str, Mesh]) -> dict[str, 
         As made.
     solids : mapping of str to Mesh
         By the parts' names.
+    together : mapping of str to dict
+        Solids where they stand, by the stems of their files.
+    kind : {"stl", "3mf", "glb"}
+        The format.
+    measured : dict
+        What was measured on the solids is written in here.
 
     Returns
     -------
-    dict
-        By the parts' names.
+    dict of str to bytes
+        Contents by file name.
     """
+    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
     from gearcam.solids import volume_error
 
-    return {
+    measured["solids"] = {
         part.name: {
             "volume_mm3": solids[part.name].volume,
             "volume_error_mm3": volume_error(part),
@@ -237,24 +253,6 @@ def solid_facts(parts: Sequence[Part], solids: Mapping[str, Mesh]) -> dict[str, 
         }
         for part in parts
     }
-
-
-def mesh_bytes(named: dict[str, Mesh], kind: str, title: str) -> bytes:
-    """Return meshes as a file.
-
-    Parameters
-    ----------
-    named : dict of str to Mesh
-        By name.
-    kind : {"stl", "3mf", "glb"}
-        The format.
-    title : str
-        Of the scene.
-
-    Returns
-    -------
-    bytes
-    """
-    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
-
-    return {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind](named, title)
+    to_bytes = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
+    scenes = {**{name: {name: mesh} for name, mesh in solids.items()}, **together}
+    return {f"{stem}.{kind}": to_bytes(scene, stem) for stem, scene in scenes.items()}

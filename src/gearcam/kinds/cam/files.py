@@ -12,9 +12,8 @@ from gearcam.export.shared import (
     cut_files,
     drawn,
     dxf_style,
-    mesh_bytes,
-    sheet_bytes,
-    solid_facts,
+    mesh_files,
+    sheet_files,
 )
 from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
@@ -45,15 +44,9 @@ def _cut_svg(result: CamResult, _: Measured) -> Files:
 
 
 def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
-    solids = result.meshes
-    measured["solids"] = solid_facts(result.parts, solids)
-    files = {
-        f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
-    }
-    whole = result.form.assembly
-    if whole:
-        files[f"{whole}.{kind}"] = mesh_bytes(assembled(result), kind, whole)
-    return files
+    stem = result.form.assembly
+    together = {stem: assembled(result)} if stem else {}
+    return mesh_files(result.parts, result.meshes, together, kind, measured)
 
 
 def assembled(result: CamResult) -> dict[str, Mesh]:
@@ -91,12 +84,8 @@ def _style(result: CamResult) -> Any:
 def _picture(result: CamResult, _: Measured) -> Files:
     from gearcam.export.svg import svg_bytes
 
-    notes = result.facts.headline
-    return {
-        f"{result.drawing.name}.svg": svg_bytes(
-            result.drawing, title=result.design.name, notes=notes
-        )
-    }
+    drawing, notes = result.drawing, result.facts.headline
+    return {f"{drawing.name}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
 
 
 def _step(result: CamResult, _: Measured) -> Files:
@@ -118,9 +107,7 @@ def _step(result: CamResult, _: Measured) -> Files:
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
-    style = _style(result)
-    made = [sheet_bytes(sheet, style, ending) for sheet in result.sheets]
-    return {name: data for files in made for name, data in files.items()}
+    return sheet_files(result.sheets, _style(result), ending)
 
 
 def _inspection(result: CamResult, _: Measured) -> Files:

@@ -14,9 +14,8 @@ from gearcam.export.shared import (
     cut_files,
     drawn,
     dxf_style,
-    mesh_bytes,
-    sheet_bytes,
-    solid_facts,
+    mesh_files,
+    sheet_files,
 )
 from gearcam.kinds.gear_pair.columns import POINTS
 from gearcam.report.file import framed as framed
@@ -96,12 +95,7 @@ def _steps(result: GearPairResult, _: Measured) -> Files:
 
 
 def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
-    solids = result.meshes
-    measured["solids"] = solid_facts(result.parts, solids)
-    files = {
-        f"{name}.{kind}": mesh_bytes({name: mesh}, kind, name) for name, mesh in solids.items()
-    }
-    return files | {f"{PAIR}.{kind}": mesh_bytes(assembled(result), kind, PAIR)}
+    return mesh_files(result.parts, result.meshes, {PAIR: assembled(result)}, kind, measured)
 
 
 def assembled(result: GearPairResult) -> dict[str, Mesh]:
@@ -111,9 +105,7 @@ def assembled(result: GearPairResult) -> dict[str, Mesh]:
 
 
 def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
-    style = _style(result)
-    made = [sheet_bytes(sheet, style, ending) for sheet in result.sheets]
-    return {name: data for files in made for name, data in files.items()}
+    return sheet_files(result.sheets, _style(result), ending)
 
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {
