@@ -28,9 +28,14 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet
 
-_SIZES, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2.5))
+_LENGTHS, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2.5))
 """By what part of themselves numbers are moved, as many roundings as they may be the work of: sizes
 of the follower; cam angles, which knots are sums of; coefficients of the lift."""
+
+_SIZES: Final = (
+    "start", *(one.name for one in fields(Mechanism) if isinstance(one.default, float))
+)  # fmt: skip
+"""Fields of a mechanism that are moved."""
 
 _TRIES: Final = 4
 
@@ -51,11 +56,9 @@ class _State:
     factors: Array
 
     def of(self, curve: CamCurve, quantity: Quantity) -> Array | Plane:
-        names = [one.name for one in fields(Mechanism) if isinstance(one.default, float)]
-        names = ["start", *names]
         sizes = {
             name: getattr(curve.mechanism, name) * float(factor)
-            for name, factor in zip(names, self.factors, strict=False)
+            for name, factor in zip(_SIZES, self.factors, strict=False)
         }
         moved = replace(curve, mechanism=replace(curve.mechanism, **sizes))
         return quantity(moved, self.theta, self.found)
@@ -99,7 +102,7 @@ class Moved(Brief):
             places = moved(theta, _ANGLES)
             found = lift.on_pieces(index, places, 3, moved)
             found += off * np.sign(signs(found.shape))
-            made.append(_State(places, found, moved(np.ones(count), _SIZES)))
+            made.append(_State(places, found, moved(np.ones(count), _LENGTHS)))
         return made
 
     @cached_property
@@ -114,21 +117,21 @@ class Moved(Brief):
             [np.abs(one.found - own.found).max(axis=1) for one in others], axis=0
         ).tolist()
 
-    def error(self, curve: CamCurve, quantity: str) -> float:
+    def error(self, curve: CamCurve, quantity: Quantity) -> float:
         """Return the error of a quantity, the largest of the turn.
 
         Parameters
         ----------
         curve : CamCurve
             Of the cam, with the lift.
-        quantity : str
-            A name in `QUANTITIES`; where it has no value it does not count.
+        quantity : callable
+            Where it has no value it does not count.
 
         Returns
         -------
         float
         """
-        return float(_changes(self._turn, curve, QUANTITIES[quantity]).max())
+        return float(_changes(self._turn, curve, quantity).max())
 
     def errors_at(self, theta: Array, curve: CamCurve, quantity: Quantity) -> Array:
         """Return the errors of a quantity at cam angles.
@@ -140,7 +143,7 @@ class Moved(Brief):
         curve : CamCurve
             Of the cam, with the lift.
         quantity : callable
-            ``quantity(curve, theta, found)``, of lift and derivatives.
+            Such as `profile_point`.
 
         Returns
         -------
@@ -158,41 +161,31 @@ def _changes(states: list[_State], curve: CamCurve, quantity: Quantity) -> Array
     return np.where(np.isfinite(changes), changes, 0.0)
 
 
-def _pressure(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return the pressure angle, rad."""
+def pressure_angle(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the pressure angle, rad (see `Quantity`)."""
     return _array(curve.contact_of(found, 0).pressure, theta)
 
 
-def _pitch_curvature(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return the pitch curve's curvature, 1/mm."""
+def pitch_curvature(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the pitch curve's curvature, 1/mm (see `Quantity`)."""
     contact = curve.contact_of(found, 0)
     return _array(contact.turning / contact.pitch_speed, theta)
 
 
-def _face_radius(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return the radius of curvature of what a face envelops, mm."""
+def face_radius(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return the radius of curvature of what a face envelops, mm (see `Quantity`)."""
     contact = curve.contact_of(found, 0)
     return _array(contact.speed / contact.turning, theta)
 
 
-def _contact_place(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return where a face is touched, mm."""
+def contact_place(curve: CamCurve, theta: Array, found: Array) -> Array:
+    """Return where a face is touched, mm (see `Quantity`)."""
     return _array(curve.contact_of(found, 0).place, theta)
 
 
-def _profile(curve: CamCurve, theta: Array, found: Array) -> Plane:
-    """Return points of the profile, mm."""
+def profile_point(curve: CamCurve, theta: Array, found: Array) -> Plane:
+    """Return points of the profile, mm (see `Quantity`)."""
     return curve.trace(theta, found[0], found[1], curve.mechanism.radius)[0]
-
-
-QUANTITIES: Final[dict[str, Quantity]] = {
-    "pressure angle": _pressure,
-    "pitch curvature": _pitch_curvature,
-    "face radius": _face_radius,
-    "contact place": _contact_place,
-    "profile": _profile,
-}
-"""What is told over the turn: rad, 1/mm, mm."""
 
 
 def _speed(curve: CamCurve, theta: Array, found: Array) -> Array:
@@ -281,7 +274,7 @@ def _normal_errors(moved: Moved, wall: Wall, theta: Array) -> Array:
     normals = -1j * wall.curve.trace(theta, s, ds, wall.curve.mechanism.radius)[1]
 
     def height(curve: CamCurve, places: Array, found: Array) -> Array:
-        return (np.conj(normals) * _profile(curve, places, found)).real
+        return (np.conj(normals) * profile_point(curve, places, found)).real
 
     return moved.errors_at(theta, wall.curve, height)
 

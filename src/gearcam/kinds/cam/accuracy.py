@@ -6,7 +6,17 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from gearcam.cams.moved import Moved, lost_lift_error, play_error, undercut_error
+from gearcam.cams.moved import (
+    Moved,
+    contact_place,
+    face_radius,
+    lost_lift_error,
+    pitch_curvature,
+    play_error,
+    pressure_angle,
+    profile_point,
+    undercut_error,
+)
 from gearcam.parts.mass import quadrature_error
 
 if TYPE_CHECKING:
@@ -56,16 +66,14 @@ def _shape(cam: Cam, moved: Moved) -> Iterator[tuple[str, float]]:
     """Yield the errors of what is told of the contact and of curves, the largest of all walls."""
     curves = [motion.curve for motion in cam.motions]
     walls = [wall.curve for wall in cam.walls]
-    yield (
-        "pressure_angle_deg",
-        math.degrees(max(moved.error(one, "pressure angle") for one in curves)),
-    )
+    slant = max(moved.error(one, pressure_angle) for one in curves)
+    yield "pressure_angle_deg", math.degrees(slant)
     if curves[0].mechanism.flat:
-        yield "radius_mm", max(moved.error(one, "face radius") for one in walls)
-        yield "contact_mm", max(moved.error(one, "contact place") for one in walls)
+        yield "radius_mm", max(moved.error(one, face_radius) for one in walls)
+        yield "contact_mm", max(moved.error(one, contact_place) for one in walls)
     else:
-        yield "curvature_per_mm", max(moved.error(one, "pitch curvature") for one in curves)
-    yield "profile_mm", max(moved.error(one, "profile") for one in walls)
+        yield "curvature_per_mm", max(moved.error(one, pitch_curvature) for one in curves)
+    yield "profile_mm", max(moved.error(one, profile_point) for one in walls)
 
 
 def _trimming(result: CamResult, moved: Moved) -> Iterator[tuple[str, tuple[float, str]]]:
