@@ -44,7 +44,7 @@ from gearcam.interrupts import interruptible
 if TYPE_CHECKING:
     from gearcam.commands import Command
     from gearcam.result import Progress, Result
-from gearcam.written import Written
+    from gearcam.written import Written
 
 GOOD: Final = 0
 FINDINGS: Final = 1

@@ -160,7 +160,7 @@ def make_groove(
     deepest = relief if relief is not None and relief.side > 0 else inner
     demand_standing(program, mechanism)
     if not clears_axis(program, deepest.mechanism):
-        raise _on_axis(program, deepest.mechanism)
+        raise _too_wide(program, deepest.mechanism)
     made = GrooveCam(
         motion=motion,
         inner=inner,
@@ -187,7 +187,7 @@ def make_groove(
     return made
 
 
-def _on_axis(program: Program, deepest: Mechanism) -> InfeasibleError:
+def _too_wide(program: Program, deepest: Mechanism) -> InfeasibleError:
     """Return the refusal of a groove that the axis lies in."""
     nearest = replace(deepest, start=deepest.start + program.range[0]).least
     return InfeasibleError(

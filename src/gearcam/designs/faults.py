@@ -27,7 +27,7 @@ TOLD: Final = 100
 """Problems of a file that people are told of at once."""
 
 TOO_DEEP: Final = "lists or tables are nested too deep"
-_DEEPEST: Final = 50
+DEEPEST: Final = 50
 """Lists and tables within each other; designs need five."""
 
 _SURE: Final = 0.75
@@ -65,7 +65,7 @@ class Fault:
 def is_deep(document: Any) -> bool:
     """Return whether lists and tables of a `document` are nested deeper than any design's."""
     level = [document]
-    for _ in range(_DEEPEST):
+    for _ in range(DEEPEST):
         below = (
             part.values() if isinstance(part, Mapping) else part
             for part in level

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from gearcam.designs.design import Design
 from gearcam.designs.examine import examine
-from gearcam.designs.faults import TOO_DEEP, Fault, is_deep
+from gearcam.designs.faults import DEEPEST, TOO_DEEP, Fault, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import line_at, lines_of
 from gearcam.errors import DesignError, Problem
@@ -28,9 +28,10 @@ _LONG = re.compile(r"(?<![0-9_])[0-9_]{1000,}")
 """Digits that are, or may be, too many for a whole number."""
 
 _DEEP_KEY = re.compile(
-    r"""(?<![\w."'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}"""
+    r"""(?<![\w."'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
+    f"{{{DEEPEST}}}"
 )
-"""A dotted key of more than 50 names: tomllib takes the square of their number."""
+"""A dotted key of more names: tomllib takes the square of their number."""
 
 _COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
 """A number with a decimal comma at the end of a line."""

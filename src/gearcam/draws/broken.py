@@ -56,16 +56,13 @@ def broken(d: Draw, document: Document, tables: Mapping[str, str]) -> dict[str, 
     dict
         ``files``, and in ``broken`` what was done, as `gearcam.draws.designs.Drawn` takes them.
     """
-    file = f"{document['name']}.toml"
-    made, texts = copy.deepcopy(document), dict(tables)
-    ways = [*_WAYS, *_OF_TEXTS]
+    made, ways = copy.deepcopy(document), [*_WAYS, *_OF_TEXTS]
     weights = [_WAYS.get(way, 1) for way in ways]
     drawn = d.random.choices(ways, weights)[0]
     if drawn in _WAYS:
         drawn(d, made)
-        texts = {file: toml(made), **texts}
-    else:
-        texts = {file: toml(made), **texts}
+    texts = {f"{document['name']}.toml": toml(made), **tables}
+    if drawn in _OF_TEXTS:
         one = d.pick([*texts])
         texts[one] = drawn(d, texts[one])
     return {"files": texts, "broken": drawn.__name__.strip("_").replace("_", " ")}

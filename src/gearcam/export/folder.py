@@ -6,7 +6,7 @@ who holds the folder next removes them.
 Refused: names that no disk can hold, a folder that is a file or a link to nothing, and waiting for
 ever for another writer.
 
-Depends on errors only.
+Depends on errors and numerals only.
 """
 
 from __future__ import annotations

@@ -144,7 +144,8 @@ def _demand_coarse(blank: WheelBlank, reach: float, work: Workpiece) -> None:
                 f"blank.{name}_mm",
                 value=length,
                 limit=least,
-                nearest="the limit is 1/100000 of the part's reach, from its axis or along it",
+                nearest=f"the limit is 1/{round(1.0 / _LEAST)} of the part's reach, from its axis "
+                "or along it",
                 ways=(Way(near={key: least}, far={key: 100.0 * least}),),
             )
 

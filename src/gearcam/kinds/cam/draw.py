@@ -18,6 +18,8 @@ Rise = dict[str, Any]
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """They take turns; a point is another word for a knife edge."""
 
+_DEGREES: Final = 40
+"""Drawn for a lift, or a way, of one radius."""
 
 _SHARES: Final = {
     "svg": 0.8, "dxf": 0.3, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
@@ -211,9 +213,9 @@ def _held(d: Draw, design: dict[str, Any], lift: float) -> None:
 
 def _groove(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
     """Mill a groove around the pitch curve into a disc."""
-    given, radius = design["cam"], design["follower"]["roller_radius_mm"]
-    follower = design["follower"]
-    reach = size + 2 * radius + lift * (math.radians(follower.get("arm_mm", 57.3)))
+    given, follower = design["cam"], design["follower"]
+    radius = follower["roller_radius_mm"]
+    reach = size + 2 * radius + lift * math.radians(follower.get("arm_mm", math.degrees(1.0)))
     given |= {
         "form": "groove",
         "outer_diameter_mm": short(2 * reach * d.even(1.05, 1.6)),
@@ -224,7 +226,7 @@ def _groove(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
     if d.chance(0.5):
         given["side"] = d.pick(["front", "back"])
     if d.chance(0.3):
-        design["follower"]["roller2_radius_mm"] = short(radius * d.even(0.6, 1.5))
+        follower["roller2_radius_mm"] = short(radius * d.even(0.6, 1.5))
 
 
 def _bar(d: Draw, size: float) -> dict[str, Any]:
@@ -246,7 +248,7 @@ def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
     """Make the cam a plate that slides: ways in place of angles."""
     follower = design["follower"]
     for phase in design["motion"]:
-        phase["way_mm"] = short(phase.pop("angle_deg") / 40 * size)
+        phase["way_mm"] = short(phase.pop("angle_deg") / _DEGREES * size)
     follower.pop("offset_mm", None)
     if "arm_mm" in follower:
         follower["pivot_height_mm"] = short(follower["arm_mm"] * d.even(-0.5, 0.5))
@@ -265,7 +267,7 @@ def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
     output = design["output"]
     for key, own in (("theta_deg", "u_mm"), ("motion_step_deg", "way_step_mm")):
         if key in output:
-            output[own] = short(abs(output.pop(key)) / 40 * size)
+            output[own] = short(abs(output.pop(key)) / _DEGREES * size)
 
 
 def _form(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
@@ -297,7 +299,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     size = d.pick([d.log(0.1, 1e5), d.log(10, 100)])
     follower, wheel = _mechanism(d, kind, swings, size)
     share = d.log(0.002, 0.15 if kind == "flat" else 0.7)
-    lift = short(share * 40) if swings else short(share * size)
+    lift = short(share * _DEGREES) if swings else short(share * size)
     if d.chance(0.5):
         wheel["rotation"] = d.pick(["ccw", "cw"])
     phases = _program(d, law, lift, "deg" if swings else "mm")

@@ -333,9 +333,6 @@ def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0
     return Drawing(name=part.name, features=tuple(features))
 
 
-FORMS.register(Translating())
-
-
 def _demand_reached(place: float, way: float) -> None:
     """Refuse to draw a cam at a place, mm, that it never reaches."""
     if place > way:
@@ -348,3 +345,6 @@ def _demand_reached(place: float, way: float) -> None:
             nearest="the limit is its whole way, included",
             ways=(Way(near={"output.u_mm": way}),),
         )
+
+
+FORMS.register(Translating())
