@@ -106,14 +106,14 @@ def remedies(
     result : Result
         The result of the design.
     refusal : InfeasibleError, optional
-        How it was refused; found by building it where left out.
+        How it, or one of its files, was refused; where left out its parts are built, and no file.
     patience : float, s
         Time after which no other build is begun on a usual machine: as many are counted.
 
     Returns
     -------
     Remedies
-        Empty where the design is not refused and has no error. Searched for once.
+        Empty where the design is not refused and has no error; without a `refusal` searched once.
     """
     if refusal is not None:
         return _sought(result, refusal, patience)

@@ -235,6 +235,7 @@ def test_whatever_is_broken_is_read_or_refused_in_words(tmp_path: Path) -> None:
             except DesignError as error:
                 refusals.append(error)
     assert len(seen) == 10
+    assert len(refusals) > sum(seen.values()) / 3
     assert all(one.message for error in refusals for one in error.problems)
 
 

@@ -322,7 +322,7 @@ def test_outlines_are_overlapped_where_tips_reach_into_the_mate(
     setup.turning.overlaps(phases, ellipse.design.meshing.overclosure)
     module, teeth = ellipse.pair.module, ellipse.pair.teeth[0]
     chord = 4.0 * np.sqrt(0.5 * module * teeth * module)
-    assert sum(asked) / len(phases) < chord / (0.5 * np.pi * module) + 4.0
+    assert 4.0 < sum(asked) / len(phases) < chord / (0.5 * np.pi * module) + 4.0
 
 
 @pytest.mark.parametrize("chords", [1e-2, 1e-3])
@@ -343,5 +343,6 @@ def test_a_page_shows_solids_of_fewer_vertices(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("gearcam.export.mesh.view_page", lambda bodies: shown.update(bodies) or "")
     result = gearcam.build(_design("ellipse", ("report",)))
     solids.solids_shown(result)
+    assert shown.keys() == result.meshes.keys()
     for name, mesh in shown.items():
         assert 2 * len(mesh.vertices) < len(result.meshes[name].vertices)
