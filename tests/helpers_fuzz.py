@@ -37,7 +37,7 @@ def dislikes_cycloids(task: Task, folder: Path) -> Outcome:  # noqa: ARG001
     text = text_of(task)
     if '"cycloidal"' not in text:
         return Outcome(end=BUILT, seconds=1.0)
-    words = f"no way\nwith {len(text)} letters"
+    words = f"no way\nwith {len(text)} letters\a"
     return Outcome(end=FAILED, failure=Failure(kind="crash", words=words, place="x"))
 
 

@@ -15,6 +15,7 @@ from gearcam.cli import main
 from gearcam.designs import hash_of, loads
 from gearcam.errors import InfeasibleError
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from helpers_interrupts import CAM
 
 PAIR = """
 kind = "gear-pair"
@@ -40,33 +41,6 @@ tool_diameter_mm = 1
 [output]
 files = ["csv", "svg"]
 chord_tolerance_mm = 0.01
-"""
-
-CAM = """
-kind = "cam"
-name = "cam"
-
-[[motion]]
-type = "rise"
-law = "cycloidal"
-angle_deg = 180
-lift_mm = 5
-
-[[motion]]
-type = "return"
-law = "cycloidal"
-angle_deg = 180
-lift_mm = 5
-
-[follower]
-type = "roller"
-roller_radius_mm = 6
-
-[cam]
-prime_radius_mm = 40
-
-[output]
-files = ["csv"]
 """
 
 

@@ -233,7 +233,7 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
     float
         From how far both sides of a corner miss each other as drawn, and how steeply they cross.
     """
-    worst = 0.0
+    worst, away = 0.0, wall.curve.mechanism.away
     points, misses = _corner_errors(moved, wall)
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         off = misses[np.abs(points - corner.point).argmin()]
@@ -241,9 +241,7 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
         # moved, a corner may be out of the follower's reach: it has no lift then
         with np.errstate(invalid="ignore"):
             lifts = [
-                resting(wall.mechanism, complex(point), wall.curve.mechanism.away)(
-                    theta
-                ).derivatives()[0]
+                resting(wall.mechanism, complex(point), away)(theta).derivatives()[0]
                 for point in (corner.point, *(corner.point + off), *(corner.point - off))
             ]
         change = float(np.nanmax(np.abs(np.subtract(lifts[1:], lifts[0])), initial=0.0))

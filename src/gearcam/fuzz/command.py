@@ -7,7 +7,7 @@ from argparse import ArgumentParser
 from pathlib import Path
 from typing import Final
 
-from gearcam.console import complain, progress_bar, say
+from gearcam.console import complain, progress_bar, say, visible
 from gearcam.designs.faults import unknown_word
 from gearcam.draws.designs import drawn_kinds
 from gearcam.errors import DesignError
@@ -121,7 +121,7 @@ def _saved(found: Catch, folder: Path) -> Path:
     from gearcam.export.write import write_all
 
     first = next(iter(found.files))
-    words = " ".join(found.failure.words.split())
+    words = visible(" ".join(found.failure.words.split()))  # a comment holds no other
     head = f"# {found.failure.kind}: {words}\n# {found.case.command}\n"
     contents = {
         name: ((head if name == first else "") + text).encode()

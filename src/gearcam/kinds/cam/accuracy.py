@@ -29,7 +29,9 @@ Rows = dict[str, tuple[float, str]]
 _MOVED: Final = "largest change of the turn when every number that it comes from is moved by "
 _ROUNDED: Final = f"{_MOVED}its rounding"
 _UNKNOWN: Final = f"{_MOVED}its rounding, and the lift by what is not known of it beyond that"
-_GAUSS: Final = "Gauss-Legendre quadrature with fewer cells, and rounding"
+_GAUSS: Final = (
+    "Gauss-Legendre quadrature with fewer cells, what is not known of the lift, and rounding"
+)
 
 
 def error_rows(result: CamResult) -> Rows:
