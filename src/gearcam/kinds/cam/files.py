@@ -84,7 +84,7 @@ def _style(result: CamResult) -> Any:
 def _picture(result: CamResult, _: Measured) -> Files:
     from gearcam.export.svg import svg_bytes
 
-    drawing, notes = result.drawing, result.facts.headline
+    notes, drawing = result.facts.headline, result.drawing
     return {f"{drawing.name}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
 
 
