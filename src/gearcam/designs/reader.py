@@ -31,7 +31,7 @@ _DEEP_KEY = re.compile(
     r"""(?<![\w."'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
     f"{{{DEEPEST}}}"
 )
-"""A dotted key of more names: tomllib takes the square of their number."""
+"""A dotted key that goes deeper: tomllib takes the square of the number of its names."""
 
 _COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
 """A number with a decimal comma at the end of a line."""
