@@ -1,4 +1,4 @@
-"""Cams with phases so short that they are steps: their sizes are those of the step's cam."""
+"""Cams with phases so short that they are steps: their sizes, and what a knife edge finds on them."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.parts.body import Part
 from gearcam.parts.mass import quadrature_error
 from helpers_cams import back, dwell, mechanism, program, rise
+from helpers_sliding import built
 
 TOP, FALL, LIFT = 150.0, 90.0, 10.0
 
@@ -96,3 +97,45 @@ def test_what_turns_between_two_angles_is_refused() -> None:
     told = "two cam angles that are next to each other .*100 deg.*a longer phase there"
     with pytest.raises(InfeasibleError, match=told):
         _ = stepped("roller", "constant-acceleration", 1e-7, 100.0).contour
+
+
+KNIFE = """
+kind = "cam"
+name = "knife"
+[[motion]]
+type = "rise"
+law = "{law}"
+lift_mm = {lift}
+way_mm = {way}
+[[motion]]
+type = "dwell"
+way_mm = 20
+[[motion]]
+type = "return"
+law = "{law}"
+way_mm = {way}
+[follower]
+type = "point"
+[cam]
+form = "translating"
+run_in_mm = 5
+run_out_mm = 20
+thickness_mm = 5
+[blank]
+height_mm = 160
+[output]
+chord_tolerance_mm = {tolerance}
+"""
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+@pytest.mark.parametrize(("lift", "way"), [(10, 20), (10, 1), (100, 1)])
+@pytest.mark.parametrize("rise_law", ["cycloidal", "3-4-5", "harmonic", "constant-acceleration"])
+def test_a_knife_edge_feels_no_more_of_the_chords_than_is_told(
+    rise_law: str, lift: int, way: int, tolerance: float
+) -> None:
+    """On a steep plate a chord error is multiplied, and the turns of few chords tell little of it."""
+    made = built(KNIFE.format(law=rise_law, lift=lift, way=way, tolerance=tolerance))
+    study = made.follow(made.profiles[0].vertices)
+    off = np.abs(study.columns["difference"])
+    assert np.all(off <= study.columns["error"] + 1e-9)
