@@ -1,4 +1,4 @@
-"""Cams with phases so short that they are steps: their sizes, and what a knife edge finds on them."""
+"""Cams with phases so short that they are steps: their sizes, and what is felt of them."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ chord_tolerance_mm = {tolerance}
 def test_a_knife_edge_feels_no_more_of_the_chords_than_is_told(
     rise_law: str, lift: int, way: int, tolerance: float
 ) -> None:
-    """On a steep plate a chord error is multiplied, and the turns of few chords tell little of it."""
+    """A steep plate multiplies a chord's error, and turns of few chords tell little of it."""
     made = built(KNIFE.format(law=rise_law, lift=lift, way=way, tolerance=tolerance))
     study = made.follow(made.profiles[0].vertices)
     off = np.abs(study.columns["difference"])
