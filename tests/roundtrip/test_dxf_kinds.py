@@ -22,6 +22,7 @@ from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Opening, Part
 from gearcam.parts.openings import bore as bore_of
 from gearcam.parts.shapes import Circle, Loop
+from helpers_cams import cam
 from helpers_contour import bore, gear_contour
 from helpers_distance import distances
 
@@ -45,13 +46,13 @@ def groups(data: bytes) -> list[tuple[int, str]]:
     return [(int(code), value.strip()) for code, value in zip(lines[::2], lines[1::2], strict=True)]
 
 
-def spline_points(data: bytes) -> list[np.ndarray]:
+def spline_points(data: bytes, count: int = 40) -> list[np.ndarray]:
     """Dense points of every spline, by de Boor's rule on what the file holds."""
     found = []
     for entity in read_dxf(data).modelspace():
         if isinstance(entity, Spline):
             poles = np.array(entity.control_points)[:, :2]
-            found.append(de_boor(poles, np.array(entity.knots), 40))
+            found.append(de_boor(poles, np.array(entity.knots), count))
     return found
 
 
@@ -85,6 +86,20 @@ def test_splines_stay_within_the_tolerance() -> None:
     assert 0.2 * TOLERANCE < away.max() <= TOLERANCE
     for one, two in zip(found, [*found[1:], found[0]], strict=True):
         assert one[-1] == pytest.approx(two[0], abs=1e-14)
+
+
+def test_what_is_measured_of_long_cubics_is_their_own_error() -> None:
+    """A cam's cubics are long, and an arc through three of their points leaves them visibly."""
+    from shapely import LinearRing
+
+    contour = cam("roller", "3-4-5", tolerance=TOLERANCE).contour
+    drawing = wheel_drawing(Part(name="cam", contours=(contour,), width=8.0))
+    data = dxf_bytes(drawing, DxfStyle(tolerance=TOLERANCE, curves="splines"))
+    found = np.vstack(spline_points(data, 300))
+    dense = np.vstack([run.points[:-1] for run in contour.runs])
+    ways = distances(found, LinearRing(dense)), distances(dense, LinearRing(found))
+    true = max(float(way.max()) for way in ways)
+    assert measure_dxf(data, [contour]) == pytest.approx(true, abs=0.01 * TOLERANCE)
 
 
 def test_splines_need_fewer_points_at_fine_tolerances() -> None:

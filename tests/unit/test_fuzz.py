@@ -166,11 +166,11 @@ def test_spoilt_files_are_seen(small: Any, name: str) -> None:
 
 
 def test_drawings_farther_off_than_their_tolerance_are_seen(small: Any) -> None:
-    summary = {"accuracy": {"dxf_mm": {"a.dxf": 1e-9, "b.dxf": 0.01}}}
-    found = oracles.look_at(
-        small.result, dataclasses.replace(small.written, files=(), summary=summary)
-    )
-    assert [one.place for one in found] == ["dxf error"]
+    tolerance = max(part.tolerance for part in small.result.parts)
+    for off, places in ((0.999 * tolerance, []), (1.001 * tolerance, ["dxf error"])):
+        summary = {"accuracy": {"dxf_mm": {"a.dxf": 1e-9, "b.dxf": off}}}
+        written = dataclasses.replace(small.written, files=(), summary=summary)
+        assert [one.place for one in oracles.look_at(small.result, written)] == places
 
 
 # --- doubts -------------------------------------------------------------------------------------

@@ -23,10 +23,17 @@ import numpy as np
 from gearcam.cams.contact import Contact, contact
 from gearcam.cams.mechanism import Mechanism
 from gearcam.display import Brief
+from gearcam.errors import InfeasibleError
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.crossings import CurvePoint
 from gearcam.numeric.jets import Jet
+
+_SHARP = 0.5
+"""Turn from one of the even places of a sweep to the next, rad, between which it is cut."""
+
+_GRAIN = 2.0
+"""Roundings of an angle within which a sweep is not cut any more."""
 
 
 def unit(angle: Array) -> Plane:
@@ -209,6 +216,56 @@ class ProfileSegments(Brief):
         """Return some of the segments, in the order of `index`."""
         names = ("piece", "start", "end", "jump", "corner")
         return replace(self, **{name: getattr(self, name)[index] for name in names})
+
+    def resolved(self, points: Plane, tangents: Plane, tolerance: float) -> ProfileSegments:
+        """Return segments cut where a sweep turns far within a small part of itself.
+
+        A steep lift turns the profile where its velocity passes that of the cam: at the very
+        beginning of a rise, in a part of it as small as the rise is steep.
+
+        Parameters
+        ----------
+        points, tangents : (n, k + 1) complex arrays, mm and 1
+            At even places of every segment, both ends among them.
+        tolerance : float, mm
+            What chords may miss.
+
+        Returns
+        -------
+        ProfileSegments
+            Themselves where no two neighbours of those places differ by much.
+
+        Raises
+        ------
+        InfeasibleError
+            If a chord between angles that are next to each other misses more.
+        """
+        turns = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
+        sharp = (turns > _SHARP) & ~self.jump[:, None]
+        if not sharp.any():
+            return self
+        places = np.linspace(self.start, self.end, tangents.shape[1], axis=1)
+        rounded = np.diff(places) <= _GRAIN * np.spacing(np.abs(places[:, 1:]))
+        lost = sharp & rounded & (np.abs(np.diff(points)) * turns > 8.0 * tolerance)
+        if lost.any():
+            raise InfeasibleError(
+                "the lift changes so abruptly that the profile turns between two cam angles "
+                "that are next to each other in computing",
+                where=self.curve.mechanism.driver.told(float(places[:, :-1][lost][0])),
+                nearest="a longer phase there",
+            )
+        sharp &= ~rounded
+        if not sharp.any():
+            return self
+        begins = np.zeros(sharp.shape, dtype=bool)
+        begins[:, 0] = True
+        begins |= sharp
+        begins[:, 1:] |= sharp[:, :-1]
+        index, number = np.nonzero(begins)
+        start, last = places[index, number], np.append(np.diff(index) > 0, True)
+        end = np.where(last, self.end[index], np.roll(start, -1))
+        corner = self.corner[index] & (number == 0)
+        return replace(self.taken(index), start=start, end=end, corner=corner)
 
     @property
     def first(self) -> CurvePoint:

@@ -62,7 +62,8 @@ class Followed:
         Lift at them.
     error : (m,) array, mm or rad
         Estimated error of the lift, with points that are exact: what a curve through the points may
-        differ from the chords (a corner between points, cut off by its chord, is not known to it).
+        differ from the chords (a corner between points, cut off by its chord, is known to it as far
+        as it is told what chords may miss).
     contact : (m,) complex array, mm
         Where the follower touches, in the cam's frame.
     """
@@ -73,7 +74,9 @@ class Followed:
     contact: Plane
 
 
-def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Followed:
+def follow(
+    points: Plane | Array, mechanism: Mechanism, theta: ArrayLike, missed: float = 0.0
+) -> Followed:
     """Return the lift that a profile gives: the polygon of some points.
 
     Parameters
@@ -86,6 +89,8 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
         pitch curve its radius is negative.
     theta : (m,) array, rad
         Cam angles.
+    missed : float, mm
+        What any chord may miss; 0 where that is not known.
 
     Returns
     -------
@@ -96,7 +101,7 @@ def follow(points: Plane | Array, mechanism: Mechanism, theta: ArrayLike) -> Fol
     InfeasibleError
         If the points are no closed profile around the axis, or the follower cannot rest on it.
     """
-    profile = profile_points(points, around=not mechanism.slide)
+    profile = profile_points(points, around=not mechanism.slide, missed=missed)
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
     if mechanism.away > 0:
         _demand_clear_pivot(profile, mechanism)

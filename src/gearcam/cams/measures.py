@@ -232,9 +232,11 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
         The errors are differences to half the cells, fallen once more as they fell before; what
         the lift is not known to; and rounding.
     """
-    cells, found, changes = _CELLS, _integrals(segments, _CELLS, nodes), np.full(2, np.inf)
+    cells, changes = _CELLS, np.full(2, np.inf)
+    found, _ = _integrals(segments, cells, nodes)
     while True:
-        cells, before, found = 2 * cells, found, _integrals(segments, 2 * cells, nodes)
+        cells, before = 2 * cells, found
+        found, rounding = _integrals(segments, cells, nodes)
         earlier, changes = changes, np.abs(found - before)
         if np.all(changes <= _AGREED * found) or cells >= most:
             break
@@ -243,7 +245,7 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
     falls[fell] = np.minimum(1.0, 2.0 * changes[fell] / earlier[fell])
     perimeter, area = found.tolist()
     unknown = _unknown(segments, cells, nodes, found)
-    errors = (changes * falls + unknown + _ROUNDING * found).tolist()
+    errors = (changes * falls + unknown + rounding + _ROUNDING * found).tolist()
     return Size(perimeter=perimeter, area=area, perimeter_error=errors[0], area_error=errors[1])
 
 
@@ -262,12 +264,16 @@ def _unknown(segments: ProfileSegments, cells: int, nodes: int, found: Array) ->
         replace(segments, curve=replace(segments.curve, program=replace(program, lift=lift)))
         for lift in program.rough
     ]
-    misses = [np.abs(_integrals(one, cells, nodes) - found) for one in rough]
+    misses = [np.abs(_integrals(one, cells, nodes)[0] - found) for one in rough]
     return _CANCELLED * np.max(misses, axis=0) / program.fall
 
 
-def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> Array:
-    """Return perimeter and area with as many cells for each segment, and nodes in each."""
+def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> tuple[Array, Array]:
+    """Return perimeter and area with as many cells for each segment, and nodes in each.
+
+    Beside them what they may be off because angles are rounded, those of nodes and of ends: much
+    where a curve goes far within as little.
+    """
     places, weights = np.polynomial.legendre.leggauss(nodes)
     share = ((np.arange(cells)[:, None] + 0.5 * (places + 1.0)) / cells).ravel()
     weight = np.tile(0.5 * weights / cells, cells)
@@ -276,6 +282,8 @@ def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> Array:
     run = (segments.end - segments.start)[index]
     parameter = segments.start[index] + np.tile(share, count) * run
     points, velocities = segments.moving(index, parameter)
-    way = velocities * run * np.tile(weight, count)
-    swept = 0.5 * float((np.conj(points) * way).imag.sum())
-    return np.array([math.fsum(np.abs(way)), abs(swept)])
+    rates = np.stack([np.abs(velocities), 0.5 * (np.conj(points) * velocities).imag])
+    grain = np.spacing(np.maximum(np.abs(segments.start), np.abs(segments.end)))
+    rounding = np.abs(rates).reshape(2, count, -1).max(axis=2) @ grain
+    length, swept = rates * run * np.tile(weight, count)
+    return np.array([math.fsum(np.abs(length)), abs(float(swept.sum()))]), rounding

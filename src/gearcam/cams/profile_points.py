@@ -21,7 +21,7 @@ FEWEST: Final = 8
 """Fewest points of a profile."""
 
 _CORNER: Final = 0.5
-"""Turn between two chords of a plate, rad, that no curve makes: one of its corners."""
+"""Turn between two chords of a plate, rad, that hardly a curve makes: one of its corners."""
 
 _ALIKE: Final = 1e-12
 """Distance over the profile's size below which neighbours are one point: rounding."""
@@ -37,10 +37,13 @@ class ProfilePoints:
         Counter-clockwise around the cam's axis at 0, no neighbours alike, first not repeated.
     corner : float, rad
         Turn from which on a point is a corner, whose chords are straight.
+    missed : float, mm
+        What any chord may miss; 0 where that is not known.
     """
 
     points: Plane
     corner: float = math.inf
+    missed: float = 0.0
 
     @cached_property
     def size(self) -> float:
@@ -57,9 +60,12 @@ class ProfilePoints:
         """Estimated height of the curve over each chord, mm: the larger of those from its ends."""
         length = np.abs(self.chords)
         turn = np.angle(self.chords * np.conj(np.roll(self.chords, 1)))
+        # all of a turn may be in the arc over one chord, but no chord misses more than it may
+        arcs = 0.25 * length * np.maximum(np.abs(turn), np.abs(np.roll(turn, -1)))
         turn[np.abs(turn) >= self.corner] = 0.0
         back = _heights(length[::-1], np.roll(turn[::-1], 1))[::-1]
-        return np.maximum(_heights(length, turn), back)
+        likely = np.maximum(_heights(length, turn), back)
+        return np.maximum(likely, np.minimum(arcs, self.missed))
 
     @cached_property
     def blocks(self) -> tuple[Ints, Plane, Array]:
@@ -96,7 +102,9 @@ def _heights(length: Array, turn: Array) -> Array:
     return np.minimum(bend * length, bend * before + np.maximum(more, 0.0))
 
 
-def profile_points(points: Plane | Array, around: bool = True) -> ProfilePoints:
+def profile_points(
+    points: Plane | Array, around: bool = True, missed: float = 0.0
+) -> ProfilePoints:
     """Return the points of a profile, cleaned.
 
     Parameters
@@ -105,6 +113,8 @@ def profile_points(points: Plane | Array, around: bool = True) -> ProfilePoints:
         A closed profile in order, either way around; equal neighbours are dropped.
     around : bool
         Whether it goes around the cam's axis; one that slides has none.
+    missed : float, mm
+        What any chord may miss; 0 where that is not known.
 
     Returns
     -------
@@ -128,7 +138,8 @@ def profile_points(points: Plane | Array, around: bool = True) -> ProfilePoints:
         )
     if not around:
         turned = float((np.conj(z) * np.roll(z, -1)).imag.sum())
-        return ProfilePoints(points=z if turned > 0.0 else z[::-1].copy(), corner=_CORNER)
+        points = z if turned > 0.0 else z[::-1].copy()
+        return ProfilePoints(points=points, corner=_CORNER, missed=missed)
     turns = float(np.angle(np.roll(z, -1) * np.conj(z)).sum()) / (2.0 * math.pi)
     if abs(abs(turns) - 1.0) > 0.25 or not np.all(z):
         raise InfeasibleError(
@@ -138,7 +149,7 @@ def profile_points(points: Plane | Array, around: bool = True) -> ProfilePoints:
             unit="turns",
             nearest="one closed line in order, with the origin inside",
         )
-    return ProfilePoints(points=z if turns > 0.0 else z[::-1].copy())
+    return ProfilePoints(points=z if turns > 0.0 else z[::-1].copy(), missed=missed)
 
 
 def in_plane(points: Plane | Array) -> Plane:

@@ -249,14 +249,12 @@ class Wall(PitchMotion):
     def _kept(self) -> _Kept:
         whole = segments(self.curve, self.curve.mechanism.radius)
         kept, corners, left = without_small_loops(whole, self.undercut, self._reach)
-        drawn = self._drawn(kept)
-        sampler = self._sampled(drawn)
+        drawn, sampler = self._sampled(self._drawn(kept))
         if left or not star_shaped(*sampler.probes, slides=self.program.open):
             kept, more = trimmed(kept, left, self.tolerance)
             starts = set(kept.states(np.arange(len(kept.start)), kept.start)[0].tolist())
             corners = (*(corner for corner in corners if corner.after in starts), *more)
-            drawn = self._drawn(kept)
-            sampler = self._sampled(drawn)
+            drawn, sampler = self._sampled(self._drawn(kept))
         corners = tuple(sorted(corners, key=lambda corner: corner.before))
         return _Kept(drawn=drawn, sampler=sampler, corners=corners)
 
@@ -269,8 +267,13 @@ class Wall(PitchMotion):
     def _drawn(self, kept: ProfileSegments) -> ProfileSegments:
         return replace(begun(kept), curve=replace(self.curve, mirrored=self.clockwise))
 
-    def _sampled(self, drawn: ProfileSegments) -> Sampler:
-        return Sampler(curves=drawn, tolerance=self.tolerance, closed=self.program.closed)
+    def _sampled(self, drawn: ProfileSegments) -> tuple[ProfileSegments, Sampler]:
+        """Return a curve cut so that its sampler's probes see how it turns, and that sampler."""
+        while True:
+            sampler = Sampler(curves=drawn, tolerance=self.tolerance, closed=self.program.closed)
+            before, drawn = drawn, drawn.resolved(*sampler.probes, self.tolerance)
+            if drawn is before:
+                return drawn, sampler
 
     @property
     def drawn(self) -> ProfileSegments:
@@ -338,7 +341,7 @@ class Wall(PitchMotion):
 
     @property
     def _pitch_sampler(self) -> Sampler:
-        return self._sampled(self._drawn(segments(self.curve, 0.0)))
+        return self._sampled(self._drawn(segments(self.curve, 0.0)))[1]
 
     def _contour(self, sampler: Sampler) -> Contour:
         _, points, error = sampler.chords

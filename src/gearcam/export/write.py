@@ -4,7 +4,9 @@ Every file is first written beside its place under a temporary name. Only when a
 are they moved into place; files that the *previous summary* lists and this build no longer writes
 are *stale* and removed, so that nobody cuts one; the new summary comes last. What stood there
 before is kept until then and put back if anything fails; an interruption waits until all is in
-place. The folder is *held* meanwhile: a second build waits for its turn.
+place. The folder is *held* meanwhile: a second build waits for its turn. What the system still
+holds in memory when the power fails may be lost: nothing asks the disk to have stored a file
+(fsync), which takes as long again as all of the writing, 40 ms for eleven files.
 
 One file of the user's is *rewritten* in the same way: beside it, then into its place, with its
 permissions; of a link the file that it leads to is rewritten.

@@ -23,9 +23,6 @@ from gearcam.written import Written
 _ROUNDING: Final = 1e-9
 """Part of a part's reach that coordinates in files are rounded by, at most."""
 
-_DENSE: Final = 1.0 / 32.0
-"""Part of the tolerance by which the dense points that are measured against miss the curve."""
-
 
 def look_at(result: Any, written: Written) -> Iterator[Failure]:
     """Yield what is wrong with a result and its files.
@@ -68,7 +65,7 @@ def _drawing_errors(parts: Iterable[Part], written: Written) -> Iterator[Failure
         return
     worst = max(read.values())
     reach = max(abs(part.outline).max() for part in parts)
-    allowed = (1.0 + _DENSE) * max(part.tolerance for part in parts) + _ROUNDING * float(reach)
+    allowed = max(part.tolerance for part in parts) + _ROUNDING * float(reach)
     if not worst <= allowed:
         words = f"DXF read back is {worst} mm off, {allowed} mm are allowed"
         yield Failure(kind="file", words=words, place="dxf error")

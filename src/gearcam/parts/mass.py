@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numeric.contour import Contour
+from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.moments import Moments, curve_moments
 from gearcam.parts.body import Body, Edge, Part
 
@@ -31,6 +31,9 @@ _TO_GMM: Final = 1e3
 _FALL: Final = 8.0
 """By what the error of an area falls at least where twice as many points carry it: half of what the
 fourth order gives."""
+
+_ENDS: Final = 2
+"""Points of one step."""
 
 _ROUNDING: Final = 16.0 * float(np.finfo(float).eps)
 """Of an area."""
@@ -120,7 +123,11 @@ def _(part: Part) -> tuple[Moments, float]:
 
 
 def quadrature_error(part: Part) -> float:
-    """Return the error of a part's volume, mm^3: cubics through fewer points, by their order."""
+    """Return the error of a part's volume, mm^3.
+
+    Cubics through fewer points, by their order. A piece of one step has none fewer: what its cubic
+    bows from the chord counts whole, since all its turning may lie at one end.
+    """
     return sum(
         layer.height * _area_error(edge)
         for layer in (*part.layers, *part.pockets)
@@ -137,7 +144,16 @@ def _area_error(edge: Edge) -> float:
         np.vstack([np.vstack([rows[:-1:2], rows[-1:]]) for rows in kept])
         for kept in ([one.points for one in pieces], [one.tangents for one in pieces])
     )
-    return abs(curve_moments(*fewer).area - edge.moments.area) / _FALL + rounding
+    coarser = abs(curve_moments(*fewer).area - edge.moments.area) / _FALL
+    return coarser + sum(_bow(one) for one in pieces if len(one.points) == _ENDS) + rounding
+
+
+def _bow(step: Run) -> float:
+    """Return the area between the cubic of a run of one step and its chord."""
+    chord = np.diff(step.points, axis=0)
+    straight = np.repeat(chord / np.hypot(*chord.T), _ENDS, axis=0)
+    cubic, flat = (curve_moments(step.points, one).area for one in (step.tangents, straight))
+    return abs(cubic - flat)
 
 
 def mass_properties(body: Body, density: float) -> MassProperties:

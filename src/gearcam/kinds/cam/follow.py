@@ -110,7 +110,7 @@ def followed(
     driver = mechanism.driver
     mirrored = wall.clockwise and not mechanism.slide
     side = np.array([-1.0 if mirrored else 1.0, 1.0])
-    found = follow(outline * side, mechanism, theta)
+    found = follow(outline * side, mechanism, theta, wall.tolerance)
     scale, unit = mechanism.outward
     asked = wall.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
