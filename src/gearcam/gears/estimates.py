@@ -14,6 +14,8 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.gears.flank import Curve
+from gearcam.gears.outline import Outline
 from gearcam.gears.pair import Gear, GearPair
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.subject import Subject
@@ -252,3 +254,26 @@ def area_error(gear: Gear) -> float:
         swept = [float((np.conj(p[:-1]) * p[1:]).imag.sum()) for p in (dense, sparse)]
         left_out += 0.5 * abs(swept[0] - swept[1])
     return left_out
+
+
+def kink_error(outline: Outline) -> float:
+    """Return a bound of the area that cubics miss at bends of tips, mm^2.
+
+    Where a tooth's tip rises along the centrode, a jump of the curvature bends it by an angle,
+    ``delta``. Dense points have one tangent there, so that a cubic of the length l beside it is off
+    by ``delta*l^2/12``.
+    """
+    curves, rows = outline.sampler.curves, outline.rows
+    row, place = curves.breaks
+    rising = (rows.kind[row] == Curve.TIP) & (rows.low[row] != rows.high[row])
+    row, place = row[rising], place[rising]
+    points, after = curves.at(row, place)
+    _, before = curves.at(row, place - _FEW * _EPS * (1.0 + np.abs(place)))
+    bends = np.abs(np.angle(after * np.conj(before)))
+    dense = np.concatenate([as_complex(run.points) for run in outline.dense_teeth])
+    area = 0.0
+    for point, bend in zip(points, bends, strict=True):
+        near = int(np.abs(dense - point).argmin())
+        longest = np.abs(np.diff(dense[max(near - 1, 0) : near + 2])).max()
+        area += float(bend * longest**2) / 12.0
+    return area
