@@ -63,6 +63,10 @@ def estimates(subject: Subject) -> Estimates:
             ratio_error(rolling),
             "closure, and rounding as it shows and where the radius nears the distance",
         ),
+        "acceleration_per_rad": (
+            acceleration_error(subject),
+            "scatter of the ratio's slope, and the rounding of the driver angle" + function,
+        ),
         "arc_length_mm": (
             rolling.arc_error,
             "against Gauss-Legendre quadrature, and rounding" + function,
@@ -109,6 +113,21 @@ def ratio_error(rolling: Rolling) -> float:
     shared = (1.0 + abs(law.mate) * largest) * (_FEW * _EPS + solved)
     shown = float(law.scatter(np.array([low, high]))[0].max())
     return largest * shared + shown + law.function_errors[1]
+
+
+def acceleration_error(subject: Subject) -> float:
+    """Return the error of the largest acceleration, 1/rad (of a rack over its mean speed).
+
+    The scatter of the ratio's slope beside its extremes, the rounding of the driver angle where it
+    changes there, as at knots, its own and that of closure, and a Python function's own.
+    """
+    law, (places, values) = subject.pair.law, subject.accelerations
+    jerk = np.abs(law.ratio.derivatives(places, 2)[2]).max()
+    solved = abs(law.closure_error) / law.advance if law.solved else 0.0
+    shown = law.scatter(places)[1].max() + law.function_errors[2] + _EPS * law.period * jerk
+    share = _FEW * _EPS + solved
+    scale = subject.pair.rolling.mean_radius
+    return float(shown / scale + share * np.abs(values).max())
 
 
 def direction_error(rolling: Rolling, phi: Array) -> Array:

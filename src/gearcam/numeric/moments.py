@@ -30,7 +30,7 @@ _LEAST_FALL, _FALL = 4.0, 16.0
 """By what the error of a sampled curve falls with twice as many points: the second order, of what
 bends like a corner, and the fourth."""
 
-_SAFE: Final = 1.6
+_SAFE: Final = 1.5
 """Over the change that one more doubling would make: all of them are up to a third more."""
 
 
