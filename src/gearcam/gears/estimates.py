@@ -65,7 +65,7 @@ def estimates(subject: Subject) -> Estimates:
         ),
         "acceleration_per_rad": (
             acceleration_error(subject),
-            "scatter of the ratio's slope, and the rounding of the driver angle" + function,
+            "scatter of the ratio's slope, and the rounding of driver angle and knots" + function,
         ),
         "arc_length_mm": (
             rolling.arc_error,
@@ -119,15 +119,18 @@ def acceleration_error(subject: Subject) -> float:
     """Return the error of the largest acceleration, 1/rad (of a rack over its mean speed).
 
     The scatter of the ratio's slope beside its extremes, the rounding of the driver angle where it
-    changes there, as at knots, its own and that of closure, and a Python function's own.
+    changes there, that of the knots about them, its own and that of closure, and a Python
+    function's own.
     """
     law, (places, values) = subject.pair.law, subject.accelerations
-    jerk = np.abs(law.ratio.derivatives(places, 2)[2]).max()
+    sizes, jerk = np.abs(values), np.abs(law.ratio.derivatives(places, 2)[2])
     solved = abs(law.closure_error) / law.advance if law.solved else 0.0
-    shown = law.scatter(places)[1].max() + law.function_errors[2] + _EPS * law.period * jerk
-    share = _FEW * _EPS + solved
-    scale = subject.pair.rolling.mean_radius
-    return float(shown / scale + share * np.abs(values).max())
+    shown = law.scatter(places)[1] + law.function_errors[2] + _EPS * law.period * jerk
+    piece = np.clip(np.searchsorted(law.knots, places), 1, len(law.knots) - 1) - 1
+    narrow = law.period / np.diff(law.knots)[piece]
+    each = shown / subject.pair.rolling.mean_radius + (_EPS * (_FEW + narrow) + solved) * sizes
+    # another extreme may be the largest only if it comes up to it
+    return float(max(each[sizes.argmax()], (sizes + each).max() - sizes.max()))
 
 
 def direction_error(rolling: Rolling, phi: Array) -> Array:
