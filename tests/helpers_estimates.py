@@ -148,7 +148,9 @@ def of_accelerations(result: Any, exact: Exact, told: float) -> Row:
     true = largest(slope, place, law.knots, 1e-3 * law.period)
     size = mp.mpf(law.lobes.advance) / mp.mpf(law.lobes.period) if exact.mate == 0 else mp.mpf(1)
     found = mp.mpf(abs(float(values[worst])))
-    made_of = float(found) * law.period / np.diff(law.knots).min()  # differences of knots
+    # of differences of knots and of ratios
+    high = law.ratio_range[1][1] / result.pair.rolling.mean_radius
+    made_of = (float(found) * law.period + high) / np.diff(law.knots).min()
     return Row("acceleration_per_rad", float(abs(found - true / size)), told, made_of)
 
 

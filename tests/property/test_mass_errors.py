@@ -45,8 +45,8 @@ def weighed(name: str) -> Any:
 def polygon_terms(points: np.ndarray) -> np.ndarray:
     """Area, first and polar moment under the chords of polylines, one a line."""
     p, q = points[:, :-1], points[:, 1:]
-    cross = (np.conj(p) * (q - p)).imag
-    square = np.abs(p) ** 2 + np.abs(q) ** 2 + (p * np.conj(q)).real
+    cross = np.imag(np.conj(p) * (q - p))
+    square = np.abs(p) ** 2 + np.abs(q) ** 2 + np.real(p * np.conj(q))
     terms = [cross / 2.0, cross * (p + q) / 6.0, cross * square / 12.0]
     return np.array([term.sum(axis=1) for term in terms])
 

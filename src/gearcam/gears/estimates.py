@@ -119,7 +119,7 @@ def acceleration_error(subject: Subject) -> float:
     """Return the error of the largest acceleration, 1/rad (of a rack over its mean speed).
 
     The scatter of the ratio's slope beside its extremes, the rounding of the driver angle where it
-    changes there, that of the knots about them, its own and that of closure, and a Python
+    changes there, that of knots and ratios about them, its own and that of closure, and a Python
     function's own.
     """
     law, (places, values) = subject.pair.law, subject.accelerations
@@ -127,8 +127,10 @@ def acceleration_error(subject: Subject) -> float:
     solved = abs(law.closure_error) / law.advance if law.solved else 0.0
     shown = law.scatter(places)[1] + law.function_errors[2] + _EPS * law.period * jerk
     piece = np.clip(np.searchsorted(law.knots, places), 1, len(law.knots) - 1) - 1
-    narrow = law.period / np.diff(law.knots)[piece]
-    each = shown / subject.pair.rolling.mean_radius + (_EPS * (_FEW + narrow) + solved) * sizes
+    width = np.diff(law.knots)[piece]
+    shown += _EPS * law.ratio_range[1][1] / width
+    share = _EPS * (_FEW + law.period / width) + solved
+    each = shown / subject.pair.rolling.mean_radius + share * sizes
     # another extreme may be the largest only if it comes up to it
     return float(max(each[sizes.argmax()], (sizes + each).max() - sizes.max()))
 
