@@ -136,6 +136,24 @@ def of_flanks(case: Case, pair: GearPair, exact: Exact, told: float) -> Row:
     return Row("flank_mm", worst, told, far)
 
 
+def of_accelerations(result: Any, exact: Exact, told: float) -> Row:
+    """The largest slope of the ratio, near its place."""
+    law, (places, values) = result.law, result.subject.accelerations
+    worst = int(np.argmax(np.abs(values)))
+    place, sign = float(places[worst]), math.copysign(1.0, float(values[worst]))
+
+    def slope(x: Number) -> Number:
+        return mp.mpf(sign) * exact.ratio(x).d
+
+    true = largest(slope, place, law.knots, 1e-3 * law.period)
+    size = mp.mpf(law.lobes.advance) / mp.mpf(law.lobes.period) if exact.mate == 0 else mp.mpf(1)
+    found = mp.mpf(abs(float(values[worst])))
+    # of differences of knots and of ratios
+    high = law.ratio_range[1][1] / result.pair.rolling.mean_radius
+    made_of = (float(found) * law.period + high) / np.diff(law.knots).min()
+    return Row("acceleration_per_rad", float(abs(found - true / size)), told, made_of)
+
+
 def of_pressure_angles(result: Any, exact: Exact, told: float) -> Row:
     subject, worst = result.subject, 0.0
     law = result.law
@@ -261,6 +279,7 @@ def rows_of(case: Case) -> list[Row]:
     except InfeasibleError:
         return rows
     rows.append(of_flanks(case, result.pair, exact, told["flank_mm"][0]))
+    rows.append(of_accelerations(result, exact, told["acceleration_per_rad"][0]))
     rows.append(of_pressure_angles(result, exact, told["pressure_angle_deg"][0]))
     length = exact.integral(exact.period)[1] * law.lobes.n1
     tips = Tips(result, exact, mp.mpf(MODULE) * mp.pi * case.teeth[0] / length)

@@ -28,9 +28,12 @@ TIGHT = 100.0
 FEW = ("constant-1", "ellipse-7", "log-spiral-4", "multispeed-5", "function-5", "rack-1")
 
 
-WIDE = {("function-5", "tip_thickness_mm"): 400.0}
+WIDE = {
+    ("function-5", "tip_thickness_mm"): 400.0,
+    **{(f"function-{number}", "acceleration_per_rad"): 600.0 for number in (0, 13)},
+}
 """Rows that may be wider: the derivatives of a Python function are known by a bound, which is that
-of its noisiest place, and the thinnest tooth stands elsewhere."""
+of its noisiest place, and the thinnest tooth or the largest acceleration stands elsewhere."""
 
 
 def demand_honest(name: str) -> None:

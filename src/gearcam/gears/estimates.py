@@ -14,6 +14,8 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.gears.flank import Curve
+from gearcam.gears.outline import Outline
 from gearcam.gears.pair import Gear, GearPair
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.subject import Subject
@@ -61,6 +63,10 @@ def estimates(subject: Subject) -> Estimates:
             ratio_error(rolling),
             "closure, and rounding as it shows and where the radius nears the distance",
         ),
+        "acceleration_per_rad": (
+            acceleration_error(subject),
+            "scatter of the ratio's slope, and the rounding of driver angle and knots" + function,
+        ),
         "arc_length_mm": (
             rolling.arc_error,
             "against Gauss-Legendre quadrature, and rounding" + function,
@@ -107,6 +113,26 @@ def ratio_error(rolling: Rolling) -> float:
     shared = (1.0 + abs(law.mate) * largest) * (_FEW * _EPS + solved)
     shown = float(law.scatter(np.array([low, high]))[0].max())
     return largest * shared + shown + law.function_errors[1]
+
+
+def acceleration_error(subject: Subject) -> float:
+    """Return the error of the largest acceleration, 1/rad (of a rack over its mean speed).
+
+    The scatter of the ratio's slope beside its extremes, the rounding of the driver angle where it
+    changes there, that of knots and ratios about them, its own and that of closure, and a Python
+    function's own.
+    """
+    law, (places, values) = subject.pair.law, subject.accelerations
+    sizes, jerk = np.abs(values), np.abs(law.ratio.derivatives(places, 2)[2])
+    solved = abs(law.closure_error) / law.advance if law.solved else 0.0
+    shown = law.scatter(places)[1] + law.function_errors[2] + _EPS * law.period * jerk
+    piece = np.clip(np.searchsorted(law.knots, places), 1, len(law.knots) - 1) - 1
+    width = np.diff(law.knots)[piece]
+    shown += _EPS * law.ratio_range[1][1] / width
+    share = _EPS * (_FEW + law.period / width) + solved
+    each = shown / subject.pair.rolling.mean_radius + share * sizes
+    # another extreme may be the largest only if it comes up to it
+    return float(max(each[sizes.argmax()], (sizes + each).max() - sizes.max()))
 
 
 def direction_error(rolling: Rolling, phi: Array) -> Array:
@@ -252,3 +278,26 @@ def area_error(gear: Gear) -> float:
         swept = [float((np.conj(p[:-1]) * p[1:]).imag.sum()) for p in (dense, sparse)]
         left_out += 0.5 * abs(swept[0] - swept[1])
     return left_out
+
+
+def kink_error(outline: Outline) -> float:
+    """Return a bound of the area that cubics miss at bends of tips, mm^2.
+
+    Where a tooth's tip rises along the centrode, a jump of the curvature bends it by an angle,
+    ``delta``. Dense points have one tangent there, so that a cubic of the length l beside it is off
+    by ``delta*l^2/12``.
+    """
+    curves, rows = outline.sampler.curves, outline.rows
+    row, place = curves.breaks
+    rising = (rows.kind[row] == Curve.TIP) & (rows.low[row] != rows.high[row])
+    row, place = row[rising], place[rising]
+    points, after = curves.at(row, place)
+    _, before = curves.at(row, place - _FEW * _EPS * (1.0 + np.abs(place)))
+    bends = np.abs(np.angle(after * np.conj(before)))
+    dense = np.concatenate([as_complex(run.points) for run in outline.dense_teeth])
+    area = 0.0
+    for point, bend in zip(points, bends, strict=True):
+        near = int(np.abs(dense - point).argmin())
+        longest = np.abs(np.diff(dense[max(near - 1, 0) : near + 2])).max()
+        area += float(bend * longest**2) / 12.0
+    return area

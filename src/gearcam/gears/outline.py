@@ -47,6 +47,8 @@ class Flanks(Brief):
         Upper ends.
     lowest, highest : (2z,) arrays, mm
         Reach w of the ends of what is left of each flank.
+    sought : bool
+        Whether the ends of some were found by following corners, to a part of the tolerance only.
     """
 
     sf: Array
@@ -55,6 +57,7 @@ class Flanks(Brief):
     tips: TipEnds
     lowest: Array
     highest: Array
+    sought: bool = False
 
     @property
     def undercut(self) -> Mask:
@@ -148,11 +151,15 @@ class Outline(Brief):
         return self.sampler.chords[2]
 
     @cached_property
+    def dense_teeth(self) -> tuple[Run, ...]:
+        """The dense runs of the teeth, counter-clockwise."""
+        return self.sampler.runs(self.oversampling, reverse=self.toothing.track.clockwise)
+
+    @cached_property
     def contour(self) -> Contour:
         """The outline with dense points and tangents, for arcs, and its polygon."""
-        back = self.toothing.track.clockwise
         return Contour(
-            dense=lambda: self.sampler.runs(self.oversampling, reverse=back) + self.body,
+            dense=lambda: self.dense_teeth + self.body,
             vertices=self.points,
             tolerance=self.tolerance,
             chord_error=self.chord_error,
@@ -239,7 +246,7 @@ def _find_flanks(
     mate_reach = _NO_MATE * toothing.pitch if mate is None else mate.cutter.reach
     cusps = find_cusps(toothing, sf, sigma, -toothing.cutter.reach, mate_reach)
     limit = np.minimum(cusps.addendum, mate_reach)
-    tips = find_tips(toothing, sf, sigma, limit)
+    tips, lower = find_tips(toothing, sf, sigma, limit), np.empty(0, dtype=np.int64)
     if mate is not None and tolerance is not None:
         reach = sigma * (sf - toothing.track.arc_length(tips.phi))
         allowed = highest_corners(
@@ -266,6 +273,7 @@ def _find_flanks(
         tips=tips,
         lowest=np.full(sf.shape, -toothing.cutter.reach),
         highest=highest,
+        sought=lower.size > 0,
     )
 
 

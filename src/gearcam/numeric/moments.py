@@ -9,6 +9,7 @@ Points are complex numbers inside this room.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -24,6 +25,16 @@ _ON_ARC: Final = 16
 
 _ON_CUBIC: Final = 3
 """Gauss points of a sampled curve's step: far below the chord error of its points."""
+
+_LEAST_FALL, _FALL = 4.0, 16.0
+"""By what the error of a sampled curve falls with twice as many points: the second order, of what
+bends like a corner, and the fourth."""
+
+_ENDS: Final = 2
+"""Points of one step."""
+
+_SAFE: Final = 1.5
+"""Over the change that one more doubling would make: all of them are up to a third more."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +89,7 @@ def arc_moments(vertices: Array, bulges: Array) -> Moments:
     start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
     place, weight = _gauss(_ON_ARC)
     way, speed = on_arcs(chord, bends, place[:, None])
-    return _integrate(start + way, speed, weight)
+    return _told(_swept(start + way, speed, weight).sum(axis=1))
 
 
 def curve_moments(points: Array, tangents: Array) -> Moments:
@@ -96,12 +107,58 @@ def curve_moments(points: Array, tangents: Array) -> Moments:
     Moments
         Only the sum over a closed chain has a meaning.
     """
+    return _told(_on_cubics(points, tangents).sum(axis=1))
+
+
+def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
+    """Return what sampled curves' moments are off by, none of them below zero.
+
+    Parameters
+    ----------
+    curves : sequence of (points, tangents)
+        Smooth curves, each as for `curve_moments`.
+
+    Returns
+    -------
+    Moments
+        Each curve's change from every second point to all, over what it fell by from every fourth
+        point on. What one curve misses does not make up for another. A curve of one step has none
+        fewer: what its cubic bows from the chord counts whole, since all its turning may lie at one
+        end.
+    """
+    all_of, half, quarter = (_by_curve(curves, every) for every in (1, 2, 4))
+    change = np.abs(half - all_of)
+    before = np.abs(quarter - half)
+    fall = np.clip(before / np.where(change > 0.0, change, 1.0), _LEAST_FALL, _FALL)
+    bows = sum(_bow(*one) for one in curves if len(one[0]) == _ENDS)
+    return _told((_SAFE * change / fall).sum(axis=1) + bows)
+
+
+def _bow(points: Array, tangents: Array) -> Array:
+    """Return the moments between the cubic of a curve of one step and its chord, (3,)."""
+    chord = np.diff(points, axis=0)
+    straight = np.repeat(chord / np.hypot(*chord.T), _ENDS, axis=0)
+    return np.abs(_on_cubics(points, tangents) - _on_cubics(points, straight))[:, 0]
+
+
+def _by_curve(curves: Sequence[tuple[Array, Array]], every: int) -> Plane:
+    """Return area, first and polar moment of each curve from some of its points, (3, n)."""
+    kept = [np.append(np.arange(0, len(points) - 1, every), -1) for points, _ in curves]
+    some = [(points[k], tangents[k]) for (points, tangents), k in zip(curves, kept, strict=True)]
+    found = _on_cubics(*(np.vstack(one) for one in zip(*some, strict=True)))
+    starts = np.cumsum([0, *(len(k) for k in kept)])
+    found[:, starts[1:-1] - 1] = 0.0  # from one curve to the next
+    return np.asarray(np.add.reduceat(found, starts[:-1], axis=1), dtype=np.complex128)
+
+
+def _on_cubics(points: Array, tangents: Array) -> Plane:
+    """Return area, first and polar moment of each step of a sampled curve, (3, n - 1)."""
     p, u = as_complex(points), as_complex(tangents)
     chord = np.diff(p)
     place, weight = _gauss(_ON_CUBIC)
     arms = hermite_arms(p, u)
     way, slope = hermite_cubic(chord, u[:-1] * arms, u[1:] * arms, place[:, None])
-    return _integrate(p[:-1] + way, slope, weight)
+    return _swept(p[:-1] + way, slope, weight)
 
 
 def _gauss(count: int) -> tuple[Array, Array]:
@@ -110,11 +167,19 @@ def _gauss(count: int) -> tuple[Array, Array]:
     return 0.5 * (place + 1.0), 0.5 * weight
 
 
-def _integrate(points: Plane, speed: Plane, weight: Array) -> Moments:
+def _swept(points: Plane, speed: Plane, weight: Array) -> Plane:
+    """Return area, first and polar moment of each piece of a boundary, (3, n)."""
     swept = weight[:, None] * (np.conj(points) * speed).imag
     square = points.real**2 + points.imag**2
-    return Moments(
-        area=0.5 * float(swept.sum()),
-        first=complex((points * swept).sum()) / 3.0,
-        polar=0.25 * float((square * swept).sum()),
+    return np.stack(
+        [
+            0.5 * swept.sum(axis=0) + 0j,
+            (points * swept).sum(axis=0) / 3.0,
+            0.25 * (square * swept).sum(axis=0) + 0j,
+        ]
     )
+
+
+def _told(sums: Plane) -> Moments:
+    area, first, polar = sums
+    return Moments(area=float(area.real), first=complex(first), polar=float(polar.real))

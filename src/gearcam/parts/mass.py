@@ -17,8 +17,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.moments import Moments, curve_moments
+from gearcam.numeric.contour import Contour
+from gearcam.numeric.moments import Moments, curve_errors
 from gearcam.parts.body import Body, Edge, Part
 
 _PER_MM3: Final = 1e-9
@@ -27,13 +27,6 @@ _PER_MM3: Final = 1e-9
 _TO_GMM: Final = 1e3
 """g mm in a kg mm."""
 
-
-_FALL: Final = 8.0
-"""By what the error of an area falls at least where twice as many points carry it: half of what the
-fourth order gives."""
-
-_ENDS: Final = 2
-"""Points of one step."""
 
 _ROUNDING: Final = 16.0 * float(np.finfo(float).eps)
 """Of an area."""
@@ -122,38 +115,62 @@ def _(part: Part) -> tuple[Moments, float]:
     return total, height
 
 
-def quadrature_error(part: Part) -> float:
-    """Return the error of a part's volume, mm^3.
-
-    Cubics through fewer points, by their order. A piece of one step has none fewer: what its cubic
-    bows from the chord counts whole, since all its turning may lie at one end.
-    """
+def quadrature_error(part: Part) -> Moments:
+    """Return the errors of a part's moments (see `numeric.moments.curve_errors`)."""
     return sum(
-        layer.height * _area_error(edge)
-        for layer in (*part.layers, *part.pockets)
-        for edge in (layer.edge, *(opening.shape for opening in layer.openings))
+        (
+            layer.height * _missed(edge)
+            for layer in (*part.layers, *part.pockets)
+            for edge in (layer.edge, *(opening.shape for opening in layer.openings))
+        ),
+        start=Moments(),
     )
 
 
-def _area_error(edge: Edge) -> float:
-    rounding = _ROUNDING * edge.moments.area
+def _missed(edge: Edge) -> Moments:
+    rounding = _ROUNDING * error_of(edge.moments)
     if not isinstance(edge, Contour):
         return rounding
     pieces = [piece for run in edge.runs for piece in run.pieces]
-    fewer = (
-        np.vstack([np.vstack([rows[:-1:2], rows[-1:]]) for rows in kept])
-        for kept in ([one.points for one in pieces], [one.tangents for one in pieces])
+    return curve_errors([(one.points, one.tangents) for one in pieces]) + rounding
+
+
+def error_of(difference: Moments) -> Moments:
+    """Return what moments are off by, from a difference: no part of it below zero."""
+    return Moments(
+        area=abs(difference.area),
+        first=complex(abs(difference.first)),
+        polar=abs(difference.polar),
     )
-    coarser = abs(curve_moments(*fewer).area - edge.moments.area) / _FALL
-    return coarser + sum(_bow(one) for one in pieces if len(one.points) == _ENDS) + rounding
 
 
-def _bow(step: Run) -> float:
-    """Return the area between the cubic of a run of one step and its chord."""
-    chord = np.diff(step.points, axis=0)
-    straight = np.repeat(chord / np.hypot(*chord.T), _ENDS, axis=0)
-    cubic, flat = (curve_moments(step.points, one).area for one in (step.tangents, straight))
-    return abs(cubic - flat)
+def mass_errors(part: Part, missed: Moments, density: float) -> dict[str, float]:
+    """Return the errors of a part's mass properties.
+
+    Parameters
+    ----------
+    part : Part
+        As made.
+    missed : Moments
+        What the moments of its volume are off by, none below zero; in its steps alike.
+    density : float, kg/m^3
+        Of its material.
+
+    Returns
+    -------
+    dict
+        Of volume, centroid and inertia, named as `MassProperties.as_dict` names them; the mass is
+        off by the share of the volume.
+    """
+    made = mass_properties(part, density)
+    middles = [0.5 * (step.low + step.high) for step in part.steps]
+    off = max(abs(middle - made.centroid[2]) for middle in middles)
+    tilt = math.hypot(missed.first.real + made.eccentricity * missed.area, off * missed.area)
+    return {
+        "volume_mm3": missed.area,
+        "centroid_mm": tilt / made.volume,
+        "inertia_kg_mm2": density * _PER_MM3 * missed.polar,
+    }
 
 
 def mass_properties(body: Body, density: float) -> MassProperties:
@@ -169,8 +186,7 @@ def mass_properties(body: Body, density: float) -> MassProperties:
     Returns
     -------
     MassProperties
-        As exact as cubics through the outline's dense points: 1e-9 of the volume, where no corner
-        was shortened by a search (see `gears.corners`).
+        As exact as cubics through the outline's dense points (see `quadrature_error`).
     """
     total, height = volume_moments(body)
     kilograms = density * _PER_MM3

@@ -12,9 +12,9 @@ import numpy as np
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
-from gearcam.gears.estimates import estimates
 from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.subject import KIND, Subject
+from gearcam.kinds.gear_pair.accuracy import error_rows
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.numerals import shown
@@ -267,7 +267,6 @@ def _part(result: GearPairResult, gear: Gear) -> Tree:
 
 def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
     """Error estimates, and how each was made."""
-    rows = estimates(result.subject)
     # between the places at which it is measured a chord may be off by more
     chord = max(gear.profile.chord_error for gear in result.gears) / MARGIN
-    return accuracy(rows, chord, result.design.output.kerf, measured)
+    return accuracy(error_rows(result), chord, result.design.output.kerf, measured)
