@@ -110,28 +110,29 @@ def curve_moments(points: Array, tangents: Array) -> Moments:
     return _told(_on_cubics(points, tangents).sum(axis=1))
 
 
-def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
+def curve_errors(curves: Sequence[tuple[Array, Array]], *, steep: bool = False) -> Moments:
     """Return what sampled curves' moments are off by, none of them below zero.
 
     Parameters
     ----------
     curves : sequence of (points, tangents)
         Smooth curves, each as for `curve_moments`.
+    steep : bool
+        Whether a curve of one step may turn all at one end. What its cubic bows from the chord
+        counts whole then; of other such curves nothing is told, that of smooth ones being nothing.
 
     Returns
     -------
     Moments
         Each curve's change from every second point to all, over what it fell by from every fourth
-        point on. What one curve misses does not make up for another. A curve of one step has none
-        fewer: what its cubic bows from the chord counts whole, since all its turning may lie at one
-        end.
+        point on. What one curve misses does not make up for another.
     """
     all_of, half, quarter = (_by_curve(curves, every) for every in (1, 2, 4))
     change = np.abs(half - all_of)
     before = np.abs(quarter - half)
     fall = np.clip(before / np.where(change > 0.0, change, 1.0), _LEAST_FALL, _FALL)
-    bows = sum(_bow(*one) for one in curves if len(one[0]) == _ENDS)
-    return _told((_SAFE * change / fall).sum(axis=1) + bows)
+    bows = [_bow(*one) for one in curves if steep and len(one[0]) == _ENDS]
+    return _told((_SAFE * change / fall).sum(axis=1) + sum(bows))
 
 
 def _bow(points: Array, tangents: Array) -> Array:

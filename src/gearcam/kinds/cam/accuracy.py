@@ -103,6 +103,6 @@ def _sizes(result: CamResult) -> Iterator[tuple[str, tuple[float, str]]]:
             if wall.program.closed:
                 yield f"{prefix}area_mm2", (size.area_error, _GAUSS)
     if result.ordered and result.design.blank.density is not None:
-        off = max(quadrature_error(part).area for part in result.parts)
+        off = max(quadrature_error(part, steep=True).area for part in result.parts)
         how = "cubics through every second dense point of all edges, over their order, and rounding"
         yield "volume_mm3", (off, how)
