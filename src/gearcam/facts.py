@@ -9,6 +9,7 @@ that it is held against and its place. The name says the unit, as the keys of de
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +19,6 @@ from gearcam.display import Brief, line
 from gearcam.numerals import shown
 
 _UNITS: Final = {
-    "_per_mm": "1/mm",
     "_kg_m3": "kg/m3",
     "_kg_mm2": "kg mm2",
     "_g_mm": "g mm",
@@ -30,6 +30,9 @@ _UNITS: Final = {
     "_kg": "kg",
 }
 """Units by the ends of names, the longer ones first."""
+
+_PER: Final = re.compile(r"(?:_(mm|deg))?_per_((?:rad|mm)\d?)$")
+"""Ends of names of what grows along an angle or a way: ``velocity_mm_per_rad``."""
 
 _LEAVES: Final = (("min", "max"), ("least", "mean"))
 """Keys of a mapping that is one value."""
@@ -248,13 +251,22 @@ def _is_group(value: Any) -> bool:
 def _quantity(name: str, leaf: Any) -> NamedFact:
     fact = leaf if isinstance(leaf, Fact) else Fact(leaf)
     last = name.rpartition(".")[2]
-    end = next((end for end in _UNITS if last.endswith(end)), "")
-    unit = _UNITS.get(end, "") if fact.unit is None else fact.unit
+    end, unit = _unit_of(last)
+    unit = unit if fact.unit is None else fact.unit
     unit = "" if isinstance(fact.value, str) else unit  # words about a number
     meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
     return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place, fact.noise)
+
+
+def _unit_of(name: str) -> tuple[str, str]:
+    """Return the end of a name that says its unit, and that unit; both empty if there is none."""
+    rate = _PER.search(name)
+    if rate:
+        return rate[0], f"{rate[1] or 1}/{rate[2]}"
+    end = next((end for end in _UNITS if name.endswith(end)), "")
+    return end, _UNITS.get(end, "")
 
 
 def _bare(value: Any) -> Any:

@@ -138,7 +138,7 @@ def test_the_offset_roller_presses_on_its_return() -> None:
     assert found.severity == "warning"
     assert found.value == pytest.approx(31.810726, abs=5e-7)
     assert (found.limit, found.unit) == (pytest.approx(30.0), "deg")
-    assert "on the return reaches -31.8107 deg" in found.message
+    assert "on the return reaches 31.8107 deg" in found.message
     place = float(found.where.removeprefix("return, at ").removesuffix(" deg"))
     exact = cam("roller, offset").motion(np.radians([place]))["pressure"]
     assert math.degrees(exact[0]) == pytest.approx(-31.810726, abs=1e-5)

@@ -280,9 +280,29 @@ def test_axes_may_be_given_and_level_lines_have_room():
 
 
 def test_places_of_knots():
-    places = with_both_sides(np.array([0.0, 1.0, 2.0]), np.array([-1.0, 0.5, 1.0, 2.0, 9.0]))
-    before = np.nextafter([0.5, 1.0], -np.inf)
-    assert places.tolist() == [0.0, before[0], 0.5, before[1], 1.0, 2.0]
+    turn, knots = np.linspace(0.0, 2.0, 101), np.array([-1.0, 0.503, 1.003, 2.0, 9.0])
+    places = with_both_sides(turn, knots)
+    before = np.nextafter([0.503, 1.003], -np.inf)
+    assert places.tolist() == sorted([*turn, *before, 0.503, 1.003])
+
+
+@pytest.mark.parametrize("count", [1, 100, 3000])
+def test_between_knots_that_are_near_each_other_a_curve_has_places(count: int) -> None:
+    knots = 0.3 + 1e-3 * np.linspace(0.0, 1.0, count + 1)
+    turn = np.linspace(0.0, 1.0, 5001)
+    places = with_both_sides(turn, knots)
+    between = np.diff(np.searchsorted(places, knots)).min()
+    assert between >= min(24, 2400 // (count + 3))
+    assert places.size <= turn.size + 2 * knots.size + 2400
+
+
+def test_a_chart_shows_what_happens_in_a_degree() -> None:
+    short = Path("profiles") / "extreme" / "cam_one_degree.toml"
+    result = gearcam.build(gearcam.load(short))
+    low, high = result.chart("velocity").range
+    peak = result.facts.quantity("motion.peak_velocity").value
+    assert high == pytest.approx(peak, rel=0.01)
+    assert low == pytest.approx(-peak, rel=0.01)
 
 
 def test_unknown_charts_are_refused_with_the_known_ones():

@@ -83,6 +83,22 @@ def test_names_say_their_units(name: str) -> None:
     assert all(name.startswith("accuracy.how.") for name in words)
 
 
+@pytest.mark.parametrize(
+    ("name", "meaning", "text"),
+    [
+        ("velocity_mm_per_rad", "velocity", "2 mm/rad"),
+        ("jerk_deg_per_rad3", "jerk", "2 deg/rad3"),
+        ("acceleration_mm_per_mm2", "acceleration", "2 mm/mm2"),
+        ("curvature_per_mm", "curvature", "2 1/mm"),
+        ("acceleration_per_rad", "acceleration", "2 1/rad"),
+        ("travel_per_turn_mm", "travel per turn", "2 mm"),
+    ],
+)
+def test_units_of_rates_are_told(name: str, meaning: str, text: str) -> None:
+    one = Facts({name: 2.0}, ()).quantity(name)
+    assert (one.meaning, one.text) == (meaning, text)
+
+
 @pytest.mark.parametrize("name", ["pair.none", "pair.module_mm.x", "gears.7.name", "gears.x", ""])
 def test_a_name_that_is_none_is_refused_whole(name: str) -> None:
     facts = gearcam.build(gearcam.load("profiles/ellipse.toml")).facts

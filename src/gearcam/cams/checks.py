@@ -70,7 +70,7 @@ def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
                 continue
             worst = max(found.low, found.high, key=lambda end: abs(end.value))
             yield Remark(
-                f"The pressure angle on the {kind} reaches {_deg(worst.value)}.",
+                f"The pressure angle on the {kind} reaches {_deg(abs(worst.value))}.",
                 _at(motion, f"{kind}, at {motion.mechanism.driver.told(worst.theta)}"),
                 math.degrees(abs(worst.value)),
                 limit=math.degrees(largest),

@@ -186,12 +186,16 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
     if found:
         where = (f"driving {way}, {angle_text(place)}" for way, (place, _) in found.items())
+        largest = max(angle for _, angle in found.values())
+        does = (
+            "no longer turns the wheel" if largest >= 0.5 * math.pi else "mostly loads the bearings"
+        )
         yield Remark(
-            "The tooth force stands so steep that it mostly loads the bearings: the "
-            f"rack's {shown(math.degrees(subject.pair.rack.pressure_angle))} deg and the slope of "
+            f"The tooth force stands so steep that it {does}: the rack's "
+            f"{shown(math.degrees(subject.pair.rack.pressure_angle))} deg and the slope of "
             "the centrode add up.",
             "; ".join(where),
-            math.degrees(max(angle for _, angle in found.values())),
+            math.degrees(largest),
         )
 
 

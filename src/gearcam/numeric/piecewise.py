@@ -39,6 +39,9 @@ with."""
 _FLAT = 1e-8
 """Share of an interval to which extremes are placed: there a value is flat, good to rounding."""
 
+_BETWEEN, _ADDED = 24, 2400
+"""Places that a curve between two knots is drawn by at least, and how many are added at most."""
+
 _BLOCK = 1 << 15
 """Places at which pieces are evaluated at once: of more, the arrays between, several for each
 parameter, leave the processor's cache, and the allocator gives them back."""
@@ -365,7 +368,7 @@ def _extremes_among(
 
 
 def with_both_sides(places: Array, knots: Array) -> Array:
-    """Return places on an axis with both sides of knots among them.
+    """Return places on an axis with both sides of knots among them, and enough between knots.
 
     Parameters
     ----------
@@ -377,7 +380,14 @@ def with_both_sides(places: Array, knots: Array) -> Array:
     Returns
     -------
     (k,) array
-        Rising: of a knot the last number before it, and itself.
+        Rising: of a knot the last number before it, and itself. Between knots that are near each
+        other places are added, unless there are very many.
     """
-    inside = knots[(knots > places[0]) & (knots < places[-1])]
-    return np.union1d(places, np.concatenate([inside, np.nextafter(inside, -np.inf)]))
+    inside = np.unique(knots[(knots > places[0]) & (knots < places[-1])])
+    edges = np.concatenate([places[:1], inside, places[-1:]])
+    gaps = np.diff(edges)
+    each = min(_BETWEEN, _ADDED // gaps.size)
+    narrow = np.diff(np.searchsorted(places, edges)) < each
+    more = edges[:-1, None] + gaps[:, None] * np.arange(1, each) / max(each, 1)
+    sides = [inside, np.nextafter(inside, -np.inf), more[narrow].ravel()]
+    return np.union1d(places, np.concatenate(sides))
