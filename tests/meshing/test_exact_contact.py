@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+import gearcam
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult
@@ -147,3 +148,16 @@ def test_counts_arcs_and_contacts_agree(made: GearPairResult, side: int) -> None
     rolling = made.pair.rolling
     weighted = (rolling.tracks[0].arc_length(end) - rolling.tracks[0].arc_length(start)) @ carrying
     assert weighted == pytest.approx(pairs.contact_ratios.sum() * pairs.pitch, rel=1e-9)
+
+
+def test_flanks_touch_across_a_jump_of_the_curvature() -> None:
+    """Steps of Newton's method went to and fro there: no contact was found."""
+    gears = gearcam.build(gearcam.load("profiles/extreme/touch_across_a_jump.toml")).gears
+    phi1 = np.radians(np.linspace(59.0, 61.0, 81))
+    pairs = flank_pairs(gears, DRIVE)
+    found = contacts(pairs, phi1)
+    count = np.bincount(found.step, minlength=len(phi1))
+    assert (count >= np.minimum(pairs.carrying(phi1), 1)).all()
+    lead = np.full(len(phi1), np.nan)
+    lead[found.step] = found.lead
+    assert np.abs(np.diff(lead, 2)).max() < 2e-5

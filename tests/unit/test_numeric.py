@@ -11,6 +11,7 @@ import pytest
 from gearcam.numeric import jets
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
+from gearcam.numeric.newton import damped_newton
 from gearcam.numeric.piecewise import Piece, extremes, integrate, piecewise
 from gearcam.numeric.quadrature import missed
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
@@ -231,6 +232,19 @@ def test_newton_in_a_bracket_survives_a_start_where_newton_alone_leaves() -> Non
 
     found = newton_in_bracket(steep, np.zeros(3), np.ones(3), np.full(3, 0.5), 1e-15)
     np.testing.assert_allclose(found, target, atol=1e-14)
+
+
+def test_damped_steps_that_go_to_and_fro_end() -> None:
+    """Newton's steps for a root of the distance lead as far to the other side."""
+    target = np.array([[0.01], [-0.02], [0.0]])
+
+    def bent(x: np.ndarray) -> tuple[None, np.ndarray, np.ndarray]:
+        off = x - target
+        slopes = np.eye(3)[..., None] * (0.5 / np.sqrt(np.maximum(np.abs(off), 1e-30)))
+        return None, np.sign(off) * np.sqrt(np.abs(off)), slopes
+
+    found, _ = damped_newton(bent, np.full((3, 1), 0.3), np.ones(1), 1e-12)
+    np.testing.assert_allclose(found, target, atol=1e-12)
 
 
 def test_a_root_at_a_jump_is_found() -> None:

@@ -17,11 +17,17 @@ _STEPS = 40
 _LONGEST = 0.5
 """Longest step, in units of the scale: half of what lies between neighbouring roots."""
 
+_LEFT = 0.5
+"""Share of the last step above which one that goes back is no approach."""
+
 
 def damped_newton(
     evaluate: Callable[[Array], tuple[State, Array, Array]], x: Array, scale: Array, small: float
 ) -> tuple[Array, State]:
     """Solve n systems of three equations by steps that are limited in two of the unknowns.
+
+    Where slopes jump, steps may go to and fro across a root forever. Of those that go back almost
+    as far as they came a half is taken, of the next ones a quarter.
 
     Parameters
     ----------
@@ -43,12 +49,15 @@ def damped_newton(
         What `evaluate` says of it.
     """
     state, equations, slopes = evaluate(x)
+    share, last, before = np.ones(x.shape[1]), np.zeros_like(x), np.zeros(x.shape[1])
     for _ in range(_STEPS):
         step = -solve(slopes, equations)
         size = np.abs(step[:2]).max(axis=0) * scale
         with np.errstate(invalid="ignore", divide="ignore"):
-            step = step * np.minimum(1.0, _LONGEST / size)
-        x = x + np.where(np.isfinite(step), step, 0.0)
+            back = ((step[:2] * last[:2]).sum(axis=0) < 0.0) & (size > _LEFT * before)
+            share = np.where(back, 0.5 * share, np.minimum(1.0, 2.0 * share))
+            last, before = step * np.minimum(share, _LONGEST / size), size
+        x = x + np.where(np.isfinite(last), last, 0.0)
         state, equations, slopes = evaluate(x)
         if not np.any(size > small):
             break

@@ -16,6 +16,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from gearcam.display import Brief
+from gearcam.errors import InfeasibleError, Way
+from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
@@ -25,6 +27,9 @@ _PROBES = 24
 
 _CURVES = 1 << 11
 """Curves whose density is found at once: the probes of more need not be in memory together."""
+
+_MOST = 1e6
+"""Chords of a polygon: of many more, what is made of them does not fit into memory."""
 
 _EIGHTHS = np.arange(1, 8) / 8.0
 _QUARTERS = _EIGHTHS[1::2]
@@ -182,6 +187,7 @@ class Sampler(Brief):
     @cached_property
     def chords(self) -> tuple[Array, Plane, float]:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
+        self._demand_few()
         made = self._spread(np.append(self.corners, self.least), self.density, self.density)
         for _ in range(_ROUNDS):
             if made.bad <= _FEW:
@@ -209,6 +215,21 @@ class Sampler(Brief):
             halves = np.concatenate([new - 1, new])
             errors[halves] = self._measure(vertices, points, halves, rough[halves], new)
         return vertices, points[:-1] if self.closed else points, float(errors.max())
+
+    def _demand_few(self) -> None:
+        """Refuse tolerances for which there are more chords than a million."""
+        if self.least > _MOST:
+            limit = self.tolerance * (self.least / _MOST) ** 2
+            key = "output.chord_tolerance_mm"
+            raise InfeasibleError(
+                f"the curve would take {shown(self.least, 2)} chords",
+                where=key,
+                value=self.tolerance,
+                limit=limit,
+                unit="mm",
+                nearest="at the limit there are a million",
+                ways=(Way(near={key: 1.01 * limit}),),
+            )
 
     def _spread(
         self, ends: Array, effort: Array, places: Array, least: Ints | None = None

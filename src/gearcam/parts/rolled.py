@@ -125,11 +125,12 @@ def roll(contour: Contour, radius: float) -> list[tuple[Touched, Touched, comple
     touched: list[Touched] = []
     centers: list[complex | None] = []
     for branch in rings[0].branches:
+        before = len(touched)
         for k, low, high in zip(*rows_between(middles, [branch])[:3], strict=True):
             if low < high:
                 touched.append(replace(pieces[k], low=float(low), high=float(high)))
                 centers.append(None)
-        if rings[0].crossed:
+        if rings[0].crossed and len(touched) > before:  # a branch may be a point
             point, tangent = touched[-1].place(touched[-1].high)
             centers[-1] = point - 1j * touched[-1].by * tangent
     if any(part.backwards for part in touched):

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.drawings import Feature, Path
+from gearcam.errors import InfeasibleError
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.sheets.board import Board
@@ -86,7 +87,7 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
 
     Raises
     ------
-    ValueError
+    InfeasibleError
         If the views are too large for the smallest scale.
     """
     size, room, found = np.asarray(size), np.asarray(room), []
@@ -97,7 +98,11 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
         if fits and not (long and paper == "A4"):
             found.append((paper, fits[0]))
     if not found:
-        raise ValueError(f"views of {shown(size[0])} x {shown(size[1])} mm fit on no sheet")
+        raise InfeasibleError(
+            f"views of {shown(size[0])} x {shown(size[1])} mm fit on no sheet",
+            where="output.files",
+            nearest=f"the smallest scale is 1 : {shown(1.0 / min(SCALES))}",
+        )
     return max(found, key=lambda one: min(one[1], 1.0))
 
 
@@ -122,7 +127,7 @@ def begin(size: Array, room: Box, low: Array, rows: int) -> Board:
 
     Raises
     ------
-    ValueError
+    InfeasibleError
         If the views are too large for the smallest scale.
     """
     paper, scale = choose(size, room[0] + room[1], rows)

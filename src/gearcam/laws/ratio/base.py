@@ -27,8 +27,8 @@ from gearcam.laws.ratio.span import (
     angle_text,
     continued,
     demand_below_one,
-    demand_slower,
     demand_smooth,
+    demand_travels,
 )
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints
@@ -274,7 +274,7 @@ def make_law(
         Where the ratio is not finite, smooth, positive or periodic, of an internal pair not below
         1, or where it does not close.
     """
-    demand_slower(lobes)
+    demand_travels(lobes)
     with demand_smooth("the ratio"):
         driven = integrate(knots, pieces, tolerances.expansion)
         ratio = piecewise(knots, pieces)

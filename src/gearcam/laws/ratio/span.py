@@ -36,6 +36,9 @@ SAME: Final = 1e-12
 PLACES: Final = 2049
 """Places over a period, ends included, at which functions are first asked for values to refuse."""
 
+_LARGEST: Final = 1e4
+"""How many times as far as the other wheel one of an open pair may turn."""
+
 _ROOM = 0.9
 """Largest share of the room to either shaft that a continued centrode may use."""
 
@@ -142,8 +145,8 @@ def demand_equal(lobes: Lobes) -> None:
         )
 
 
-def demand_slower(span: Span) -> None:
-    """Refuse a ring that would turn as far as its wheel, or farther.
+def demand_travels(span: Span) -> None:
+    """Refuse a ring that turns as far as its wheel, and wheels that would be racks beside others.
 
     Parameters
     ----------
@@ -153,10 +156,22 @@ def demand_slower(span: Span) -> None:
     Raises
     ------
     InfeasibleError
-        Naming the driver's travel.
+        Naming the driven wheel's travel.
     """
+    key, mean = "law.driven_travel_deg", span.advance / span.period
+    if not (span.closed or span.mate == RACK or 1.0 / _LARGEST <= mean <= _LARGEST):
+        limit = math.degrees(span.period) * (1.0 / _LARGEST if mean < 1.0 else _LARGEST)
+        raise InfeasibleError(
+            "one wheel turns so little beside the other that it would be a rack",
+            where=key,
+            value=math.degrees(span.advance),
+            limit=limit,
+            unit="deg",
+            nearest=f"one turns at most {shown(_LARGEST)} times as far as the other",
+            ways=(Way(near={key: limit}, far={key: math.degrees(span.period)}),),
+        )
     if span.mate == RING and not span.advance < span.period:
-        most, key = math.degrees(span.period), "law.driven_travel_deg"
+        most = math.degrees(span.period)
         raise InfeasibleError(
             "a ring turns less than its wheel",
             where="pair.teeth" if span.closed else key,
