@@ -76,14 +76,15 @@ def _chart(chart: Chart) -> Iterator[str]:
     seen = [_seen(line) for line in chart.lines]
     x, y = (np.concatenate([points[axis] for points in seen]) for axis in (0, 1))
     across = _Axis(x, _LEFT, _WIDE - _RIGHT)
-    up = _Axis(y, _HIGH - _BELOW, _ABOVE)
+    top = _ABOVE + (_ROW * len(chart.lines) if len(chart.lines) > 1 else 0.0)
+    up = _Axis(y, _HIGH - _BELOW, top)
     yield _text(_LEFT, 20.0, chart.title, 'font-weight="bold"')
     yield _text(0.5 * (_LEFT + _WIDE - _RIGHT), _HIGH - 10.0, chart.x, 'text-anchor="middle"')
     turn = f'text-anchor="middle" transform="rotate(-90 14 {_number(0.5 * _HIGH)})"'
     yield _text(14.0, 0.5 * _HIGH, chart.y, turn)
     for tick in across.ticks:
         place = across(tick)
-        yield _grid(place, _ABOVE, place, _HIGH - _BELOW)
+        yield _grid(place, top, place, _HIGH - _BELOW)
         yield _text(place, _HIGH - _BELOW + 16.0, _label(tick), 'text-anchor="middle"')
     for tick in up.ticks:
         place = up(tick)
@@ -103,10 +104,11 @@ def _chart(chart: Chart) -> Iterator[str]:
 
 
 def _legend(lines: Sequence[Line]) -> Iterator[str]:
+    """Tell what lines are, above the axes, where nothing is drawn."""
     for number, line in enumerate(lines):
-        y, ink = _ABOVE + 12.0 + _ROW * number, _INKS[number % len(_INKS)]
-        x = _WIDE - _RIGHT - 8.0
-        yield _text(x - 10.0, y + 4.0, line.label, f'text-anchor="end" style="fill:{ink}"')
+        y, ink = _ABOVE + _ROW * number, _INKS[number % len(_INKS)]
+        x = _LEFT + 6.0
+        yield _text(x + 10.0, y + 4.0, line.label, f'style="fill:{ink}"')
         yield f'<circle cx="{_number(x)}" cy="{_number(y)}" r="4" {_fill(line, ink)}/>'
 
 
