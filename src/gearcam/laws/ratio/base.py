@@ -38,6 +38,9 @@ from gearcam.numeric.quadrature import missed
 from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
+_SWING: Final = 1e6
+"""How many times its smallest value a ratio may be."""
+
 _BUNCH: Final = 12
 _BESIDE: Final = 1e-7
 _ORDER: Final = 4
@@ -304,13 +307,21 @@ def make_law(
 
 
 def _demand_positive(ratio: Piecewise, cells: Array) -> None:
-    (place, smallest), _ = ratio.extremes_over(cells)
+    (place, smallest), (top, largest) = ratio.extremes_over(cells)
     if not smallest > 0.0:
         raise InfeasibleError(
             "the ratio must stay positive: the driven wheel would stand still or turn back",
             where=angle_text(place),
             value=smallest,
             limit=0.0,
+        )
+    if not largest <= _SWING * smallest:
+        raise InfeasibleError(
+            f"the ratio swings between {shown(smallest)} and {shown(largest)}",
+            where=angle_text(top),
+            value=largest / smallest,
+            limit=_SWING,
+            nearest="the largest is at most a million times the smallest",
         )
 
 
