@@ -15,6 +15,8 @@ import numpy as np
 import pytest
 from shapely import LinearRing
 
+import gearcam
+from gearcam.errors import InfeasibleError
 from gearcam.gears.outline import Outline
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.constant import Constant
@@ -164,3 +166,19 @@ def test_the_area_converges_with_the_tolerance(name: str, wheel: Wheel) -> None:
     errors = np.abs(np.array(areas) - polygon_area(fine.points))
     slope = np.polyfit(np.log(parts), np.log(errors), 1)[0]
     assert slope == pytest.approx(1.0, abs=0.1)
+
+
+def test_more_chords_than_a_million_are_refused_with_the_tolerance_that_has_so_many() -> None:
+    text = """
+kind = "gear-pair"
+name = "fine"
+law = { type = "ellipse", eccentricity = 0.3 }
+pair = { module_mm = 2, teeth = [400, 400] }
+output = { files = ["csv"], chord_tolerance_mm = %r }
+"""
+    with pytest.raises(InfeasibleError, match="chords") as refused:
+        _ = gearcam.build(gearcam.loads(text % 2.5e-9)).gear1
+    limit = refused.value.limit
+    assert limit is not None
+    sampler = gearcam.build(gearcam.loads(text % (100.0 * limit))).gear1.profile.sampler
+    assert sampler.least == pytest.approx(1e5, rel=0.01)  # as the root of the tolerance
