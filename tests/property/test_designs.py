@@ -177,6 +177,15 @@ def test_many_designs_can_be_cut_or_are_refused_with_a_reason(design: Given) -> 
     demand_pair(design)
 
 
+def test_a_flank_that_bends_before_its_end_meets_the_addendum() -> None:
+    """Newton's steps went to and fro across the bend, and the flank ended beyond its tip."""
+    ratios = (1.3245, 1.4595, "solve", 1.3245)
+    law = Phases(knots=(0.0, 0.493633, 0.885446, 2.0 * math.pi / 3.0), ratios=ratios)
+    made = job(law, (18, 12), module=MODULE, tolerance=0.01 * MODULE, rack=NEAR_RACK[3])
+    for gear in made.gears:
+        demand_outline(gear.profile)
+
+
 @settings(quick, max_examples=8)
 @given(st.integers(17, 60), rounded(0.0, 0.3), st.sampled_from([1e-4, 1e-3]))
 def test_mild_designs_are_never_refused(z: int, swing: float, tolerance: float) -> None:

@@ -234,6 +234,18 @@ def test_newton_in_a_bracket_survives_a_start_where_newton_alone_leaves() -> Non
     np.testing.assert_allclose(found, target, atol=1e-14)
 
 
+def test_newton_in_a_bracket_leaves_a_cycle() -> None:
+    """Of a root of the distance Newton's steps lead as far to the other side, for ever."""
+    target = np.array([0.1, -0.2, 0.0])
+
+    def bent(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        off = x - target
+        return np.sign(off) * np.sqrt(np.abs(off)), 0.5 / np.sqrt(np.maximum(np.abs(off), 1e-30))
+
+    found = newton_in_bracket(bent, np.full(3, -1.0), np.ones(3), np.full(3, 0.3), 1e-12)
+    np.testing.assert_allclose(found, target, atol=1e-11)
+
+
 def test_damped_steps_that_go_to_and_fro_end() -> None:
     """Newton's steps for a root of the distance lead as far to the other side."""
     target = np.array([[0.01], [-0.02], [0.0]])

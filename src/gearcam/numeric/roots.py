@@ -49,6 +49,7 @@ def newton_in_bracket(
     a, b, x = (np.array(v, dtype=float) for v in np.broadcast_arrays(low, high, start))
     if x.size == 0:
         return x
+    last = np.full(x.shape, np.inf)
     for number in range(_STEPS):
         value, slope = function(x)
         below = value < 0.0
@@ -56,12 +57,15 @@ def newton_in_bracket(
         with np.errstate(divide="ignore", invalid="ignore"):
             step = x - value / slope
         inside = (step - a) * (step - b) <= 0.0
+        # where the slope jumps steps may go from end to end of the bracket for ever
+        size = np.abs(step - x)
+        inside &= size <= 0.5 * np.maximum(np.abs(b - a), last)
         # A first step that leads out tries the end: it may be the answer.
         other = 0.5 * (a + b) if number else np.where((step - a) * (b - a) > 0.0, b, a)
         new = np.where(np.abs(value) <= noise, x, np.where(inside, step, other))
-        done = np.all(np.abs(new - x) <= tolerance)
+        last = np.abs(new - x)
         x = new
-        if done:
+        if np.all(last <= tolerance):
             break
     return x
 
