@@ -210,7 +210,11 @@ def normals(
 
 
 def touch(
-    mounting: Mounting, start: Array, separation: Array, known: Ints | int = 0
+    mounting: Mounting,
+    start: Array,
+    separation: Array,
+    known: Ints | int = 0,
+    limits: tuple[Array, Array] | None = None,
 ) -> tuple[Pose, Normals, Mask]:
     """Find where flanks touch.
 
@@ -225,6 +229,8 @@ def touch(
         sf2 - sf1.
     known : int or (n,) int array
         Which it is: 0 the phase, 1 the driver's roll, 2 the driven wheel's.
+    limits : ((n,) array, (n,) array), optional
+        Where the phase is known: driver angles, rad, between which both rolls are sought.
 
     Returns
     -------
@@ -239,13 +245,15 @@ def touch(
     free, rows = _FREE[np.broadcast_to(known, start.shape)].T, np.arange(start.size)
     scale = mounting.track.frames(start, curved=False).speed / mounting.pitch
     motion = None if np.any(known) else mounting.guide.motion(start)
+    if limits is not None:
+        every[1:3] = np.clip(start, *limits)
 
     def evaluate(x: Array) -> tuple[Normals, Array, Array]:
         every[free, rows] = x
         at = normals(mounting, Pose(*every), separation, motion)
         return at, at.equations, at.slopes[:, free, rows]
 
-    _, at = damped_newton(evaluate, every[free, rows], scale, _SMALL)
+    _, at = damped_newton(evaluate, every[free, rows], scale, _SMALL, limits)
     found = np.abs(at.equations[0]) <= _MISS
     found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * mounting.pitch
     found &= np.abs(every[:3] - start).max(axis=0) * scale <= _FAR

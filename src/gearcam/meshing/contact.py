@@ -14,7 +14,19 @@ from numpy.typing import ArrayLike
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import touch
 from gearcam.gears.track import WHEELS
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+
+_NEAR = 0.5
+"""Pitches beside a jump of the curvature within which flanks may touch at more than one place."""
+
+_JUMP = 1e-3
+"""Change of the curvature at a knot, over a pitch, that makes no other place."""
+
+_ROUNDING = 1e-9
+"""Share of that distance by which both sides of a knot are told apart."""
+
+_DIGITS = 12
+"""Decimal places of leads, rad or mm, that are not rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -82,8 +94,8 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     side = pairs.side
-    step, pair = pairs.beside(phi1)
-    pose, at, touching = touch(pairs, phi1[step], pairs.separation(pair))
+    step, pair, limits = _sought(pairs, phi1)
+    pose, at, touching = touch(pairs, phi1[step], pairs.separation(pair), limits=limits)
     rolled = [
         sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
         for wheel, sign, angle in zip(WHEELS, (side, -side), (pose.one, pose.two), strict=True)
@@ -91,6 +103,8 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     for wheel, w in zip(WHEELS, rolled, strict=True):
         low, high = pairs.reach(wheel, pair)
         touching = touching & (w >= low) & (w <= high)
+    if limits is not None:
+        touching = _outermost(step, pair, -side * pose.lead, touching)
     step, pair = step[touching], pair[touching]
     pose, at = pose.take(touching), at.take(touching)
     first, second = at.frames
@@ -121,6 +135,41 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
         curvature=curvature,
         lever=lever,
     )
+
+
+def _sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Array] | None]:
+    """Return where contacts are sought: number of the phase, pair, and limits of the rolls.
+
+    Beside a jump of the curvature flanks that are mounted otherwise than designed may touch, or
+    come near it, on both sides of the jump: contacts are sought on each, too.
+    """
+    step, pair = pairs.beside(phi1)
+    track = pairs.track
+    reach = _NEAR * pairs.pitch / track.frames(phi1, curved=False).speed
+    near, knot = track.knots_between(phi1 - reach, phi1 + reach)
+    before, after = (knot + by * reach[near] for by in (-_ROUNDING, _ROUNDING))
+    change = track.frames(after).kappa - track.frames(before).kappa
+    jumps = np.flatnonzero(np.abs(change) * pairs.pitch > _JUMP)
+    if not jumps.size:
+        return step, pair, None
+    nearest = jumps[np.argsort(np.abs(knot - phi1[near])[jumps], kind="stable")]
+    which, first = np.unique(near[nearest], return_index=True)
+    low, high = np.full(phi1.shape, np.nan), np.full(phi1.shape, np.nan)
+    low[which], high[which] = after[nearest[first]], before[nearest[first]]
+    again = np.flatnonzero(np.isfinite(low[step]))
+    wide = np.full(len(step), np.inf)
+    ends = [np.concatenate([-wide, low[step[again]], -wide[again]])]
+    ends += [np.concatenate([wide, wide[again], high[step[again]]])]
+    rows = np.concatenate([np.arange(len(step)), again, again])
+    return step[rows], pair[rows], (ends[0], ends[1])
+
+
+def _outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Mask:
+    """Return which of those `touching` come first of their pair at a phase."""
+    number = np.lexsort((-np.round(outward, _DIGITS), ~touching, pair, step))
+    first = np.ones(len(step), dtype=bool)
+    first[number[1:]] = (np.diff(step[number]) != 0) | (np.diff(pair[number]) != 0)
+    return touching & first
 
 
 def contact_columns(found: Contacts, distance: float) -> dict[str, Array]:

@@ -37,6 +37,9 @@ _REACH: Final = 3
 _SHARPER: Final = 2.0
 """How many times as sharp as its neighbour a bend is not even."""
 
+_BLOCK: Final = 1 << 13
+"""Places that are measured at once: their arrays stay in a processor's nearest memory."""
+
 _LONE_CHECKS: Final = 16
 """Most parts of a step for being longer than one beside it: a curve that is long enough for it and
 fits at its ends may bow between them."""
@@ -180,7 +183,9 @@ def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Ar
     of = np.repeat(np.arange(len(low)), count)
     found, some = np.zeros(len(low)), count > 0
     if of.size:
-        measured = measure(np.arange(of.size) + (low - begin)[of], of)
+        index = np.arange(of.size) + (low - begin)[of]
+        parts = [slice(at, at + _BLOCK) for at in range(0, of.size, _BLOCK)]
+        measured = np.concatenate([measure(index[part], of[part]) for part in parts])
         found[some] = np.maximum.reduceat(measured, begin[some])
     return found
 

@@ -22,7 +22,11 @@ _LEFT = 0.5
 
 
 def damped_newton(
-    evaluate: Callable[[Array], tuple[State, Array, Array]], x: Array, scale: Array, small: float
+    evaluate: Callable[[Array], tuple[State, Array, Array]],
+    x: Array,
+    scale: Array,
+    small: float,
+    limits: tuple[Array, Array] | None = None,
 ) -> tuple[Array, State]:
     """Solve n systems of three equations by steps that are limited in two of the unknowns.
 
@@ -40,6 +44,8 @@ def damped_newton(
         What makes steps of the first two unknowns comparable: half a unit is the longest step.
     small : float
         Step, in these units, at which all end.
+    limits : (low, high), optional
+        (n,) arrays, between which the first two unknowns stay.
 
     Returns
     -------
@@ -58,6 +64,8 @@ def damped_newton(
             share = np.where(back, 0.5 * share, np.minimum(1.0, 2.0 * share))
             last, before = step * np.minimum(share, _LONGEST / size), size
         x = x + np.where(np.isfinite(last), last, 0.0)
+        if limits is not None:
+            x[:2] = np.clip(x[:2], *limits)
         state, equations, slopes = evaluate(x)
         if not np.any(size > small):
             break
