@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import shapely
 
 import gearcam
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
@@ -16,6 +17,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import touches
+from gearcam.meshing.patches import patches
 from helpers_pairs import job, profile
 
 
@@ -150,15 +152,34 @@ def test_counts_arcs_and_contacts_agree(made: GearPairResult, side: int) -> None
     assert weighted == pytest.approx(pairs.contact_ratios.sum() * pairs.pitch, rel=1e-9)
 
 
+JUMP = "profiles/extreme/touch_across_a_jump.toml"
+
+
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 def test_flanks_touch_across_a_jump_of_the_curvature(side: int) -> None:
     """Newton's steps went to and fro there; and of two places the one that comes first is told."""
-    gears = gearcam.build(gearcam.load("profiles/extreme/touch_across_a_jump.toml")).gears
+    made = gearcam.build(gearcam.load(JUMP))
     phi1 = np.radians(np.linspace(59.0, 62.0, 601))
-    pairs = flank_pairs(gears, side)
+    pairs = flank_pairs(made.gears, side)
     found = contacts(pairs, phi1)
     count = np.bincount(found.step, minlength=len(phi1))
     assert (count == pairs.carrying(phi1)).all()
     outward = np.full(len(phi1), -np.inf)
     np.maximum.at(outward, found.step, -side * found.lead)
-    assert np.abs(np.diff(outward)).max() < 5e-7
+    expected = [-side * first_touch(made, side, phi, pairs.distance) for phi in phi1[::40]]
+    assert outward[::40] == pytest.approx(expected, abs=1e-7)
+
+
+def test_patches_beside_a_jump_of_the_curvature_are_the_overlap_of_the_outlines() -> None:
+    design = gearcam.load(JUMP).with_({"output.chord_tolerance_mm": 1e-5})
+    made = gearcam.build(design)
+    pairs = flank_pairs(made.gears, COAST)
+    phi1, lead = np.radians([60.25, 60.3, 60.4, 60.5]), 0.0027
+    found = patches(pairs, phi1, 0.0, lead)
+    predicted = np.bincount(found.step, found.area, minlength=len(phi1))
+    one, two = (gear.outline @ [1, 1j] for gear in made.gears)
+    for area, phi in zip(predicted, phi1, strict=True):
+        back = np.exp(1j * (made.law.phi2(phi) + lead))
+        turned = (one * np.exp(-1j * phi), two * back + pairs.distance)
+        first, second = (shapely.Polygon(np.column_stack([w.real, w.imag])) for w in turned)
+        assert area == pytest.approx(first.intersection(second).area, rel=0.03)

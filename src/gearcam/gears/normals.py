@@ -245,8 +245,6 @@ def touch(
     free, rows = _FREE[np.broadcast_to(known, start.shape)].T, np.arange(start.size)
     scale = mounting.track.frames(start, curved=False).speed / mounting.pitch
     motion = None if np.any(known) else mounting.guide.motion(start)
-    if limits is not None:
-        every[1:3] = np.clip(start, *limits)
 
     def evaluate(x: Array) -> tuple[Normals, Array, Array]:
         every[free, rows] = x

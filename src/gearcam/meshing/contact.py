@@ -94,7 +94,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     side = pairs.side
-    step, pair, limits = _sought(pairs, phi1)
+    step, pair, limits = sought(pairs, phi1)
     pose, at, touching = touch(pairs, phi1[step], pairs.separation(pair), limits=limits)
     rolled = [
         sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
@@ -104,7 +104,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
         low, high = pairs.reach(wheel, pair)
         touching = touching & (w >= low) & (w <= high)
     if limits is not None:
-        touching = _outermost(step, pair, -side * pose.lead, touching)
+        touching = outermost(step, pair, -side * pose.lead, touching)
     step, pair = step[touching], pair[touching]
     pose, at = pose.take(touching), at.take(touching)
     first, second = at.frames
@@ -137,11 +137,25 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     )
 
 
-def _sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Array] | None]:
-    """Return where contacts are sought: number of the phase, pair, and limits of the rolls.
+def sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Array] | None]:
+    """Return where the common normals of flanks are sought.
 
-    Beside a jump of the curvature flanks that are mounted otherwise than designed may touch, or
-    come near it, on both sides of the jump: contacts are sought on each, too.
+    Beside a jump of the curvature flanks that are mounted otherwise than designed may share more
+    than one, and Newton's method find none: they are sought on each side of the jump, too.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+
+    Returns
+    -------
+    step, pair : (k,) int arrays
+        Numbers of phases, and j; some more than once.
+    limits : ((k,) array, (k,) array) or None
+        Driver angles, rad, between which rolls are sought; None where no jump is near.
     """
     step, pair = pairs.beside(phi1)
     track = pairs.track
@@ -164,8 +178,23 @@ def _sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Ar
     return step[rows], pair[rows], (ends[0], ends[1])
 
 
-def _outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Mask:
-    """Return which of those `touching` come first of their pair at a phase."""
+def outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Mask:
+    """Choose of each pair at a phase the normal at which the driver pushes furthest.
+
+    Parameters
+    ----------
+    step, pair : (n,) int arrays
+        Numbers of phases, and j.
+    outward : (n,) array
+        How far: a lead, rad or mm, or a depth, mm.
+    touching : (n,) bool array
+        Which come into question.
+
+    Returns
+    -------
+    (n,) bool array
+        Those chosen.
+    """
     number = np.lexsort((-np.round(outward, _DIGITS), ~touching, pair, step))
     first = np.ones(len(step), dtype=bool)
     first[number[1:]] = (np.diff(step[number]) != 0) | (np.diff(pair[number]) != 0)

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from gearcam.gears.contact import FlankPairs
 from gearcam.gears.normals import Normals, Pose, normals
 from gearcam.gears.track import WHEELS, Wheel
+from gearcam.meshing.contact import outermost, sought
 from gearcam.meshing.placed_flanks import PlacedFlanks
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.newton import damped_newton
@@ -174,13 +175,13 @@ def patches(
 
 def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array) -> Graphs:
     """Find the normals that pairs share, and the pairs that overlap along them."""
-    step, pair = pairs.beside(phi1)
+    step, pair, limits = sought(pairs, phi1)
     side, guide = pairs.side, pairs.guide
     moved, motion = (guide.nominal(phi1) + lead)[step], guide.motion(phi1 + overclosure)[:, step]
     phi1 = phi1[step]
     ahead = phi1 + overclosure
     pose = Pose(ahead, phi1, phi1, moved - motion[0])
-    center, at = _shared(pairs, pose, pairs.separation(pair), motion)
+    center, at = _shared(pairs, pose, pairs.separation(pair), motion, limits)
     (first, second), (one, two) = at.frames, pairs.toothings
     sf = [pairs.place(wheel, pair) for wheel in WHEELS]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -202,16 +203,23 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
         curvature=curvature,
     )
     missed = np.abs(at.equations[0]) + np.abs(at.equations[2]) / pairs.pitch
-    return every.select((every.penetration > 0.0) & (missed < _MISS))
+    overlap = (every.penetration > 0.0) & (missed < _MISS)
+    if limits is not None:
+        overlap = outermost(step, pair, every.penetration, overlap)
+    return every.select(overlap)
 
 
 def _shared(
-    pairs: FlankPairs, pose: Pose, separation: Array, motion: Array
+    pairs: FlankPairs,
+    pose: Pose,
+    separation: Array,
+    motion: Array,
+    limits: tuple[Array, Array] | None,
 ) -> tuple[Array, Normals]:
     """Find the rolls at which two flanks of a given pose have one normal, at any distance.
 
-    What the guide tells of the phases is given as `motion`. Returns them as driver angles, rad,
-    (2, n), and the normal.
+    What the guide tells of the phases is given as `motion`, and between which `limits` they lie.
+    Returns them as driver angles, rad, (2, n), and the normal.
     """
     # the third unknown is the distance along it
     none = np.zeros_like(separation)
@@ -224,7 +232,7 @@ def _shared(
 
     scale = pairs.toothings[0].frames(pose.one, curved=False).speed / pairs.pitch
     x = np.stack([pose.one, pose.two, none])
-    x, at = damped_newton(evaluate, x, scale, _SMALL)
+    x, at = damped_newton(evaluate, x, scale, _SMALL, limits)
     return x[:2], at
 
 

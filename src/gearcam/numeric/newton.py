@@ -54,6 +54,11 @@ def damped_newton(
     state : State
         What `evaluate` says of it.
     """
+
+    def held(x: Array) -> Array:
+        return x if limits is None else np.concatenate([np.clip(x[:2], *limits), x[2:]])
+
+    x = held(x)
     state, equations, slopes = evaluate(x)
     share, last, before = np.ones(x.shape[1]), np.zeros_like(x), np.zeros(x.shape[1])
     for _ in range(_STEPS):
@@ -63,9 +68,7 @@ def damped_newton(
             back = ((step[:2] * last[:2]).sum(axis=0) < 0.0) & (size > _LEFT * before)
             share = np.where(back, 0.5 * share, np.minimum(1.0, 2.0 * share))
             last, before = step * np.minimum(share, _LONGEST / size), size
-        x = x + np.where(np.isfinite(last), last, 0.0)
-        if limits is not None:
-            x[:2] = np.clip(x[:2], *limits)
+        x = held(x + np.where(np.isfinite(last), last, 0.0))
         state, equations, slopes = evaluate(x)
         if not np.any(size > small):
             break
