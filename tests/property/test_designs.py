@@ -177,11 +177,27 @@ def test_many_designs_can_be_cut_or_are_refused_with_a_reason(design: Given) -> 
     demand_pair(design)
 
 
-def test_a_flank_that_bends_before_its_end_meets_the_addendum() -> None:
-    """Newton's steps went to and fro across the bend, and the flank ended beyond its tip."""
-    ratios = (1.3245, 1.4595, "solve", 1.3245)
-    law = Phases(knots=(0.0, 0.493633, 0.885446, 2.0 * math.pi / 3.0), ratios=ratios)
-    made = job(law, (18, 12), module=MODULE, tolerance=0.01 * MODULE, rack=NEAR_RACK[3])
+BEND = (0.0, 0.493633, 0.885446, 2.0 * math.pi / 3.0)
+TORN: dict[str, Given] = {
+    "Newton's steps went to and fro across a bend, and a flank ended beyond its tip": (
+        Phases(knots=BEND, ratios=(1.3245, 1.4595, "solve", 1.3245)),
+        (18, 12),
+        NEAR_RACK[3],
+        1e-2,
+    ),
+    "chords of a fillet crossed a root land that the fillet does not meet": (
+        Ellipse(eccentricity=0.37),
+        (9, 6),
+        NEAR_RACK[3],
+        1e-2,
+    ),
+}
+
+
+@pytest.mark.parametrize("design", TORN.values(), ids=TORN)
+def test_outlines_that_were_torn(design: Given) -> None:
+    law, teeth, rack, tolerance = design
+    made = job(law, teeth, module=MODULE, tolerance=tolerance * MODULE, rack=rack)
     for gear in made.gears:
         demand_outline(gear.profile)
 

@@ -14,17 +14,25 @@ from dataclasses import replace
 import numpy as np
 
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
-from gearcam.gears.tips import TipEnds
+from gearcam.gears.tips import ROUGH, TipEnds, near
 from gearcam.gears.undercut import Undercut
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.crossings import Branch, Chain, CurvePoint, remaining, rows_between
+from gearcam.numeric.crossings import (
+    Branch,
+    Chain,
+    CurvePoint,
+    Ring,
+    remaining,
+    rows_between,
+)
 
 ROWS_PER_TOOTH = 6
 _SHARP = 0.9
 """Curvature of a root, in dedenda, from which on it is looked at: at 1 the land has a cusp."""
 
-_SAMPLES = 49
-"""Places on each curve between which its chords are drawn."""
+_SAMPLES, _DENSER = 49, 4
+"""Places on each curve between which its chords are drawn, and times that they are doubled where
+chords cross and the curves do not."""
 
 
 def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
@@ -122,15 +130,26 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
     list of Rows
         For each space the curves that are left, with the tip behind them.
     """
-    curves = WheelCurves(toothing=toothing, rows=rows)
-    made = []
-    for space, rings in zip(spaces, remaining(curves, _chains(curves, spaces)), strict=True):
-        tip = ROWS_PER_TOOTH * (int(space) + 1) - 1
-        (*inner, last), *_ = (ring.branches for ring in rings)
-        branches = [*inner, Branch(last.begin, CurvePoint(tip, float(rows.end[tip])))]
-        index, start, end, corner = rows_between(curves, branches)
-        made.append(replace(select(rows, index), start=start, end=end, corner=corner))
-    return made
+    curves, samples = WheelCurves(toothing=toothing, rows=rows), _SAMPLES
+    made: dict[int, Rows] = {}
+    left = spaces
+    for _ in range(_DENSER + 1):
+        rings = [first for first, *_ in remaining(curves, _chains(curves, left, samples))]
+        made |= {int(k): _along(curves, int(k), ring) for k, ring in zip(left, rings, strict=True)}
+        left = left[[ring.gap > ROUGH * near(toothing) for ring in rings]]
+        if not left.size:
+            break
+        samples = 2 * samples - 1
+    return [made[int(space)] for space in spaces]
+
+
+def _along(curves: WheelCurves, space: int, ring: Ring) -> Rows:
+    """Return the rows of what is left of a space, and the tip behind it."""
+    tip = ROWS_PER_TOOTH * (space + 1) - 1
+    *inner, last = ring.branches
+    branches = [*inner, Branch(last.begin, CurvePoint(tip, float(curves.rows.end[tip])))]
+    index, start, end, corner = rows_between(curves, branches)
+    return replace(select(curves.rows, index), start=start, end=end, corner=corner)
 
 
 def select(rows: Rows, index: Ints) -> Rows:
@@ -148,13 +167,13 @@ def join(parts: list[Rows]) -> Rows:
     )
 
 
-def _chains(curves: WheelCurves, spaces: Ints) -> list[Chain]:
+def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:
     """Draw the five curves of spaces, ever denser to the form points, where loops can be tiny."""
-    t = np.linspace(0.0, 1.0, _SAMPLES)
+    t = np.linspace(0.0, 1.0, samples)
     towards_start, towards_end = t**3, 1.0 - (1.0 - t) ** 3
     grading = [towards_end, towards_start, t, towards_end, towards_start]
     rows = curves.rows
-    curve = ROWS_PER_TOOTH * spaces[:, None] + np.repeat(np.arange(len(grading)), _SAMPLES - 1)
+    curve = ROWS_PER_TOOTH * spaces[:, None] + np.repeat(np.arange(len(grading)), samples - 1)
     start, span = rows.start[curve], (rows.end - rows.start)[curve]
     low, high = (
         start + span * np.concatenate([g[k:][: len(t) - 1] for g in grading]) for k in (0, 1)
