@@ -144,6 +144,18 @@ def test_polygons_that_cross_themselves_are_seen(small: Any) -> None:
     assert "Self-intersection" in found.words
 
 
+@pytest.mark.parametrize(("off", "places"), [(1e-11, []), (1e-6, ["torn"])])
+def test_curves_that_do_not_join_are_seen(small: Any, off: float, places: list[str]) -> None:
+    part = small.result.parts[0]
+    first, *others = part.contour.runs
+    moved = dataclasses.replace(first, points=np.add(first.points, [off, 0.0]))
+    wrong = dataclasses.replace(part.contour, dense=lambda: (moved, *others))
+    parts = (dataclasses.replace(part, contours=(wrong,)),)
+    written = dataclasses.replace(small.written, files=(), summary={})
+    found = oracles.look_at(SimpleNamespace(parts=parts), written)
+    assert [one.place for one in found] == places
+
+
 SPOILT = {
     "gear1.stl": lambda data: data[:80] + (len(data) // 50 - 2).to_bytes(4, "little") + data[134:],
     "gear1.dxf": lambda data: data[: len(data) // 2],

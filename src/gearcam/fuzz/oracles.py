@@ -15,8 +15,11 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from gearcam.errors import GearcamError
 from gearcam.fuzz.outcome import Failure
+from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Layer, Part
 from gearcam.written import Written
 
@@ -37,6 +40,7 @@ def look_at(result: Any, written: Written) -> Iterator[Failure]:
     parts: tuple[Part, ...] = result.parts
     for part in parts:
         yield from _polygons(part)
+        yield from _torn(part)
     for name in written.files:
         path = written.directory / name
         for words in _unread(path):
@@ -52,6 +56,18 @@ def _polygons(part: Part) -> Iterator[Failure]:
         if not region.is_valid or region.area <= 0.0:
             words = f"{part.name}: {is_valid_reason(region)}, area {region.area} mm2"
             yield Failure(kind="polygon", words=words, place=part.name.rstrip("0123456789"))
+
+
+def _torn(part: Part) -> Iterator[Failure]:
+    """Yield edges whose smooth curves do not begin where the ones before end."""
+    for layer in (*part.layers, *part.pockets):
+        shapes = (layer.edge, *(opening.shape for opening in layer.openings))
+        for edge in (one for one in shapes if isinstance(one, Contour)):
+            ends = np.array([run.points[[0, -1]] for run in edge.runs])
+            gap = float(np.abs(np.roll(ends[:, 0], -1, axis=0) - ends[:, 1]).max())
+            if not gap <= _ROUNDING * edge.reach:
+                words = f"{part.name}: curves of an edge end {gap} mm from the next"
+                yield Failure(kind="polygon", words=words, place="torn")
 
 
 def _rings(layer: Layer, tolerance: float) -> tuple[Any, list[Any]]:
