@@ -162,6 +162,7 @@ def test_flanks_touch_across_a_jump_of_the_curvature(side: int) -> None:
     phi1 = np.radians(np.linspace(59.0, 62.0, 601))
     pairs = flank_pairs(made.gears, side)
     found = contacts(pairs, phi1)
+    assert np.all((np.diff(found.step) > 0) | (np.diff(found.pair) > 0))
     count = np.bincount(found.step, minlength=len(phi1))
     assert (count == pairs.carrying(phi1)).all()
     outward = np.full(len(phi1), -np.inf)

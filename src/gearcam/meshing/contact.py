@@ -103,10 +103,8 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     for wheel, w in zip(WHEELS, rolled, strict=True):
         low, high = pairs.reach(wheel, pair)
         touching = touching & (w >= low) & (w <= high)
-    if limits is not None:
-        touching = outermost(step, pair, -side * pose.lead, touching)
-    step, pair = step[touching], pair[touching]
-    pose, at = pose.take(touching), at.take(touching)
+    kept = outermost(step, pair, -side * pose.lead, touching)
+    step, pair, pose, at = step[kept], pair[kept], pose.take(kept), at.take(kept)
     first, second = at.frames
     (one, two), sf = pairs.toothings, [pairs.place(wheel, pair) for wheel in WHEELS]
     normal = at.normal[0]
@@ -178,7 +176,7 @@ def sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Arr
     return step[rows], pair[rows], (ends[0], ends[1])
 
 
-def outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Mask:
+def outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Ints:
     """Choose of each pair at a phase the normal at which the driver pushes furthest.
 
     Parameters
@@ -192,13 +190,13 @@ def outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Mask:
 
     Returns
     -------
-    (n,) bool array
-        Those chosen.
+    (k,) int array
+        Those chosen, by phase, then by pair.
     """
-    number = np.lexsort((-np.round(outward, _DIGITS), ~touching, pair, step))
-    first = np.ones(len(step), dtype=bool)
-    first[number[1:]] = (np.diff(step[number]) != 0) | (np.diff(pair[number]) != 0)
-    return touching & first
+    at = np.flatnonzero(touching)
+    at = at[np.lexsort((-np.round(outward[at], _DIGITS), pair[at], step[at]))]
+    again = (np.diff(step[at]) == 0) & (np.diff(pair[at]) == 0)
+    return at[np.append(True, ~again)[: len(at)]]
 
 
 def contact_columns(found: Contacts, distance: float) -> dict[str, Array]:

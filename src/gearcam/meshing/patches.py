@@ -204,9 +204,7 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
     )
     missed = np.abs(at.equations[0]) + np.abs(at.equations[2]) / pairs.pitch
     overlap = (every.penetration > 0.0) & (missed < _MISS)
-    if limits is not None:
-        overlap = outermost(step, pair, every.penetration, overlap)
-    return every.select(overlap)
+    return every.select(outermost(step, pair, every.penetration, overlap))
 
 
 def _shared(
