@@ -15,17 +15,23 @@ import shapely
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve
 from gearcam.gears.pair import Gear, make_gear, make_pair
-from gearcam.gears.spec import Finish
+from gearcam.gears.spec import Finish, Rack
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.laws.ratio.composite import Multispeed
 from gearcam.parts.parallel import moved, rounded
 from gearcam.tolerances import DEFAULT
-from helpers_pairs import profile
+from helpers_pairs import job, profile
 
 TOLERANCE = 2e-4
 
 
 def wheel(name: str, number: int, clearance: float, rounding: float) -> Gear:
     """A wheel of a profile with a finish in modules."""
-    made = profile(name)
+    return finished(profile(name), number, clearance, rounding)
+
+
+def finished(made: GearPairResult, number: int, clearance: float, rounding: float) -> Gear:
+    """A wheel of a pair with a finish in modules."""
     module = made.pair.module
     finish = Finish(clearance=clearance * module, tip_rounding=rounding * module)
     design = made.design
@@ -80,6 +86,23 @@ def test_arcs_are_tangent_and_of_the_radius_asked_for(number: int) -> None:
             point, tangent = sampler.curves.at(np.array([other]), np.array([place]))
             assert abs(point[0] - points[own]) < 1e-9
             assert abs(np.angle(tangent[0] / tangents[own])) < 1e-9
+
+
+def test_tips_of_flanks_that_end_at_cusps_are_rounded() -> None:
+    """Newton's steps that began at the cusp led far away, and no radius at all was allowed."""
+    angles = tuple(math.radians(angle) for angle in (116.0, 96.0, 73.0))
+    ratios, transition = ("solve", 1.08, 1.06), math.radians(25.0)
+    law = Multispeed(ratios=ratios, angles=angles, transition=transition, shape="cubic")
+    made = job(law, (24, 24), module=2.0, rack=Rack(pressure_angle=math.radians(17.0)))
+    sharp, gear = (finished(made, 1, 0.0, radius) for radius in (0.0, 0.1))
+    toothing, flanks = gear.toothing, gear.profile.flanks
+    frames = toothing.frames(flanks.tips.phi)
+    assert np.abs(toothing.regularity(frames, flanks.sf, flanks.sigma)).min() < 1e-9
+    opened = shapely.Polygon(sharp.outline).buffer(-0.2, 99).buffer(0.2, 99).boundary
+    sampler = gear.profile.sampler
+    arc = gear.profile.rows.kind[sampler.curve_of(sampler.chords[0][:-1])] == Curve.ROUND
+    assert np.count_nonzero(arc) > 2 * 24
+    assert shapely.distance(opened, shapely.points(gear.outline[arc])).max() < 2.5 * TOLERANCE
 
 
 def test_too_much_rounding_is_refused_with_the_most() -> None:

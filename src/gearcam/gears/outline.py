@@ -285,13 +285,14 @@ def _sharpen(toothing: Toothing, tips: TipEnds) -> TipEnds:
         return tips
     made, both = deepcopy(tips), np.stack([pointed, z + pointed])
     high, low = base = toothing.track.angle(sf[both])
-    crossing, met = flank_crossings(toothing, sf[both], sigma[both], tips.phi[both])
+    middle = 0.5 * (base + tips.phi[both])  # the ends may be cusps
+    crossing, met = flank_crossings(toothing, sf[both], sigma[both], middle)
     met &= np.all((crossing - base) * (tips.phi[both] - crossing) >= 0.0, axis=0)
     made.phi[both[:, met]], made.full[both[:, met]] = crossing[:, met], False
     frames = toothing.frames(made.phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
-    middle = feet(toothing, points, low, high, 0.5 * (low + high))
-    made.foot[both], made.height[both] = middle, np.abs(points - toothing.frames(middle).p)
+    top = feet(toothing, points, low, high, 0.5 * (low + high))
+    made.foot[both], made.height[both] = top, np.abs(points - toothing.frames(top).p)
     return made
 
 

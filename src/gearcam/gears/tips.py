@@ -135,6 +135,8 @@ def cross(
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
 
+    A step that leads no nearer is halved: where curvatures jump, whole ones may go to and fro.
+
     Parameters
     ----------
     toothing : Toothing
@@ -142,7 +144,7 @@ def cross(
     one, two : callable
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
-        Driver angles to begin with, on both.
+        Driver angles to begin with, on both: not at a cusp, where no step is known.
     most : int
         Steps at most.
 
@@ -151,21 +153,28 @@ def cross(
     x, y : (n,) arrays, rad
         Driver angles on both curves.
     miss : (n,) array, mm
-        How far their points are apart one step before.
+        How far their points are apart, before a last step that is no longer than the one to it.
     """
-    miss = np.full(phi.shape[1:], np.inf, dtype=complex)
+    place, step = phi, np.zeros_like(phi)
+    miss, last = np.full(phi.shape[1:], np.inf), step
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(most):
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
-            miss = p - q
+            gap = p - q
             # both steps over one determinant: the curves' directions against each other
-            steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
-            steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
-            phi = phi + np.where(np.isfinite(steps).all(axis=0), steps, 0.0)
-            if not np.any(np.abs(miss) > near(toothing)):
+            ahead = np.imag(np.conj(np.stack([-slide, move])) * gap)
+            ahead = ahead / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
+            ahead = np.where(np.isfinite(ahead).all(axis=0), ahead, 0.0)
+            nearer = np.abs(gap) < miss
+            place, miss = np.where(nearer, phi, place), np.where(nearer, np.abs(gap), miss)
+            last, step = step, np.where(nearer, ahead, 0.5 * step)
+            if not np.any(miss > near(toothing)):
                 break
-    return phi[0], phi[1], np.abs(miss)
+            phi = place + step
+    shorter = nearer & (np.abs(step) <= np.abs(last)).all(axis=0)
+    x, y = place + np.where(shorter, step, 0.0)
+    return x, y, miss
 
 
 def flank_crossings(
