@@ -91,8 +91,9 @@ def test_arcs_are_tangent_and_of_the_radius_asked_for(number: int) -> None:
 def test_tips_of_flanks_that_end_at_cusps_are_rounded() -> None:
     """Newton's steps that began at the cusp led far away, and no radius at all was allowed."""
     angles = tuple(math.radians(angle) for angle in (116.0, 96.0, 73.0))
-    ratios, transition = ("solve", 1.08, 1.06), math.radians(25.0)
-    law = Multispeed(ratios=ratios, angles=angles, transition=transition, shape="cubic")
+    law = Multispeed(
+        ratios=("solve", 1.08, 1.06), angles=angles, transition=math.radians(25.0), shape="cubic"
+    )
     made = job(law, (24, 24), module=2.0, rack=Rack(pressure_angle=math.radians(17.0)))
     sharp, gear = (finished(made, 1, 0.0, radius) for radius in (0.0, 0.1))
     toothing, flanks = gear.toothing, gear.profile.flanks

@@ -115,10 +115,11 @@ def test_curves_that_bend_where_they_cross_are_found() -> None:
 
     def bent(x: Array, _: Frames) -> tuple[Plane, Plane]:
         off = x - target
-        return x + 1j * np.sign(off) * np.sqrt(np.abs(off)), 1.0 + 0.5j / np.sqrt(np.abs(off))
+        far = np.sqrt(np.abs(off))
+        return np.asarray(x + 1j * np.sign(off) * far), np.asarray(1.0 + 0.5j / far)
 
     def straight(x: Array, _: Frames) -> tuple[Plane, Plane]:
-        return x + 0.0j, np.ones_like(x) + 0.0j
+        return x.astype(np.complex128), np.ones(x.shape, dtype=np.complex128)
 
     x, y, miss = cross(plane, bent, straight, np.array([[0.4, 0.1, 0.2], [0.0, 0.0, 0.0]]), 50)
     assert np.all(miss < 1e-6)

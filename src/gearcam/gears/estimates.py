@@ -132,7 +132,7 @@ def acceleration_error(subject: Subject) -> float:
     share = _EPS * (_FEW + law.period / width) + solved
     each = shown / subject.pair.rolling.mean_radius + share * sizes
     # another extreme may be the largest only if it comes up to it
-    return float(max(each[sizes.argmax()], (sizes + each).max() - sizes.max()))
+    return float((each - (sizes.max() - sizes)).max())
 
 
 def direction_error(rolling: Rolling, phi: Array) -> Array:
