@@ -29,6 +29,9 @@ _STEPS, _QUICK = 25, 8
 """Steps of Newton's method, and where there is another way; four or five serve where curves do
 cross."""
 
+_SHORT = 0.9
+"""Share of the way to the end of a curve that a step goes at most."""
+
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
 
@@ -110,7 +113,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), _QUICK)
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), most=_QUICK)
     return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
 
 
@@ -131,6 +134,7 @@ def cross(
     one: _Way,
     two: _Way,
     phi: Array,
+    limits: tuple[Array, Array] | None = None,
     most: int = _STEPS,
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
@@ -145,6 +149,8 @@ def cross(
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
         Driver angles to begin with, on both: not at a cusp, where no step is known.
+    limits : two (2, n) arrays, rad, optional
+        Ends of the curves, on either side: beyond a cusp there is no way back.
     most : int
         Steps at most.
 
@@ -166,6 +172,9 @@ def cross(
             ahead = np.imag(np.conj(np.stack([-slide, move])) * gap)
             ahead = ahead / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
             ahead = np.where(np.isfinite(ahead).all(axis=0), ahead, 0.0)
+            if limits is not None:
+                room = np.where(ahead > 0.0, limits[1] - phi, limits[0] - phi) / ahead
+                ahead = ahead * np.fmin(1.0, _SHORT * np.fmin(*room))
             nearer = np.abs(gap) < miss
             place, miss = np.where(nearer, phi, place), np.where(nearer, np.abs(gap), miss)
             last, step = step, np.where(nearer, ahead, 0.5 * step)
@@ -178,7 +187,7 @@ def cross(
 
 
 def flank_crossings(
-    toothing: Toothing, sf: Array, sigma: Array, start: Array
+    toothing: Toothing, sf: Array, sigma: Array, foot: Array, end: Array
 ) -> tuple[Array, Mask]:
     """Find where two flanks of teeth cross.
 
@@ -188,8 +197,8 @@ def flank_crossings(
         The wheel.
     sf, sigma : (2, n) arrays, mm and 1
         The flanks, both of a tooth on one turn.
-    start : (2, n) array, rad
-        Driver angles to begin with.
+    foot, end : (2, n) arrays, rad
+        Driver angles between which they are sought: at the pitch curve, and at the upper ends.
 
     Returns
     -------
@@ -199,7 +208,8 @@ def flank_crossings(
         Whether they cross.
     """
     one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
-    first, second, miss = cross(toothing, one, two, start)
+    limits = np.minimum(foot, end), np.maximum(foot, end)
+    first, second, miss = cross(toothing, one, two, 0.5 * (foot + end), limits)
     return np.stack([first, second]), miss <= ROUGH * near(toothing)
 
 
