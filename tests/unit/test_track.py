@@ -121,6 +121,6 @@ def test_curves_that_bend_where_they_cross_are_found() -> None:
     def straight(x: Array, _: Frames) -> tuple[Plane, Plane]:
         return x.astype(np.complex128), np.ones(x.shape, dtype=np.complex128)
 
-    x, y, miss = cross(plane, bent, straight, np.array([[0.4, 0.1, 0.2], [0.0, 0.0, 0.0]]), 50)
+    x, y, miss = cross(plane, bent, straight, np.array([[0.4, 0.1, 0.2], [0.0, 0.0, 0.0]]), most=50)
     assert np.all(miss < 1e-6)
     np.testing.assert_allclose([x, y], [target, target], atol=1e-6)

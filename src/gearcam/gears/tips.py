@@ -161,8 +161,8 @@ def cross(
     miss : (n,) array, mm
         How far their points are apart, before a last step that is no longer than the one to it.
     """
-    place, step = phi, np.zeros_like(phi)
-    miss, last = np.full(phi.shape[1:], np.inf), step
+    place, step, last = phi, np.zeros_like(phi), np.zeros_like(phi)
+    miss, nearer = np.full(phi.shape[1:], np.inf), np.zeros(phi.shape[1:], dtype=bool)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(most):
             frames = toothing.frames(phi)
