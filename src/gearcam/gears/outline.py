@@ -289,8 +289,8 @@ def _sharpen(toothing: Toothing, tips: TipEnds) -> TipEnds:
     made.phi[both[:, met]], made.full[both[:, met]] = crossing[:, met], False
     frames = toothing.frames(made.phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
-    top = feet(toothing, points, low, high, 0.5 * (low + high))
-    made.foot[both], made.height[both] = top, np.abs(points - toothing.frames(top).p)
+    middle = feet(toothing, points, low, high, 0.5 * (low + high))
+    made.foot[both], made.height[both] = middle, np.abs(points - toothing.frames(middle).p)
     return made
 
 
