@@ -7,6 +7,7 @@ nothing of racks.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,17 +16,23 @@ import shapely
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import Curve
 from gearcam.gears.pair import Gear, make_gear, make_pair
-from gearcam.gears.spec import Finish
+from gearcam.gears.spec import Finish, Rack
+from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.laws.ratio.composite import Multispeed
 from gearcam.parts.parallel import moved, rounded
 from gearcam.tolerances import DEFAULT
-from helpers_pairs import profile
+from helpers_pairs import job, profile
 
 TOLERANCE = 2e-4
 
 
 def wheel(name: str, number: int, clearance: float, rounding: float) -> Gear:
     """A wheel of a profile with a finish in modules."""
-    made = profile(name)
+    return finished(profile(name), number, clearance, rounding)
+
+
+def finished(made: GearPairResult, number: int, clearance: float, rounding: float) -> Gear:
+    """A wheel of a pair with a finish in modules."""
     module = made.pair.module
     finish = Finish(clearance=clearance * module, tip_rounding=rounding * module)
     design = made.design
@@ -80,6 +87,64 @@ def test_arcs_are_tangent_and_of_the_radius_asked_for(number: int) -> None:
             point, tangent = sampler.curves.at(np.array([other]), np.array([place]))
             assert abs(point[0] - points[own]) < 1e-9
             assert abs(np.angle(tangent[0] / tangents[own])) < 1e-9
+
+
+def _steps(
+    ratios: tuple[Any, ...], angles: tuple[float, ...], turn: float, teeth: int, **given: Any
+) -> GearPairResult:
+    """A pair that steps from ratio to ratio within `turn`; angles in degrees."""
+    law = Multispeed(
+        ratios=ratios,
+        angles=tuple(math.radians(angle) for angle in angles),
+        transition=math.radians(turn),
+        shape="cubic",
+    )
+    return job(law, (teeth, teeth), module=2.0, **given)
+
+
+@pytest.mark.parametrize(
+    ("made", "radius"),
+    [
+        (
+            _steps(
+                ("solve", 1.08, 1.06),
+                (116.0, 96.0, 73.0),
+                25.0,
+                24,
+                rack=Rack(pressure_angle=math.radians(17.0)),
+            ),
+            0.1,
+        ),
+        (
+            _steps(
+                (0.9028, 0.9397, "solve"),
+                (114.3525, 66.9967, 70.20766986505996),
+                36.147710044980016,
+                30,
+                rack=Rack(
+                    pressure_angle=math.radians(20.087),
+                    addendum=1.364,
+                    dedendum=1.461,
+                    tip_radius=0.02,
+                ),
+                x=0.4,
+            ),
+            0.024,
+        ),
+    ],
+    ids=["full", "long"],
+)
+def test_tips_of_flanks_that_end_at_cusps_are_rounded(made: GearPairResult, radius: float) -> None:
+    """Newton's steps from the cusp or past it led far away: no radius was small enough."""
+    sharp, gear = (finished(made, 1, 0.0, each) for each in (0.0, radius))
+    toothing, flanks, size = gear.toothing, gear.profile.flanks, radius * made.pair.module
+    frames = toothing.frames(flanks.tips.phi)
+    assert np.abs(toothing.regularity(frames, flanks.sf, flanks.sigma)).min() < 1e-9
+    opened = shapely.Polygon(sharp.outline).buffer(-size, 99).buffer(size, 99).boundary
+    sampler = gear.profile.sampler
+    arc = gear.profile.rows.kind[sampler.curve_of(sampler.chords[0][:-1])] == Curve.ROUND
+    assert np.count_nonzero(arc) > 2 * toothing.teeth
+    assert shapely.distance(opened, shapely.points(gear.outline[arc])).max() < 2.5 * TOLERANCE
 
 
 def test_too_much_rounding_is_refused_with_the_most() -> None:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 
-from gearcam.gears.estimates import area_error
+from gearcam.gears.estimates import area_error, ratio_error
 from gearcam.gears.rolling import roll
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.composite import Fourier
@@ -60,6 +61,25 @@ def test_there_are_a_hundred_designs_of_all_laws() -> None:
         type(LAWS[name].example) for name in laws
     }
     assert {case.mate for case in CASES.values()} == {1, 0, -1}
+
+
+@pytest.mark.parametrize(("height", "sharp"), [(3, 100), (3, 200)])
+def test_a_ratio_is_off_by_more_where_the_radius_nears_the_distance(
+    height: int, sharp: int
+) -> None:
+    """Against the distance that closes the law with 30 digits: even sums of a periodic wave."""
+    made = Formula(r1=f"1 + {height}*exp(-{sharp}*sin(phi1/2)**2)").build(ONE_LOBE, DEFAULT)
+    rolling = roll(made, teeth=(61, 61), center_distance=1.0, module=None, tolerances=DEFAULT)
+    with mpmath.workdps(30):
+        halves = (mpmath.pi * k / 2000 for k in range(2000))
+        radii = [1 + height * mpmath.exp(-sharp * mpmath.sin(half) ** 2) for half in halves]
+        distance = mpmath.mpf(made.solved["center_distance_over_scale"])
+        for _ in range(4):
+            ratios = [r / (distance - r) for r in radii]
+            slope = sum(i / (distance - r) for i, r in zip(ratios, radii, strict=True))
+            distance += (sum(ratios) - len(ratios)) / slope
+        off = float(abs(made.ratio_range[1][1] - radii[0] / (distance - radii[0])))
+    assert off < ratio_error(rolling) < TIGHT * off
 
 
 def test_an_area_is_off_by_less_than_its_estimate_and_in_proportion() -> None:

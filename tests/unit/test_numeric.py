@@ -246,6 +246,18 @@ def test_newton_in_a_bracket_leaves_a_cycle() -> None:
     np.testing.assert_allclose(found, target, atol=1e-11)
 
 
+def test_newton_in_a_bracket_does_not_creep() -> None:
+    """Down an exponential each step is as short as the last: two hundred would be needed."""
+    target = np.array([0.1, -0.2, 0.0])
+
+    def steep(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        value = np.exp(200.0 * (x - target))
+        return value - 1.0, 200.0 * value
+
+    found = newton_in_bracket(steep, np.full(3, -1.0), np.ones(3), np.ones(3), 1e-14)
+    np.testing.assert_allclose(found, target, atol=1e-14)
+
+
 def test_damped_steps_that_go_to_and_fro_end() -> None:
     """Newton's steps for a root of the distance lead as far to the other side."""
     target = np.array([[0.01], [-0.02], [0.0]])

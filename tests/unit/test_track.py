@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,10 +16,11 @@ from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import build_outline
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
+from gearcam.gears.tips import cross
 from gearcam.gears.track import ArcLength, Frames, Track
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.span import Lobes
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes
 from gearcam.tolerances import DEFAULT
@@ -102,3 +105,22 @@ def test_a_polar_curve_is_toothed_as_the_centrode_of_a_law(rounding: float) -> N
         rows.append(build_outline(toothing, None, 0.01, DEFAULT).rows)
     for name in ("kind", "tooth", "sigma", "start", "end"):
         np.testing.assert_allclose(getattr(rows[1], name), getattr(rows[0], name), atol=1e-9)
+
+
+def test_curves_that_bend_where_they_cross_are_found() -> None:
+    """Of a root of the distance Newton's whole steps lead as far to the other side, for ever."""
+    target = np.array([0.1, -0.2, 0.3])
+    plane: Any = SimpleNamespace(pitch=1.0, track=SimpleNamespace(length=1.0))
+    plane.frames = lambda phi: SimpleNamespace(some=lambda which: phi[which])
+
+    def bent(x: Array, _: Frames) -> tuple[Plane, Plane]:
+        off = x - target
+        far = np.sqrt(np.abs(off))
+        return np.asarray(x + 1j * np.sign(off) * far), np.asarray(1.0 + 0.5j / far)
+
+    def straight(x: Array, _: Frames) -> tuple[Plane, Plane]:
+        return x.astype(np.complex128), np.ones(x.shape, dtype=np.complex128)
+
+    x, y, miss = cross(plane, bent, straight, np.array([[0.4, 0.1, 0.2], [0.0, 0.0, 0.0]]), most=50)
+    assert np.all(miss < 1e-6)
+    np.testing.assert_allclose([x, y], [target, target], atol=1e-6)

@@ -158,6 +158,19 @@ class Mechanism(Brief):
         return (math.degrees(1.0), "deg") if self.oscillating else (1.0, "mm")
 
     @property
+    def motion_scales(self) -> dict[str, float]:
+        """Names of what people are told of the motion, and what makes them of inner units.
+
+        The lift and its first three derivatives, in this order.
+        """
+        (scale, unit), driver = self.outward, self.driver
+        names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
+        return {
+            name.format(unit, driver.per): scale / driver.rate**order
+            for order, name in enumerate(names)
+        }
+
+    @property
     def below(self) -> bool:
         """Whether a round follower stands below the axis, and comes nearer as it rises."""
         return not (self.flat or self.slide) and self.start < 0.0

@@ -132,7 +132,7 @@ def acceleration_error(subject: Subject) -> float:
     share = _EPS * (_FEW + law.period / width) + solved
     each = shown / subject.pair.rolling.mean_radius + share * sizes
     # another extreme may be the largest only if it comes up to it
-    return float(max(each[sizes.argmax()], (sizes + each).max() - sizes.max()))
+    return float((each - (sizes.max() - sizes)).max())
 
 
 def direction_error(rolling: Rolling, phi: Array) -> Array:
@@ -198,9 +198,9 @@ def own_error(pair: GearPair, phi: Array, rounding: float) -> Array:
     (n,) array
         That, and of the direction of the normal along the way to the flank.
     """
-    law, cutter = pair.law, pair.toothings[0].cutter
-    way = max(cutter.addendum, cutter.dedendum) / math.sin(cutter.alpha)
-    turned = _EPS * law.period + direction_error(pair.rolling, phi)
+    cutters = [toothing.cutter for toothing in pair.toothings]
+    way = max(max(one.addendum, one.dedendum) / math.sin(one.alpha) for one in cutters)
+    turned = _EPS * pair.law.period + direction_error(pair.rolling, phi)
     return way * turned + rounding
 
 

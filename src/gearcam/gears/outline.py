@@ -285,8 +285,7 @@ def _sharpen(toothing: Toothing, tips: TipEnds) -> TipEnds:
         return tips
     made, both = deepcopy(tips), np.stack([pointed, z + pointed])
     high, low = base = toothing.track.angle(sf[both])
-    crossing, met = flank_crossings(toothing, sf[both], sigma[both], tips.phi[both])
-    met &= np.all((crossing - base) * (tips.phi[both] - crossing) >= 0.0, axis=0)
+    crossing, met = flank_crossings(toothing, sf[both], sigma[both], base, tips.phi[both])
     made.phi[both[:, met]], made.full[both[:, met]] = crossing[:, met], False
     frames = toothing.frames(made.phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])

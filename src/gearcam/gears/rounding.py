@@ -122,8 +122,11 @@ def _arcs(
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
     there = tops.row >= 0
-    flank, first = partial(flank_at, toothing, centers, sigma), np.stack([tips.phi, tips.foot])
-    phi, foot, miss = cross(toothing, flank, curve, first)
+    flank = partial(flank_at, toothing, centers, sigma)
+    base, top = toothing.track.angle(sf), tips.phi
+    begin, far = np.stack([0.5 * (base + top), tips.foot]), np.full(top.shape, math.inf)
+    low, high = np.stack([np.minimum(base, top), -far]), np.stack([np.maximum(base, top), far])
+    phi, foot, miss = cross(toothing, flank, curve, begin, (low, high))
     place = foot + tops.tip_turn
     fits = (tops.tip >= 0) & (miss <= ROUGH * near(toothing))
     fits &= (place >= rows.start[tops.tip] - _EDGE) & (place <= rows.end[tops.tip] + _EDGE)
@@ -131,7 +134,9 @@ def _arcs(
     narrow = ~(fits[:z] & fits[z:]) | (foot[z:] >= foot[:z])
     both = np.flatnonzero(narrow & there[:z] & there[z:]) + np.array([[z], [0]])
     if both.size:
-        phi[both], met = flank_crossings(toothing, centers[both], sigma[both], tips.phi[both])
+        phi[both], met = flank_crossings(
+            toothing, centers[both], sigma[both], base[both], top[both]
+        )
         fits[both] = met
     reach, end = sigma * (sf - toothing.track.arc_length(np.stack([phi, tips.phi])))
     if not np.all(fits & (reach > 0.0) & (reach < end), where=there):

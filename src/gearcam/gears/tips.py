@@ -29,6 +29,9 @@ _STEPS, _QUICK = 25, 8
 """Steps of Newton's method, and where there is another way; four or five serve where curves do
 cross."""
 
+_SHORT = 0.9
+"""Share of the way to the end of a curve that a step goes at most."""
+
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
 
@@ -110,7 +113,7 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
         return base.p + addendum * w * base.t, slide
 
     flank = partial(flank_at, toothing, sf, sigma)
-    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), _QUICK)
+    phi, foot, miss = cross(toothing, flank, curve, toothing.track.angle(guess), most=_QUICK)
     return phi, foot, np.where(miss <= near(toothing), addendum, np.nan)
 
 
@@ -131,9 +134,12 @@ def cross(
     one: _Way,
     two: _Way,
     phi: Array,
+    limits: tuple[Array, Array] | None = None,
     most: int = _STEPS,
 ) -> tuple[Array, Array, Array]:
     """Find where curves of a toothing cross, n pairs at once, by Newton's method.
+
+    A step that leads no nearer is halved: where curvatures jump, whole ones may go to and fro.
 
     Parameters
     ----------
@@ -142,7 +148,9 @@ def cross(
     one, two : callable
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
-        Driver angles to begin with, on both.
+        Driver angles to begin with, on both: not at a cusp, where no step is known.
+    limits : two (2, n) arrays, rad, optional
+        Ends of the curves, on either side: beyond a cusp there is no way back.
     most : int
         Steps at most.
 
@@ -151,25 +159,35 @@ def cross(
     x, y : (n,) arrays, rad
         Driver angles on both curves.
     miss : (n,) array, mm
-        How far their points are apart one step before.
+        How far their points are apart, before a last step that is no longer than the one to it.
     """
-    miss = np.full(phi.shape[1:], np.inf, dtype=complex)
+    place, step, last = phi, np.zeros_like(phi), np.zeros_like(phi)
+    miss, nearer = np.full(phi.shape[1:], np.inf), np.zeros(phi.shape[1:], dtype=bool)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(most):
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
-            miss = p - q
+            gap = p - q
             # both steps over one determinant: the curves' directions against each other
-            steps = np.imag(np.conj(np.stack([-slide, move])) * miss)
-            steps = steps / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
-            phi = phi + np.where(np.isfinite(steps).all(axis=0), steps, 0.0)
-            if not np.any(np.abs(miss) > near(toothing)):
+            ahead = np.imag(np.conj(np.stack([-slide, move])) * gap)
+            ahead = ahead / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
+            ahead = np.where(np.isfinite(ahead).all(axis=0), ahead, 0.0)
+            if limits is not None:
+                room = np.where(ahead > 0.0, limits[1] - phi, limits[0] - phi) / ahead
+                ahead = ahead * np.fmin(1.0, _SHORT * np.fmin(*room))
+            nearer = np.abs(gap) < miss
+            place, miss = np.where(nearer, phi, place), np.where(nearer, np.abs(gap), miss)
+            last, step = step, np.where(nearer, ahead, 0.5 * step)
+            if not np.any(miss > near(toothing)):
                 break
-    return phi[0], phi[1], np.abs(miss)
+            phi = place + step
+    shorter = nearer & (np.abs(step) <= np.abs(last)).all(axis=0)
+    x, y = place + np.where(shorter, step, 0.0)
+    return x, y, miss
 
 
 def flank_crossings(
-    toothing: Toothing, sf: Array, sigma: Array, start: Array
+    toothing: Toothing, sf: Array, sigma: Array, foot: Array, end: Array
 ) -> tuple[Array, Mask]:
     """Find where two flanks of teeth cross.
 
@@ -179,8 +197,8 @@ def flank_crossings(
         The wheel.
     sf, sigma : (2, n) arrays, mm and 1
         The flanks, both of a tooth on one turn.
-    start : (2, n) array, rad
-        Driver angles to begin with.
+    foot, end : (2, n) arrays, rad
+        Driver angles between which they are sought: at the pitch curve, and at the upper ends.
 
     Returns
     -------
@@ -190,7 +208,8 @@ def flank_crossings(
         Whether they cross.
     """
     one, two = (partial(flank_at, toothing, sf[k], sigma[k]) for k in (0, 1))
-    first, second, miss = cross(toothing, one, two, start)
+    limits = np.minimum(foot, end), np.maximum(foot, end)
+    first, second, miss = cross(toothing, one, two, 0.5 * (foot + end), limits)
     return np.stack([first, second]), miss <= ROUGH * near(toothing)
 
 

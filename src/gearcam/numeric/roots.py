@@ -1,7 +1,7 @@
 """Bracketed root searches, vectorised: every search keeps an interval that holds its root.
 
 Newton steps are taken while they stay inside the bracket and are replaced by bisection otherwise,
-so that no start value, however bad, can lead out of it.
+so that no start value, however bad, can lead out of it; where they make no way, bisection ends it.
 """
 
 from __future__ import annotations
@@ -15,6 +15,9 @@ from gearcam.numeric.arrays import Array
 
 _STEPS = 80
 """Bisection alone narrows a bracket to rounding in 60 steps; 80 leaves room for mixed steps."""
+
+_NEWTON = 30
+"""Newton's steps at most: ten are many, after these slopes lead nowhere in good time."""
 
 
 def newton_in_bracket(
@@ -59,7 +62,7 @@ def newton_in_bracket(
         inside = (step - a) * (step - b) <= 0.0
         # where the slope jumps steps may go from end to end of the bracket for ever
         size = np.abs(step - x)
-        inside &= size <= 0.5 * np.maximum(np.abs(b - a), last)
+        inside &= (size <= 0.5 * np.maximum(np.abs(b - a), last)) & (number < _NEWTON)
         # A first step that leads out tries the end: it may be the answer.
         other = 0.5 * (a + b) if number else np.where((step - a) * (b - a) > 0.0, b, a)
         new = np.where(np.abs(value) <= noise, x, np.where(inside, step, other))

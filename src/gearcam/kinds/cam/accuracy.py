@@ -49,19 +49,12 @@ def error_rows(result: CamResult) -> Rows:
     """
     cam, program = result.cam, result.program
     moved, how = Moved(program), _UNKNOWN if any(program.errors) else _ROUNDED
-    rows = {name: (value, how) for name, value in _motion(result, moved)}
+    motion = zip(result.mechanism.motion_scales.items(), moved.lift, strict=True)
+    rows = {name: (scale * off, how) for (name, scale), off in motion}
     rows |= {name: (value, how) for name, value in _shape(cam, moved)}
     rows |= dict(_trimming(result, moved))
     rows |= dict(_sizes(result))
     return rows
-
-
-def _motion(result: CamResult, moved: Moved) -> Iterator[tuple[str, float]]:
-    """Yield the errors of the motion, named as the columns of its table."""
-    driver, (scale, unit) = result.mechanism.driver, result.mechanism.outward
-    names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
-    for order, (name, off) in enumerate(zip(names, moved.lift, strict=True)):
-        yield name.format(unit, driver.per), scale * off / driver.rate**order
 
 
 def _shape(cam: Cam, moved: Moved) -> Iterator[tuple[str, float]]:

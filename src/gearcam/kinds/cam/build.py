@@ -174,17 +174,9 @@ class CamResult(Result):
         driver = self.mechanism.driver
         motions, walls = self.cam.motions, self.cam.walls
         found = motions[0].motion(theta)
-        scale, unit = self.mechanism.outward
-        names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
-        columns = {
-            driver.column: driver.scale * theta,
-            **{
-                name.format(unit, driver.per): scale * found[short] / driver.rate**order
-                for order, (name, short) in enumerate(
-                    zip(names, ("s", "ds", "d2s", "d3s"), strict=True)
-                )
-            },
-        }
+        columns = {driver.column: driver.scale * theta}
+        names = zip(self.mechanism.motion_scales.items(), ("s", "ds", "d2s", "d3s"), strict=True)
+        columns |= {name: scale * found[short] for (name, scale), short in names}
         told = [found, *(one.motion(theta) for one in motions[1:])]
         for one, values in zip(motions, told, strict=True):
             columns[pressure_column(one)] = np.degrees(values["pressure"])
