@@ -239,9 +239,10 @@ class Search:
 
     def changed(self, changes: Changes) -> Any:
         """Return the result of the changed design; counted."""
-        self.tried |= dict.fromkeys(changes)
         self.builds += 1
-        return type(self.result)(self.result.design.with_(changes), self.result.tolerances)
+        design = self.result.design.with_(changes)
+        self.tried |= dict.fromkeys(changes)
+        return type(self.result)(design, self.result.tolerances)
 
     def left(self, changes: Changes) -> frozenset[str] | None:
         """Return what is left of the errors of the changed design, others too; None if refused.
