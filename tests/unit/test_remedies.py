@@ -105,6 +105,19 @@ def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
     assert smaller or name == "bore"
 
 
+@pytest.mark.parametrize("name", ["follower's offset", "undercut cam", "arm", "hub", "play"])
+def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> None:
+    found = search(name, folder).found
+    # one way out is told once, though a refusal and the usual ways both name it
+    assert len({tuple(remedy.changes) for remedy in found}) == len(found)
+    for remedy in found:
+        for key, value in remedy.changes.items():
+            assert isinstance(value, float)
+            assert len(f"{value:.10g}".lstrip("-0.").replace(".", "")) <= 5
+            if remedy.less:
+                assert value == pytest.approx(remedy.less[key], rel=0.013)  # 1 %, and rounding
+
+
 def told_teeth(message: str) -> list[int]:
     """The tooth counts that a warning names."""
     found = re.search(r"With pair\.teeth = \[(\d+), (\d+)\] or more", message)
