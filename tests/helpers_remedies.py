@@ -306,6 +306,11 @@ ERRORS: dict[str, tuple[dict[str, Any], set[str], set[str]]] = {
         {"contact-ratio"},
         {"blank.tip_rounding_mm"},
     ),
+    "a kerf too wide for flanks": (
+        pair(CIRCLE, [18, 18], output={"kerf_mm": 2.9}, blank={"bore_diameter_mm": 8}),
+        {"wide-kerf"},
+        {"output.kerf_mm"},
+    ),
     "undercut cam": (
         cam(
             ROLLER | {"roller_radius_mm": 20}, {"prime_radius_mm": 30}, 20, angles=[60, 60, 60, 180]

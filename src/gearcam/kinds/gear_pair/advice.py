@@ -169,3 +169,6 @@ def _of_errors(search: Search) -> Iterator[Way]:
         if search.document["pair"]["x"]:
             yield Way(far={"pair.x": 0.0})
         yield from _EDGES
+    if "wide-kerf" in search.codes:
+        widest = min(one.limit for one in search.result.findings if one.code == "wide-kerf")
+        yield Way(near={"output.kerf_mm": widest}, far={"output.kerf_mm": 0.0})
