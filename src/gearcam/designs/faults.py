@@ -21,6 +21,9 @@ MISSING: Final = object()
 """Value of a fault where nothing was found."""
 
 _SUFFIX = re.compile(r"_(deg|rad|mm|cm|m|in|inch|rpm|um)$")
+_MEASURE = re.compile(r"[+-]?\d[\d.]*\s*([^\W\d_]+|°)")
+"""A number with a unit."""
+
 _KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 _SHOWN: Final = 60
 
@@ -151,8 +154,10 @@ def meant_by(key: str, known: Mapping[str, Key]) -> list[Key]:
         for word in {entry.key, entry.name}:
             named.setdefault(word, []).append(entry)
     stem = _SUFFIX.sub("", key)
-    if stem in named:
-        return named[stem]
+    rounds = ("diameter", "radius") if "diameter" in key else ("radius", "diameter")
+    for word in (stem, key.replace(*rounds)):
+        if word in named:
+            return named[word]
     ends = [entry for entry in known.values() if entry.key.endswith(f"_{key}")]
     return ends if len(ends) == 2 else named.get(nearest(key, named), [])
 
@@ -331,6 +336,8 @@ def is_of(value: Any, base: type) -> bool:
 
 def _type_hint(value: Any, entry: Key) -> str:
     if isinstance(value, str) and entry.base in (int, float):
+        if _MEASURE.fullmatch(value):
+            return "write the number alone, without its unit and without quotes"
         try:
             float(value)
         except ValueError:
