@@ -72,3 +72,8 @@ def test_all_tables_of_one_name_in_single_brackets() -> None:
     (problem,) = problems(CAM.replace("[[motion]]", "[motion]"))
     assert problem.message.endswith("the table [motion] is given twice")
     assert problem.hint == "each of several tables is written [[motion]]"
+
+
+def test_where_the_kind_is_missing_and_any_is_likely_only_that_is_told() -> None:
+    (problem,) = problems("[blank]\ntip_rounding_mm = 0.3\n")
+    assert (problem.key, problem.message) == ("kind", "is missing")

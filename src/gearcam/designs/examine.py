@@ -83,8 +83,9 @@ def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
         return KINDS[near]
     likely = {name: sum(title in document for title in kind.tables) for name, kind in KINDS.items()}
-    best = max(likely, key=lambda name: likely[name])
-    return KINDS[best] if likely[best] else None
+    most = max(likely.values())
+    best = [name for name, count in likely.items() if count == most > 0]
+    return KINDS[best[0]] if len(best) == 1 else None
 
 
 def home_of(kind: DesignKind, key: str) -> str:
