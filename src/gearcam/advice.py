@@ -355,10 +355,16 @@ def _ahead(changes: Changes, near: Mapping[str, Any], far: Mapping[str, Any]) ->
     return all(isinstance(a, float) and (a - b) * (c - b) > 0.0 for a, b, c in ends)
 
 
-def _alike(some: Changes, others: Mapping[str, Any]) -> bool:
-    """Whether the single numbers of two changes are nearly the same."""
-    pairs = ((value, others[key]) for key, value in some.items())
+def _alike(some: Changes, others: Changes) -> bool:
+    """Whether the numbers of two changes of the same keys are nearly the same."""
+    pairs = zip(_items(some), _items(others), strict=True)
     return all(abs(a - b) <= _CLOSE * abs(a) for a, b in pairs if isinstance(a, float))
+
+
+def _items(changes: Mapping[str, Any]) -> list[Any]:
+    return [
+        one for value in changes.values() for one in (value if isinstance(value, list) else [value])
+    ]
 
 
 def _between(near: Changes, far: Changes, share: float) -> dict[str, object]:

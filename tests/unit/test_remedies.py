@@ -105,7 +105,10 @@ def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
     assert smaller or name == "bore"
 
 
-@pytest.mark.parametrize("name", ["follower's offset", "undercut cam", "arm", "hub", "play"])
+@pytest.mark.parametrize(
+    "name",
+    ["follower's offset", "undercut cam", "arm", "hub", "play", "pointed rack", "shallow"],
+)
 def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> None:
     found = search(name, folder).found
     # one way out is told once, though a refusal and the usual ways both name it
@@ -116,6 +119,22 @@ def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> Non
             assert len(f"{value:.10g}".lstrip("-0.").replace(".", "")) <= 5
             if remedy.less:
                 assert value == pytest.approx(remedy.less[key], rel=0.013)  # 1 %, and rounding
+
+
+def test_remedies_of_both_wheels_are_nearly_the_least(folder: Path) -> None:
+    blank = {"bore_diameter_mm": 12, "bolts": 6, "bolt_circle_mm": 18, "bolt_diameter_mm": 8}
+    document = pair(CIRCLE, [40, 40], blank=blank | {"timing_marks": False})
+    (found,) = (
+        remedy
+        for remedy in gearcam.remedies(job_of(document, folder)).found
+        if "blank.bolt_diameter_mm" in remedy.changes
+    )
+    (widest, same), (wider, _) = (
+        made["blank.bolt_diameter_mm"] for made in (found.changes, found.less)
+    )  # type: ignore[misc]
+    assert widest == same <= 6.0  # 9 mm from the axis beside a bore of 12 mm
+    assert widest == pytest.approx(wider, rel=0.01)
+    assert wider > 5.9
 
 
 def told_teeth(message: str) -> list[int]:
