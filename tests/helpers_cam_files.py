@@ -35,7 +35,7 @@ roller_radius_mm = 6
 offset_mm = 8
 
 [cam]
-form = "disc"                          # disc, groove, conjugate, cylinder, translating
+form = "disc"                          # or groove, conjugate, yoke, translating
 prime_radius_mm = 30                   # to the roller centre at zero lift
 thickness_mm = 12
 

@@ -222,6 +222,30 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
              ring={"rim_mm": 6, "outer": "follow"}, blank=BOLTED),
         {"ring.rim_mm"},
     ),
+    "a table that does not repeat": (
+        pair({"type": "table", "phi1_deg": [0, 60, 120, 180, 240, 300, 360],
+              "ratio": [1.2, 1.1, 0.9, 0.8, 0.9, 1.1, 1.3]}, [40, 40]),
+        {"law.ratio[6]"},
+    ),
+    "a table that begins late": (
+        pair({"type": "table", "phi1_deg": [1, 60, 120, 180, 240, 300, 360],
+              "ratio": [1.2, 1.1, 0.9, 0.8, 0.9, 1.1, 1.2]}, [40, 40]),
+        {"law.phi1_deg[0]"},
+    ),
+    "a table that ends early": (
+        pair({"type": "table", "phi1_deg": [0, 60, 120, 180, 240, 300, 350],
+              "ratio": [1.2, 1.1, 0.9, 0.8, 0.9, 1.1, 1.2]}, [40, 40]),
+        {"law.phi1_deg[6]"},
+    ),
+    "a travel that a formula misses": (
+        pair({"type": "formula", "phi2": "phi1 + 0.2*sin(phi1)", "driver_travel_deg": 300,
+              "driven_travel_deg": 250}, [30, 30]),
+        {"law.driven_travel_deg"},
+    ),
+    "ends of a spiral that meet": (
+        pair({"type": "log-spiral", "ratios": [0.3, 3], "driven_travel_deg": 350}, [40, 40]),
+        {"law.driven_travel_deg"},
+    ),
     "teeth of an open pair": (pair(DOOR, [30, 36]), {"pair.teeth"}),
     "a long way": (pair(DOOR | {"driven_travel_deg": 300, "ratios": [1, 0.6, 0.6]}, [40, 40]),
                    {"law.driven_travel_deg"}),
@@ -281,6 +305,11 @@ ERRORS: dict[str, tuple[dict[str, Any], set[str], set[str]]] = {
         ),
         {"contact-ratio"},
         {"blank.tip_rounding_mm"},
+    ),
+    "a kerf too wide for flanks": (
+        pair(CIRCLE, [18, 18], output={"kerf_mm": 2.9}, blank={"bore_diameter_mm": 8}),
+        {"wide-kerf"},
+        {"output.kerf_mm"},
     ),
     "undercut cam": (
         cam(

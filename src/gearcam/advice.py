@@ -9,6 +9,7 @@ and no other error has come.
 from __future__ import annotations
 
 import json
+import math
 import re
 import time
 from collections.abc import Iterable, Mapping
@@ -38,11 +39,14 @@ time, so that its answers are the same everywhere."""
 _SLACK: Final = 10.0
 """How many times longer than on a usual machine a search may take: some wheels take long."""
 
-_PARTS: Final = 40
-"""Steps between the near and the far end of a way."""
+_STEP: Final = 1.0 / 40.0
+"""Part of a way that is one step of the search."""
+
+_CLOSE: Final = 0.01
+"""Part of a value by which a remedy may be more than what would do."""
 
 _INSIDE: Final = 1e-3
-"""Part of the way by which a limit is kept."""
+"""Part of the way by which a limit is kept, and for which digits are left out."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -239,9 +243,10 @@ class Search:
 
     def changed(self, changes: Changes) -> Any:
         """Return the result of the changed design; counted."""
-        self.tried |= dict.fromkeys(changes)
         self.builds += 1
-        return type(self.result)(self.result.design.with_(changes), self.result.tolerances)
+        design = self.result.design.with_(changes)
+        self.tried |= dict.fromkeys(changes)
+        return type(self.result)(design, self.result.tolerances)
 
     def left(self, changes: Changes) -> frozenset[str] | None:
         """Return what is left of the errors of the changed design, others too; None if refused.
@@ -290,18 +295,25 @@ class Search:
             if self.cures(first):
                 self.keep(first)
                 return True
-        low, high = 0, _PARTS if way.far else 0
-        while high and not self.over() and not self.cures(_between(near, way.far, high / _PARTS)):
-            high //= 2
-        if not high or self.over():
-            return False
-        while high - low > 1 and not self.over():
-            middle = (low + high) // 2
-            does = self.cures(_between(near, way.far, middle / _PARTS))
+        told = any(_ahead(remedy.changes, near, way.far) for remedy in self.found)
+        return bool(way.far) and not told and self._least(near, way.far)
+
+    def _least(self, near: Changes, far: Changes) -> bool:
+        """Find the smallest change between two ends; whether there is one."""
+        low, high = 0.0, 1.0
+        while self.over() or not self.cures(_between(near, far, high)):
+            high *= 0.5
+            if high < _STEP or self.over():
+                return False
+        while True:
+            ends = [_between(near, far, share) for share in (high, low)]
+            fine = high - low <= _INSIDE or (high - low <= _STEP and _alike(*ends))
+            if fine or self.over():
+                self.keep(ends[0], ends[1] if low else None)
+                return True
+            middle = 0.5 * (low + high)
+            does = self.cures(_between(near, far, middle))
             low, high = (low, middle) if does else (middle, high)
-        ends = [_between(near, way.far, part / _PARTS) for part in (high, low)]
-        self.keep(ends[0], ends[1] if low else None)
-        return True
 
     def follow(self, ways: Iterable[Way]) -> None:
         """Follow `ways`, each for one wheel and, where that does not do, for both.
@@ -335,8 +347,28 @@ def _for_both(way: Way) -> Way | None:
     return Way(near=near, far=far)
 
 
+def _ahead(changes: Changes, near: Mapping[str, Any], far: Mapping[str, Any]) -> bool:
+    """Whether `changes` go the way of these ends, that of single numbers."""
+    if changes.keys() != far.keys():
+        return False
+    ends = ((value, near[key], far[key]) for key, value in changes.items())
+    return all(isinstance(a, float) and (a - b) * (c - b) > 0.0 for a, b, c in ends)
+
+
+def _alike(some: Changes, others: Changes) -> bool:
+    """Whether the numbers of two changes of the same keys are nearly the same."""
+    pairs = zip(_items(some), _items(others), strict=True)
+    return all(abs(a - b) <= _CLOSE * abs(a) for a, b in pairs if isinstance(a, float))
+
+
+def _items(changes: Mapping[str, Any]) -> list[Any]:
+    return [
+        one for value in changes.values() for one in (value if isinstance(value, list) else [value])
+    ]
+
+
 def _between(near: Changes, far: Changes, share: float) -> dict[str, object]:
-    """Return values between two ends, numbers of ten digits."""
+    """Return values between two ends, with as few digits as the way asks for."""
     return {key: _mixed(value, far.get(key, value), share) for key, value in near.items()}
 
 
@@ -352,7 +384,16 @@ def _tidy(value: Any) -> Any:
 def _mixed(near: Any, far: Any, share: float) -> Any:
     if isinstance(near, list):
         ends = far if isinstance(far, list) else [far] * len(near)
-        return [_mixed(a, b, share) for a, b in zip(near, ends, strict=True)]
+        # numbers that close together are not rounded each by itself
+        return [_part_way(a, b, share) for a, b in zip(near, ends, strict=True)]
+    mixed = _part_way(near, far, share)
+    if isinstance(far, bool | str) or not isinstance(mixed, float) or near == far or share == 1.0:
+        return mixed
+    step = 10.0 ** math.floor(math.log10(abs(_INSIDE * (far - near))))
+    return _tidy(step * (math.ceil if far > near else math.floor)(mixed / step))
+
+
+def _part_way(near: Any, far: Any, share: float) -> Any:
     if isinstance(near, bool | str) or isinstance(far, bool | str):
         return near
     return _tidy(float(near + share * (far - near)))

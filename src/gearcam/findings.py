@@ -132,6 +132,9 @@ class Check:
     run: Run
 
 
+ROUNDING: Final = 1e-9
+"""Share of a limit that is rounding: what a finding names, typed in as printed, keeps the limit."""
+
 CHECKS: Final[dict[tuple[str, str], Check]] = {}
 """The checks by kind and code."""
 

@@ -72,6 +72,29 @@ def test_nothing_is_wider_than_the_window(
     assert browser.execute_script(wide) == [size[0], size[0]]
 
 
+def test_on_a_phone_tables_are_whole_and_their_numbers_in_one_piece(
+    browser: Chrome, page_of: Written
+) -> None:
+    open_page(browser, page_of("ring_ellipse"), PHONE)  # with the longest name that is solved
+    frames = """
+    return [...document.querySelectorAll("section > .wide")]
+        .map((one) => [one.scrollWidth, one.clientWidth]);
+    """
+    widths = browser.execute_script(frames)
+    assert len(widths) >= 2
+    assert all(within <= frame for within, frame in widths)
+    pieces = """
+    return [...document.querySelectorAll(".number")].map((one) => {
+        const range = document.createRange();
+        range.selectNodeContents(one);
+        return [one.textContent, range.getClientRects().length];
+    });
+    """
+    numbers = browser.execute_script(pieces)
+    assert any("e-" in text for text, _ in numbers)
+    assert {lines for _, lines in numbers} == {1}
+
+
 def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: Written) -> None:
     open_page(browser, page_of(NAIL), PHONE)
     browser.execute_script("document.getElementById('facts').scrollIntoView()")

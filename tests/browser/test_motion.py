@@ -308,3 +308,36 @@ def test_knots_are_drawn_and_told(browser: Chrome, page_of: Written) -> None:
     settle(browser)
     assert browser.execute_script(ink, figure) < marked
     assert "knot" not in figure.find_element(By.CLASS_NAME, "legend").text
+
+
+def test_small_numbers_stand_at_the_axis_and_labels_of_limits_apart(
+    browser: Chrome, page_of: Written
+) -> None:
+    charts = open_page(browser, page_of("groove_cam"))["charts"]
+    assert "lift = 0 mm" in browser.find_element(By.TAG_NAME, "body").text
+    drawn(browser, browser.find_elements(By.CLASS_NAME, "chart")[0])
+    levels = {"outer": 3e-16, "inner": 2.9e-16, "low": -2e-16}
+    tiny = charts[0] | {
+        "lines": [charts[0]["lines"][0] | {"x": [0, 360], "y": [-2e-16, 3e-16]}],
+        "range": [-2e-16, 3e-16],
+        "limits": [{"label": one, "value": at, "seen": True} for one, at in levels.items()],
+    }
+    record = """
+    const pen = CanvasRenderingContext2D.prototype;
+    const fill = pen.fillText;
+    window.written = {};
+    pen.fillText = function (text, ...place) {
+        window.written[text] = this.textBaseline;
+        return fill.call(this, text, ...place);
+    };
+    gearcam.show({ charts: arguments[0] });
+    """
+    browser.execute_script(record, [tiny, *charts[1:]])
+    settle(browser)
+    written = browser.execute_script("return window.written")
+    assert {name: written.get(name) for name in levels} == {
+        "outer": None,  # it would lie upon the inner one
+        "inner": "alphabetic",
+        "low": "alphabetic",
+    }
+    assert {"-2e-16", "0", "2e-16"} <= {*written}

@@ -156,7 +156,7 @@ CONTENTS: dict[str, tuple[bytes, str]] = {
     "nothing below zero": (number("-0.0"), "-0.0 is out of range"),
     "date": (number("2026-01-02"), "2026-01-02 is not a number"),
     "time": (number("07:30:00"), "07:30:00 is not a number"),
-    "key twice": (number("2\nmodule_mm = 3"), "this key is given twice"),
+    "key twice": (number("2\nmodule_mm = 3"), "the key module_mm is given twice"),
     "table twice": (GOOD.encode() + b"[pair]\n", "the table [pair] is given twice"),
     "no kind": (GOOD.partition("\n")[2].encode(), "kind: is missing"),
     "kind unknown": (GOOD.replace("gear-pair", "linkage").encode(), "is not a kind of design"),

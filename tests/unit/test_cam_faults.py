@@ -195,7 +195,6 @@ pressure_angle_deg = "x"
         (6, "motion[0].angle_deg"),
         (7, "motion[0].lift_deg"),
         (9, "motion[1].type"),
-        (10, "motion[2].angle_deg"),
         (13, "motion[2].angel_deg"),
         (14, "motion[2].start[1]"),
         (16, "follower.type"),

@@ -66,7 +66,8 @@ def test_the_share_of_a_lift_that_a_falling_face_carries(degrees: float) -> None
         make_cam(there_and_back("cycloidal", 20.0, phases, swings=True), mechanism("swinging face"))
     (share,) = re.findall(r"less than ([\d.]+) % of these", str(refused.value))
     part = float(share) / 100.0
-    assert part == pytest.approx(degrees / 40.0, rel=1e-6)
+    assert len(share.replace(".", "")) <= 4
+    assert degrees / 40.0 * (1.0 - 3e-4) < part < degrees / 40.0
     lift = 20.0 * part
     make_cam(there_and_back("cycloidal", lift, phases, swings=True), mechanism("swinging face"))
 

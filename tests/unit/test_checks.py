@@ -321,3 +321,12 @@ def test_findings_come_worst_first() -> None:
     assert found == sorted(found, key=order.index)
     assert "warning" in found
     assert "error" not in found
+
+
+@pytest.mark.parametrize("module", [1.0, 1.3, 2.0, 3.7])
+@pytest.mark.parametrize("backlash", [0.01, 0.07, 0.123])
+def test_a_backlash_that_is_given_as_its_limit_keeps_it(module: float, backlash: float) -> None:
+    made = job(
+        Constant(), (20, 20), module=module, backlash=backlash, limits={"backlash": backlash}
+    )
+    assert "no-backlash" not in codes(made)

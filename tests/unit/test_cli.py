@@ -156,7 +156,7 @@ def test_a_refused_file_prints_its_problems_to_stderr_and_nothing_else(
     assert main(["build", "bad.toml"]) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert "bad.toml: 2 problems, nothing was built" in err
+    assert "bad.toml: 1 problem, nothing was built" in err
     assert "bad.toml:6: pair.module: unknown key (its value is 2)" in err
     assert "did you mean module_mm?" in err
     assert not (desk / "output").exists()

@@ -118,7 +118,6 @@ chord_tolerance_mm = 0
     assert found == [
         (1, "kind"),
         (2, "name"),
-        (3, "law.knots_deg"),
         (5, "law.shape"),
         (6, "law.knots_rad"),
         (9, "law.ratios[1]"),

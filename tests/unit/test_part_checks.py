@@ -33,6 +33,13 @@ def test_a_wall_is_thin_below_the_limit(bore: float, spoken: bool) -> None:
         assert heard[0].where == "wheel 1"
 
 
+def test_a_wall_as_thick_as_the_limit_is_not_thin() -> None:
+    circle, bolt, bore = 15.7, 2.8, 10.9  # the wall is 1 mm, in doubles a little less
+    bolts = {"bolts": (3, 0), "bolt_diameter": (bolt, 0.0), "bolt_circle": (circle, 0.0)}
+    assert not found("thin-wall", bore_diameter=(bore, 0.0), **bolts)
+    assert found("thin-wall", bore_diameter=(bore + 0.001, 0.0), **bolts)
+
+
 def test_the_limit_of_walls_can_be_set() -> None:
     wide = {"wall": 1.2}
     assert found("thin-wall", limits=wide, bore_diameter=(9.8, 0.0), **BOLTS)

@@ -105,6 +105,38 @@ def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
     assert smaller or name == "bore"
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["follower's offset", "undercut cam", "arm", "hub", "play", "pointed rack", "shallow"],
+)
+def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> None:
+    found = search(name, folder).found
+    # one way out is told once, though a refusal and the usual ways both name it
+    assert len({tuple(remedy.changes) for remedy in found}) == len(found)
+    for remedy in found:
+        for key, value in remedy.changes.items():
+            assert isinstance(value, float)
+            assert len(f"{value:.10g}".lstrip("-0.").replace(".", "")) <= 5
+            if remedy.less:
+                assert value == pytest.approx(remedy.less[key], rel=0.013)  # 1 %, and rounding
+
+
+def test_remedies_of_both_wheels_are_nearly_the_least(folder: Path) -> None:
+    blank = {"bore_diameter_mm": 12, "bolts": 6, "bolt_circle_mm": 18, "bolt_diameter_mm": 8}
+    document = pair(CIRCLE, [40, 40], blank=blank | {"timing_marks": False})
+    (found,) = (
+        remedy
+        for remedy in gearcam.remedies(job_of(document, folder)).found
+        if "blank.bolt_diameter_mm" in remedy.changes
+    )
+    (widest, same), (wider, _) = (
+        made["blank.bolt_diameter_mm"] for made in (found.changes, found.less)
+    )  # type: ignore[misc]
+    assert widest == same <= 6.0  # 9 mm from the axis beside a bore of 12 mm
+    assert widest == pytest.approx(wider, rel=0.01)
+    assert wider > 5.9
+
+
 def told_teeth(message: str) -> list[int]:
     """The tooth counts that a warning names."""
     found = re.search(r"With pair\.teeth = \[(\d+), (\d+)\] or more", message)
@@ -244,6 +276,16 @@ def test_a_remedy_makes_all_files_that_are_asked_for(name: str, folder: Path) ->
 
     assert key in helpful({})
     assert key not in helpful(output)
+
+
+def test_of_a_kerf_that_closes_a_keyway_the_widest_is_told(folder: Path) -> None:
+    keyed = {"bore_diameter_mm": 10, "keyway_width_mm": 3, "keyway_depth_mm": 1.4}
+    design = pair(CIRCLE, [12, 12], blank=keyed, output={"files": ["dxf"], "kerf_mm": 3.5})
+    with pytest.raises(InfeasibleError, match="left by this kerf") as caught:
+        job_of(design, folder).files("dxf")
+    ((way,),) = [caught.value.ways]
+    assert 2.9 < way.near["output.kerf_mm"] < 3.0  # type: ignore[operator]  # of a keyway of 3 mm
+    assert job_of(followed(design, way.near), folder).files("dxf")
 
 
 def test_of_a_cutter_too_wide_only_the_cutter_is_changed(folder: Path) -> None:

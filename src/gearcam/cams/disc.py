@@ -18,7 +18,7 @@ from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.errors import InfeasibleError
 from gearcam.facts import Facts
 from gearcam.laws.program import Program
-from gearcam.numerals import shown
+from gearcam.numerals import rounded_down
 
 _STANDSTILL = 1e-7
 """A face that swings down within this of the cam's own speed is touched millions of times farther
@@ -160,5 +160,5 @@ def _demand_swing(program: Program, mechanism: Mechanism, low: float, high: floa
             value=slowest,
             limit=-1.0,
             nearest="these are rad of swing per rad of the cam: lifts of less than "
-            f"{shown(-100.0 * (1.0 - 2.0 * _STANDSTILL) / slowest, 10)} % of these suit",
+            f"{rounded_down(-100.0 * (1.0 - 2.0 * _STANDSTILL) / slowest, 4)} % of these suit",
         )

@@ -83,8 +83,9 @@ def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
         return KINDS[near]
     likely = {name: sum(title in document for title in kind.tables) for name, kind in KINDS.items()}
-    best = max(likely, key=lambda name: likely[name])
-    return KINDS[best] if likely[best] else None
+    most = max(likely.values())
+    best = [name for name, count in likely.items() if count == most > 0]
+    return KINDS[best[0]] if len(best) == 1 else None
 
 
 def home_of(kind: DesignKind, key: str) -> str:
@@ -95,6 +96,20 @@ def home_of(kind: DesignKind, key: str) -> str:
             homes.setdefault(known, f"this key belongs under [{title}]")
     homes |= dict.fromkeys(("kind", "name"), "this key belongs above all tables")
     return homes.get(key) or kind.homes().get(key, "")
+
+
+def _elsewhere(kind: DesignKind, key: str) -> str:
+    """Return where a key that its table does not know may belong, in any kind of design."""
+    return home_of(kind, key) or _near_home(kind, key) or _other_home(key)
+
+
+def _other_home(key: str) -> str:
+    owners = [
+        other.name
+        for other in KINDS.values()
+        if any(key in other.table(title).entries for title in other.tables)
+    ]
+    return f"this key belongs to kind = {quoted(owners)}" if owners else ""
 
 
 def _near_home(kind: DesignKind, key: str) -> str:
@@ -145,14 +160,21 @@ def _examine_name(document: Mapping[str, Any], stem: str, found: Examined) -> No
     if not fault:
         found.parts["name"] = name
     elif "name" in document:
-        found.faults.append(Fault(("name",), f"{show(name)} {fault}", name, _NAME_RULE))
+        hint = _free_name(name) if isinstance(name, str) else ""
+        found.faults.append(Fault(("name",), f"{show(name)} {fault}", name, _NAME_RULE, hint))
     else:
         message = (
             "is missing" if not stem else f"is missing, and the file's own {show(stem)} {fault}"
         )
-        hint = re.sub(r"[^\w-]+", "_", stem).strip("_-")
-        hint = f'add name = "{hint}"' if not name_fault(hint) else ""
+        hint = _free_name(stem)
+        hint = f"add {hint}" if hint else ""
         found.faults.append(Fault(("name",), message, allowed=_NAME_RULE, hint=hint))
+
+
+def _free_name(name: str) -> str:
+    """Return the entry of a file for a name like this one that names a folder, or nothing."""
+    free = re.sub(r"[^\w-]+", "_", name).strip("_-")
+    return "" if name_fault(free) else f'name = "{free}"'
 
 
 def name_fault(name: Any) -> str:
@@ -177,7 +199,7 @@ def _examine_table(
         found.faults.append(Fault((title,), f"the table [{title}] is missing", allowed=rule))
         return
     listed = kind.listed(document, known)
-    faults = list(faults_of(known, raw, home=lambda key: home_of(kind, key), listed=listed))
+    faults = list(faults_of(known, raw, home=lambda key: _elsewhere(kind, key), listed=listed))
     found.faults += faults
     if not faults and known.owner is not None:
         made = known.owner(**known.inward(raw))
@@ -190,7 +212,7 @@ def _examine_limits(document: Mapping[str, Any], kind: DesignKind, found: Examin
         found.parts["limits"] = {}
         return
     known, raw = kind.table("limits"), document["limits"]
-    faults = list(faults_of(known, raw, home=lambda key: home_of(kind, key)))
+    faults = list(faults_of(known, raw, home=lambda key: _elsewhere(kind, key)))
     found.faults += faults
     if not faults:
         found.parts["limits"] = known.inward(raw)

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Final
 
 from gearcam.designs.functions import functions_of
@@ -20,6 +21,9 @@ MISSING: Final = object()
 """Value of a fault where nothing was found."""
 
 _SUFFIX = re.compile(r"_(deg|rad|mm|cm|m|in|inch|rpm|um)$")
+_MEASURE = re.compile(r"[+-]?\d[\d.]*\s*([^\W\d_]+|°)")
+"""A number with a unit."""
+
 _KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 _SHOWN: Final = 60
 
@@ -130,6 +134,34 @@ def unknown_word(word: str, what: str, known: Collection[str], key: str = "") ->
     return Problem(f"{show(word)} {what}", key=key, allowed=allowed, hint=hint)
 
 
+def meant_by(key: str, known: Mapping[str, Key]) -> list[Key]:
+    """Return the keys that were probably meant by one that is not `known`.
+
+    Parameters
+    ----------
+    key : str
+        As written.
+    known : mapping of str to Key
+        The keys of its table.
+
+    Returns
+    -------
+    list of Key
+        With its name and another unit, those of which it is the end, or the nearest; or none.
+    """
+    named: dict[str, list[Key]] = {}
+    for entry in known.values():
+        for word in {entry.key, entry.name}:
+            named.setdefault(word, []).append(entry)
+    stem = _SUFFIX.sub("", key)
+    rounds = ("diameter", "radius") if "diameter" in key else ("radius", "diameter")
+    for word in (stem, key.replace(*rounds)):
+        if word in named:
+            return named[word]
+    ends = [entry for entry in known.values() if entry.key.endswith(f"_{key}")]
+    return ends if len(ends) == 2 else named.get(nearest(key, named), [])
+
+
 def key_hint(key: str, known: Mapping[str, Key] | Iterable[str]) -> str:
     """Return the hint for an unknown key: its unit's suffix, or the nearest key.
 
@@ -142,10 +174,17 @@ def key_hint(key: str, known: Mapping[str, Key] | Iterable[str]) -> str:
     """
     if not isinstance(known, Mapping):
         return did_you_mean(key, known)
-    named = {word: entry for entry in known.values() for word in (entry.key, entry.name)}
-    stem = _SUFFIX.sub("", key)
-    near = stem if stem in named else nearest(key, named)
-    return f"did you mean {named[near].key}?" + _unit_words(key, named[near]) if near else ""
+    meant = meant_by(key, known)
+    if not meant:
+        return ""
+    told = " or ".join(entry.key for entry in meant)
+    return f"did you mean {told}?" + (_unit_words(key, meant[0]) if len(meant) == 1 else "")
+
+
+def misspelt(raw: Mapping[str, Any], known: Mapping[str, Key]) -> frozenset[str]:
+    """Return the keys that those of a table `raw` which are not `known` probably mean."""
+    unknown = islice((key for key in raw if key not in known), TOLD)
+    return frozenset(entry.key for key in unknown for entry in meant_by(key, known))
 
 
 def hinted(unknown: Iterable[str], hint: Callable[[str], str]) -> Iterator[tuple[str, str]]:
@@ -158,7 +197,9 @@ def _unit_words(key: str, entry: Key) -> str:
     if entry.param.quantity in (ANGLE, LENGTH) and not key.endswith(entry.param.quantity.suffix):
         what = "angles" if entry.param.quantity is ANGLE else "lengths"
         return f" ({what} are given in {entry.param.quantity.unit}, and the key says so)"
-    return ""
+    if "diameter" in key and "radius" in entry.key:
+        return " (half the diameter)"
+    return " (twice the radius)" if "radius" in key and "diameter" in entry.key else ""
 
 
 def description(entry: Key) -> str:
@@ -295,6 +336,8 @@ def is_of(value: Any, base: type) -> bool:
 
 def _type_hint(value: Any, entry: Key) -> str:
     if isinstance(value, str) and entry.base in (int, float):
+        if _MEASURE.fullmatch(value):
+            return "write the number alone, without its unit and without quotes"
         try:
             float(value)
         except ValueError:

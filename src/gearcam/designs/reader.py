@@ -36,6 +36,12 @@ _DEEP_KEY = re.compile(
 _COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
 """A number with a decimal comma at the end of a line."""
 
+_UNIT = re.compile(r"=\s*[+-]?\d[\d.]*\s*[^\W\d_]+\s*(#.*)?$")
+"""A number with a unit behind it at the end of a line."""
+
+_NAME = re.compile(r"\s*(\[?\[?)\s*([\w.-]+|\"[^\"]*\")")
+"""The brackets of a table, if any, and the name at the beginning of a line."""
+
 _PLAIN: Final = {
     "Invalid value": "this value cannot be read (texts stand in quotes, numbers use a point)",
     "Invalid statement": "this line is neither a table [name] nor key = value",
@@ -43,8 +49,7 @@ _PLAIN: Final = {
     "Expected newline or end of document after a statement": (
         "something follows the value that does not belong to it (one key = value on each line)"
     ),
-    "Cannot overwrite a value": "this key is given twice",
-    "Unclosed array": "the list is not closed with ]",
+    "Unclosed array": "a comma is missing here, or the list is not closed with ]",
     "Unclosed inline table": "the table is not closed with }",
     "Unterminated string": "the text is not closed by its quote",
     "Expected ']' at the end of a table declaration": "the name of the table is not closed with ]",
@@ -201,15 +206,23 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
     place = _PLACE.search(message)
     what = message[: place.start()] if place else message
     what = _PLAIN.get(what, what)
-    twice = _TWICE.fullmatch(what)
+    hint, twice = "", _TWICE.fullmatch(what)
     if twice:
-        names = re.findall(r"'([^']*)'", twice[1])
-        what = f"the table [{'.'.join(names)}] is given twice"
+        name = ".".join(re.findall(r"'([^']*)'", twice[1]))
+        what, hint = f"the table [{name}] is given twice", _many_hint(name)
     if place and place.group(1):
-        line = int(place.group(1))
-        comma = _COMMA.search(text.split("\n")[line - 1])
-        hint = f"use a decimal point: {comma[1]}.{comma[2]}" if comma else ""
-        return Problem(f"column {place.group(2)}: {what}", file=file, line=line, hint=hint)
+        number = int(place.group(1))
+        line = text.split("\n")[number - 1]
+        first = _NAME.match(line)
+        if what == "Cannot overwrite a value" and first:
+            what = f"the {'name' if first[1] else 'key'} {first[2]} is given twice"
+            hint = _many_hint(first[2])
+        elif comma := _COMMA.search(line):
+            hint = f"use a decimal point: {comma[1]}.{comma[2]}"
+        elif _UNIT.search(line):
+            hint = "write the number alone, without its unit"
+        message = f"column {place.group(2)}: {what}"
+        return Problem(message, file=file, line=number, hint=hint)
     if place:
         last = text.rstrip().count("\n") + 1
         return Problem(f"{what} (the file ends)", file=file, line=last)
@@ -218,3 +231,9 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
     line = text.count("\n", 0, long.start()) + 1 if long else None
     rule = f"numbers of at most {most} digits"
     return Problem("a number here is too long to be read", file=file, line=line, allowed=rule)
+
+
+def _many_hint(name: str) -> str:
+    """Return how several tables of a `name` are written, where a design has several."""
+    many = any(isinstance(kind.example.get(name), list) for kind in KINDS.values())
+    return f"each of several tables is written [[{name}]]" if many else ""

@@ -6,7 +6,16 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from gearcam.designs.faults import Fault, allowed, hinted, is_of, key_hint, show, value_fault
+from gearcam.designs.faults import (
+    Fault,
+    allowed,
+    hinted,
+    is_of,
+    key_hint,
+    misspelt,
+    show,
+    value_fault,
+)
 from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
 from gearcam.designs.table import Key, Table
@@ -41,17 +50,23 @@ def faults_of(
         In the order of keys; one for each place.
     """
     at = at or (table.title,)
-    known = ", ".join(table.entries if listed is None else listed) or "no keys"
+    names = list(table.entries if listed is None else listed)
+    known = ", ".join(names) or "no keys"
+    told = {name: table.entries[name] for name in names if name in table.entries}
     if not isinstance(raw, Mapping):
-        yield Fault(at, f"{show(raw)} is not a table", raw, f"a table [{table.title}] with {known}")
+        rule, many = f"a table [{table.title}] with {known}", isinstance(raw, list)
+        hint = f"in single brackets, once: [{table.title}]" if many else ""
+        yield Fault(at, f"{show(raw)} is not a table", raw, rule, hint)
         return
+    missing = [name for name, key in table.entries.items() if key.required and name not in raw]
+    meant = misspelt(raw, told) if missing else ()
     for name, key in table.entries.items():
         if name in raw:
             yield from _of_value(key, raw[name], (*at, name))
-        elif key.required:
+        elif name in missing and name not in meant:
             yield Fault((*at, name), "is missing", allowed=allowed(key))
     unknown = (name for name in raw if name not in table.entries)
-    for name, hint in hinted(unknown, lambda name: key_hint(name, table.entries) or home(name)):
+    for name, hint in hinted(unknown, lambda name: key_hint(name, told) or home(name)):
         message = f"unknown key (its value is {show(raw[name])})"
         yield Fault((*at, name), message, raw[name], known, hint)
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import Remark
-from gearcam.gears.subject import ROUNDING, Subject, pair_check
+from gearcam.findings import ROUNDING, Remark
+from gearcam.gears.subject import Subject, pair_check
 from gearcam.laws.ratio.span import angle_text
 from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param

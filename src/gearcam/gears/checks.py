@@ -11,11 +11,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import Remark, Severity
+from gearcam.findings import ROUNDING, Remark, Severity
 from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
-from gearcam.gears.subject import CONTACT_RATIO, KIND, ROUNDING, Subject, pair_check
+from gearcam.gears.subject import CONTACT_RATIO, KIND, Subject, pair_check
 from gearcam.laws.ratio.span import angle_text
 from gearcam.numerals import rounded_down, shown
 from gearcam.quantities import LENGTH, NUMBER, Param
@@ -240,7 +240,7 @@ def no_backlash(subject: Subject, limit: float) -> Iterator[Remark]:
 
     Looks at: backlash between the flanks.
     """
-    if subject.backlash < limit:
+    if subject.backlash < limit * (1.0 - ROUNDING):
         yield Remark(
             "The wheels are made without backlash: printed ones want some, and so do "
             "shafts whose distance is not exact.",

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from gearcam.errors import InfeasibleError, Way
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
-from gearcam.numerals import shown
+from gearcam.numerals import rounded_down, shown
 
 _TIP_PART = 0.95
 """Largest tip radius over the dedendum: at 1 the arc's centre is on the pitch line: no fillet."""
@@ -109,8 +109,8 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
             limit=rack.addendum,
             nearest="the limit is the addendum",
             ways=(
-                Way(near={"rack.dedendum": rack.addendum / _SHALLOW}),
-                Way(near={"rack.addendum": _SHALLOW * depth}),
+                Way(near={"rack.dedendum": _short(rack.addendum / _SHALLOW)}),
+                Way(near={"rack.addendum": _short(_SHALLOW * depth)}),
             ),
         )
     if _largest_tip(rack) < 0.0:
@@ -122,8 +122,8 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
             limit=deepest,
             nearest=f"the limit is where its flanks meet, at {angle}",
             ways=(
-                Way(near={"rack.dedendum": 0.9 * deepest}),
-                Way(near={"rack.addendum": 0.7 * deepest}),
+                Way(near={"rack.dedendum": _short(0.9 * deepest)}),
+                Way(near={"rack.addendum": _short(0.7 * deepest)}),
             ),
         )
     if rack.tip_radius > largest * (1.0 + _ROUNDING):
@@ -287,3 +287,8 @@ def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> Non
             f"{shown(2.0 * (roots + limit))} mm leave a rim of {shown(limit)} mm",
             ways=(Way(near={"ring.outer_diameter_mm": 2.0 * (roots + limit)}),),
         )
+
+
+def _short(size: float) -> float:
+    """Return a size that need not be exact in the digits that people type."""
+    return float(rounded_down(size, 4))

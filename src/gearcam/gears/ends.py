@@ -153,6 +153,9 @@ def body_runs(
         ways = toothing.track.rotation(np.array([0.0, toothing.track.around]))
         travel = math.degrees(ways[1] - ways[0])
         limit = travel * (2.0 * math.pi - _GAP) / span
+        out = [Way(near={key: limit / _MORE}, far={key: 0.8 * limit})]
+        if toothing.wheel == 1:  # a spiral, or a knot that is solved, follows the driven wheel
+            out.append(Way(far={"law.driven_travel_deg": 0.8 * limit}))
         raise InfeasibleError(
             f"the ends of the {name} meet behind its shaft",
             where=f"wheel {toothing.wheel}",
@@ -160,7 +163,7 @@ def body_runs(
             limit=limit,
             unit="deg",
             nearest=f"this is how far the {name} turns; with its end teeth it fills the circle",
-            ways=(Way(near={key: limit / _MORE}, far={key: 0.8 * limit}),),
+            ways=out,
             more_teeth=travel / limit if travel < _WHOLE else 0.0,
         )
     hub = radius * inner / np.abs(inner)

@@ -9,7 +9,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from gearcam.display import Brief
-from gearcam.findings import check
+from gearcam.findings import ROUNDING, check
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear, GearPair
 from gearcam.gears.tip_pass import TipPass, tip_pass
@@ -25,9 +25,6 @@ pair_check = partial(check, kind=KIND)
 
 CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 """Limit of the contact ratio, for all checks that ask for it."""
-
-ROUNDING = 1e-9
-"""Share of a limit that is rounding: what a finding names, typed in as printed, keeps the limit."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

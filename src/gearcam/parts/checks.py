@@ -12,7 +12,7 @@ from math import inf
 from typing import Any
 
 from gearcam.display import Brief
-from gearcam.findings import Remark, check
+from gearcam.findings import ROUNDING, Remark, check
 from gearcam.numerals import decimal, shown
 from gearcam.parts.blank import KIND
 from gearcam.parts.body import Part
@@ -71,7 +71,7 @@ def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
         if not walls:
             continue
         width, what = min(walls)
-        if width < limit:
+        if width < limit * (1.0 - ROUNDING):
             yield Remark(f"The wall between the {what} is {shown(width, 4)} mm thick.", name, width)
 
 

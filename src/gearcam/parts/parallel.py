@@ -18,7 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
@@ -148,7 +148,7 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
     size : float, mm
         As asked for.
     where : str
-        The key that gives it.
+        The key that gives it, after a comma where a part stands before it.
     what : str
         What the size is, in words.
 
@@ -173,12 +173,14 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
                 high = middle
             else:
                 low = tried
+        key = where.rpartition(", ")[2]
         raise InfeasibleError(
             f"no simple outline is left by this {what}",
             where=where,
             value=size,
             unit="mm",
             nearest=f"a {what} of {shown(low, 3)} mm leaves one" if low else "leave it out",
+            ways=(Way(near={key: low} if low else {}, far={key: 0.0}),),
         ) from None
 
 

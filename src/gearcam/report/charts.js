@@ -5,9 +5,14 @@ const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]];
 const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
 const FREE = 0.06; // of a range, left free above and below, and beside dots
+const LETTERS = 12; // height of a line of letters in a chart, pixels
 const AT_ONCE = 3; // charts drawn in a frame: the parts keep moving meanwhile
 
 const brief = (value) => String(Number(value.toPrecision(5)));
+
+// Numbers at an axis, however small their steps are, without the rounding of sums.
+const ticks = (_, values, axis, space, step) =>
+  values.map((value) => String(Number((Math.round(value / step) * step).toPrecision(12))));
 
 // All values of a line at a place: two where it jumps, more where its pieces lie over each other.
 function valuesAt(line, place) {
@@ -139,6 +144,7 @@ class ChartView {
       font: "12px system-ui, sans-serif",
       labelFont: "12px system-ui, sans-serif",
       grid: { stroke: ink("rule"), width: 1 }, ticks: { stroke: ink("rule"), width: 1, size: 4 },
+      values: ticks,
     };
     // wide enough for most, so that charts below each other line up
     const wide = (_, texts) => 14 + 7 * Math.max(6, ...(texts ?? []).map((text) => text.length));
@@ -229,15 +235,22 @@ class ChartView {
     pen.setLineDash([6 * ratio, 4 * ratio]);
     pen.font = `${11 * ratio}px system-ui, sans-serif`;
     pen.textAlign = "right";
+    pen.textBaseline = "alphabetic"; // the axes leave another one
     const [low, high] = heightOf(this.chart);
-    for (const limit of this.chart.limits.filter((one) => one.seen)) {
+    const off = (limit) => Math.abs(limit.value - 0.5 * (low + high));
+    const seen = this.chart.limits.filter((one) => one.seen).sort((a, b) => off(a) - off(b));
+    const labels = []; // of limits close together the inner one has it: the list below tells all
+    for (const limit of seen) {
       const y = this.plot.valToPos(limit.value, "y", true);
       pen.beginPath();
       pen.moveTo(bbox.left, y);
       pen.lineTo(bbox.left + bbox.width, y);
       pen.stroke();
       const above = limit.value < 0.5 * (low + high); // inside the range, where there is room
-      pen.fillText(limit.label, bbox.left + bbox.width - 4 * ratio, y + (above ? -4 : 12) * ratio);
+      const base = y + (above ? -4 : LETTERS) * ratio;
+      if (labels.some((other) => Math.abs(other - base) < LETTERS * ratio)) continue;
+      pen.fillText(limit.label, bbox.left + bbox.width - 4 * ratio, base);
+      labels.push(base);
     }
     pen.restore();
   }

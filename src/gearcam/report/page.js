@@ -64,7 +64,8 @@ function told() {
   const chart = moving.find((one) => one.name === "ratio") ?? moving[0];
   const line = chart?.lines[0];
   const values = line ? valuesAt(line, page.place) : [];
-  if (values.length) words.push(`${line.label} = ${values.join(" | ")}`);
+  const [, measure = ""] = chart?.y.split(", ") ?? [];
+  if (values.length) words.push(`${line.label} = ${values.join(" | ")} ${measure}`.trim());
   return words.join(", ");
 }
 

@@ -13,7 +13,7 @@ from gearcam.cams.spec import FOLLOWED, POINTED, CamSpec, FollowerSpec, size_pro
 from gearcam.cams.spec import KIND as CAM_KIND
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import home_of
-from gearcam.designs.faults import Fault, show
+from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
@@ -195,7 +195,8 @@ def _later(document: Mapping[str, Any]) -> Fault | None:
     if document.get("kind") != NAME or form not in LATER_FORMS:
         return None
     message = f"{show(form)}: {form} cams are not built by this version yet"
-    return Fault(("cam", "form"), message, form, '"disc"')
+    rule = quoted(KINDS[NAME].table("cam").entries["form"].param.choices or ())
+    return Fault(("cam", "form"), message, form, rule)
 
 
 def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:

@@ -200,14 +200,15 @@ def _phase(
     rest = {key: value for key, value in rest.items() if all(key != one.path[-1] for one in spans)}
     own, make, problems = phase_table(name).of_cams(sliding=sliding), PHASES[name], []
     if name not in WITH_LAW:
-        faults = list(faults_of(own, rest, home=home, at=at))
+        faults = list(faults_of(own, rest, home=home, at=at, listed=_told(own, oscillating)))
     else:
         chose = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
         rest.pop("law", None)
         if not chose:  # whatever any law asks for may be meant
             rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
         known = phase_table(name, chose).of_cams(sliding=sliding)
-        faults = list(faults_of(known, rest, home=home, at=at))
+        told = _told(known, oscillating, "law")
+        faults = list(faults_of(known, rest, home=home, at=at, listed=told))
         law = None
         if chose:
             law, problems = made_of(rise_table(chose), RISES[chose].parameters, rest, faults, at)
@@ -219,6 +220,16 @@ def _phase(
     phase, own_problems = made_of(own, make, rest, faults, at)
     found.faults += [*faults, *problems, *own_problems, *other]
     return None if other or spans else phase
+
+
+def _told(known: Table, oscillating: bool | None, *chosen: str) -> list[str]:
+    """Return the keys of a phase that people are told of: lifts of its follower's kind only."""
+    of_kind = [
+        key
+        for key, entry in known.entries.items()
+        if oscillating is None or entry.swings is not (not oscillating)
+    ]
+    return ["type", *chosen, *of_kind]
 
 
 def _wrong_span(known: Table, raw: Mapping[str, Any], at: Path, sliding: bool) -> Iterator[Fault]:

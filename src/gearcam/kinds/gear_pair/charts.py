@@ -166,7 +166,7 @@ def _contact_patch(result: GearPairResult) -> Chart:
     return Chart(
         title=f"Contact patches, driver turned ahead by {shown(math.degrees(ahead))} deg",
         x=DRIVER,
-        y="area of overlap, mm^2",
+        y="area of overlap, mm2",
         lines=(_by_pair(result, table, area, "each pair of teeth"), together),
     )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
-from gearcam.designs.faults import Fault, quoted, show
+from gearcam.designs.faults import Fault, misspelt, quoted, show
 from gearcam.designs.kind import KINDS, DesignKind, Examined, made_of
 from gearcam.designs.outputs import FORMATS, OutputSpec, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
@@ -214,6 +214,9 @@ def _pair_faults(raw: Any) -> Iterator[Fault]:
         )
         yield Fault(("pair", "module_mm"), message, module, rule)
     elif distance is None and module is None:
+        known = KINDS[NAME].table("pair").entries
+        if misspelt(raw, known) & {"center_distance_mm", "module_mm"}:
+            return  # the unknown key is told of
         yield Fault(("pair",), "neither center_distance_mm nor module_mm is given", allowed=rule)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.span import (
@@ -293,15 +293,17 @@ def make_law(
     _demand_c1(law)
     if abs(law.closure_error) > tolerances.refusal:
         asks = "the tooth counts ask" if lobes.closed else "driven_travel_deg asks"
+        travelled = math.degrees(law.travelled)
         raise InfeasibleError(
             "the law does not close"
             if lobes.closed
             else "the law misses the driven wheel's travel",
-            value=math.degrees(law.travelled),
+            value=travelled,
             limit=math.degrees(lobes.advance),
             unit="deg",
             nearest=f"over {shown(math.degrees(lobes.period), 10)} deg of the driver the driven "
             f"wheel turns by the first; {asks} for the second",
+            ways=() if lobes.closed else (Way(near={"law.driven_travel_deg": travelled}),),
         )
     return law
 

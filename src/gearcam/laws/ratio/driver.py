@@ -211,7 +211,8 @@ def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
             where="law.lobes",
             value=given[0] / given[1],
             limit=lobes.n1 / lobes.n2,
-            nearest=f"the tooth counts ask for [{lobes.n1}, {lobes.n2}] or a multiple",
+            nearest=f"these are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
+            f"ask for [{lobes.n1}, {lobes.n2}] or a multiple",
             ways=[Way(near={"law.lobes": both}) for both in counts],
         )
     return given[0]

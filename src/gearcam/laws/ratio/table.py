@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import InfeasibleError, Way
 from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
@@ -96,11 +96,11 @@ class TableLaw(FromFile):
             kind, angles, values = self.points
         except ColumnsError as error:
             raise InfeasibleError(str(error), where="law.file") from error
-        span = _span(angles, lobes, self.driven_travel)
+        span = self._span(angles, lobes)
         knots = np.array([0.0, *angles[1:-1], span.period])
         rise = float(values[-1] - values[0])
         if kind != "phi2":
-            _demand_ratio(kind, angles, values, span)
+            self._demand_ratio(kind, angles, values, span)
             rise = 0.0
         powers = quintics(knots, values, rise if span.closed else None)
         if kind == "r1":
@@ -121,6 +121,54 @@ class TableLaw(FromFile):
             return _points(self.rows)
         kind = next(name for name in _VALUES if getattr(self, name) is not None)
         return kind, np.array(self.phi1), np.array(getattr(self, kind))
+
+    def _span(self, angles: Array, lobes: Lobes) -> Span:
+        if abs(angles[0]) > TYPED:
+            raise self._miss("the table does not begin at phi1 = 0", _ANGLE, 0, angles[0], 0.0)
+        if self.driven_travel is not None:
+            demand_equal(lobes)
+            return Travel(float(angles[-1]), self.driven_travel, lobes.mate)
+        if abs(angles[-1] - lobes.period) > TYPED:
+            raise self._miss(
+                "the table must span one lobe of the tooth counts",
+                _ANGLE,
+                -1,
+                angles[-1],
+                lobes.period,
+                "its last row is at the limit; an open pair gives driven_travel_deg",
+            )
+        return lobes
+
+    def _demand_ratio(self, kind: str, angles: Array, values: Array, span: Span) -> None:
+        """Refuse values that do not repeat, or are not positive."""
+        if span.closed and abs(values[-1] - values[0]) > TYPED * abs(values[0]):
+            raise self._miss(
+                "the last value of the table is not the first",
+                kind,
+                -1,
+                values[-1],
+                values[0],
+                "the next lobe begins where this one ends",
+            )
+        demand_radii(kind, angles, values, f"{self._place(kind)}, ")
+
+    def _place(self, column: str) -> str:
+        return f"law.{column}" if self.rows is None else "law.file"
+
+    def _miss(
+        self, what: str, column: str, row: int, value: float, limit: float, nearest: str = ""
+    ) -> InfeasibleError:
+        """Return the refusal of a first or last `value` that is not its `limit`, rad or 1."""
+        unit, place = "deg" if column == _ANGLE else "", self._place(column)
+        value, limit = ((math.degrees if unit else float)(one) for one in (value, limit))
+        if self.rows is not None:
+            where, ways = f"{place}, {'last' if row else 'first'} {column}", ()
+        else:
+            where = f"{place}[{row % len(self.points[1])}]"
+            ways = (Way(near={where: limit}),)
+        return InfeasibleError(
+            what, where=where, value=value, limit=limit, unit=unit, nearest=nearest, ways=ways
+        )
 
 
 def _points(rows: CsvRows) -> tuple[str, Array, Array]:
@@ -144,42 +192,6 @@ def _pieces(
     """Return functions of polynomials, with rows of `powers` about the knot before."""
     rows = np.column_stack([knots[:-1], powers]).tolist()
     return [Piece(function, integral, tuple(row)) for row in rows]
-
-
-def _span(angles: Array, lobes: Lobes, driven_travel: float | None) -> Span:
-    if abs(angles[0]) > TYPED:
-        raise InfeasibleError(
-            "the table does not begin at phi1 = 0",
-            where="law.file",
-            value=math.degrees(angles[0]),
-            limit=0.0,
-            unit="deg",
-        )
-    if driven_travel is not None:
-        demand_equal(lobes)
-        return Travel(float(angles[-1]), driven_travel, lobes.mate)
-    if abs(angles[-1] - lobes.period) > TYPED:
-        raise InfeasibleError(
-            "the table must span one lobe of the tooth counts",
-            where="law.file, last phi1_deg",
-            value=math.degrees(angles[-1]),
-            limit=math.degrees(lobes.period),
-            unit="deg",
-            nearest="its last row is at the limit; an open pair gives driven_travel_deg",
-        )
-    return lobes
-
-
-def _demand_ratio(kind: str, angles: Array, values: Array, span: Span) -> None:
-    """Refuse values that do not repeat, or are not positive."""
-    if span.closed and abs(values[-1] - values[0]) > TYPED * abs(values[0]):
-        raise InfeasibleError(
-            "the last value of the table is not the first",
-            where="law.file",
-            value=float(values[-1]),
-            limit=float(values[0]),
-        )
-    demand_radii(kind, angles, values, "law.file, ")
 
 
 LAWS.register(
