@@ -31,6 +31,11 @@ FEW = ("constant-1", "ellipse-7", "log-spiral-4", "multispeed-5", "function-5", 
 WIDE = {
     ("function-5", "tip_thickness_mm"): 400.0,
     **{(f"function-{number}", "acceleration_per_rad"): 600.0 for number in (0, 13)},
+    **{
+        (f"function-{number}", name): 600.0
+        for number in (2, 6)
+        for name in ("convex_radius_mm", "concave_curvature_per_mm")
+    },
 }
 """Rows that may be wider: the derivatives of a Python function are known by a bound, which is that
 of its noisiest place, and the thinnest tooth or the largest acceleration stands elsewhere."""

@@ -37,6 +37,7 @@ GEAR = {"cutter", "undercut_teeth", "tip_thickness_min_mm", "outline"}
 OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}
 ACCURACY = {"law", "closure_rad", "arc_length_mm", "flank_mm", "chord_mm", "size", "ratio"}
 ACCURACY |= {"pressure_angle_deg", "contact_ratio", "tip_thickness_mm", "backlash_mm", "area_mm2"}
+ACCURACY |= {"convex_radius_mm", "concave_curvature_per_mm"}
 
 
 def small(**given: Any) -> GearPairResult:

@@ -100,22 +100,26 @@ class Rolling(Brief):
     @cached_property
     def curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Both centrodes' extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
-
-        def curvatures(phi: Array) -> Array:
-            ratios = self.law.ratio.derivatives(phi, 3)
-            wi, r, dr, ddr, d3r = _radii(ratios, self.mate)
-            speed = np.sqrt(r * r + dr * dr)
-            rate = dr * (r + ddr) / (speed * speed)  # of the speed's logarithm
-            cube = speed * speed * speed
-            first = (r * r + 2.0 * dr * dr - r * ddr) / cube
-            slope = (2.0 * r * dr + 3.0 * dr * ddr - r * d3r) / cube - 3.0 * rate * first
-            both = (1.0 + wi) / speed
-            change = self.mate * ratios[1] / speed - rate * both
-            found = [[first, both - first], [slope, change - slope]]
-            return np.array(found) / self.center_distance
-
-        first, second = extremes_of_each(curvatures, self.cells(self._tooth_knots), cells=True)
+        cells = self.cells(self._tooth_knots)
+        first, second = extremes_of_each(self.curvatures, cells, cells=True)
         return first, second
+
+    def curvatures(self, phi: Array) -> Array:
+        """Return what both centrodes bend by, 1/mm, and its slopes: (2, 2, n).
+
+        First curvatures, then slopes; of each those of wheel 1, then those of wheel 2.
+        """
+        ratios = self.law.ratio.derivatives(phi, 3)
+        wi, r, dr, ddr, d3r = _radii(ratios, self.mate)
+        speed = np.sqrt(r * r + dr * dr)
+        rate = dr * (r + ddr) / (speed * speed)  # of the speed's logarithm
+        cube = speed * speed * speed
+        first = (r * r + 2.0 * dr * dr - r * ddr) / cube
+        slope = (2.0 * r * dr + 3.0 * dr * ddr - r * d3r) / cube - 3.0 * rate * first
+        both = (1.0 + wi) / speed
+        change = self.mate * ratios[1] / speed - rate * both
+        found = [[first, both - first], [slope, change - slope]]
+        return np.array(found) / self.center_distance
 
     def cells(self, knots: Array) -> Array:
         """Return `knots` and between them those of the arc length, which tell how fast it changes.
@@ -134,6 +138,12 @@ class Rolling(Brief):
             return self.law.knots
         low, high = self.arc.angle(np.array([-self.margin, self.arc.length + self.margin]))
         return np.concatenate([[low], self.law.knots, [high]])
+
+    @property
+    def size_error(self) -> float:
+        """Error of module or centre distance, whichever was solved, as a share of it."""
+        longest = max(track.length for track in self.tracks)
+        return self.arc_error / longest + float(np.finfo(float).eps)
 
     @cached_property
     def arc_error(self) -> float:
