@@ -1,7 +1,6 @@
-"""How exact the curvatures of centrodes are: of what they are made, and what each part is off by.
+"""How exact the curvatures of centrodes are: what the ratio and its derivatives are off by.
 
-With ``m = 1/(i*(1 + w*i))`` and ``p = m*i' = r1'/r1`` the centrodes turn against the radius by
-``b = (m*i'' - (1 + 2*w*i)*p^2)/(1 + p^2)``, and bend by ``(1 - b)/v`` and ``(w*i + b)/v``.
+Depends on rolling.
 """
 
 from __future__ import annotations
@@ -19,6 +18,10 @@ EPS: Final = float(np.finfo(float).eps)
 
 FEW: Final = 8.0
 """Roundings, in units of the last place, that a number of a few operations has at most."""
+
+
+_STEP: Final = 1e-100
+"""Step into the complex plane by which a curvature is differentiated: nothing cancels there."""
 
 
 class Bends(NamedTuple):
@@ -66,31 +69,22 @@ def systematic_errors(law: RatioLaw, phi: Array) -> Array:
 def curvature_errors(track: Centrode) -> Array:
     """Return errors of a centrode's extremes of curvature, 1/mm.
 
-    An extreme of a smooth stretch is flat: the place at which it was found counts by its square,
-    which is less than rounding. One at a knot is off as the knot is, by the slope there.
+    What scatters beside them, and what the ratio is off by all along a piece. An extreme of a
+    smooth stretch is flat, so that its place counts by the square of what it misses, which is less
+    than rounding; one at a knot is taken there, wherever the knot is.
     """
-    rolling, second = track.rolling, track.wheel == 2
-    law, w = rolling.law, abs(rolling.mate)
-    phi, kappa = track.curvature_extremes
-    i, di, ddi = np.abs(law.ratio.derivatives(phi, 2))
-    of_i, of_di, of_ddi = systematic_errors(law, phi)
-    m = 1.0 / (i * (1.0 + rolling.mate * i))
-    p, twice = m * di, np.abs(1.0 + 2.0 * rolling.mate * i)
-    square = 1.0 + p * p
-    speed = m * i * i * np.sqrt(square)
-    terms = (m * ddi + twice * p * p) / square
-    of_p = m * (of_di + twice * p * of_i)
-    of_b = m * (of_ddi + (twice * m * ddi) * of_i) + 2.0 * p * (w * p * of_i)
-    of_b = (of_b + 2.0 * p * (twice + terms) * of_p) / square
-    of_speed = m * of_i + p * of_p / square
-    top = of_b + EPS * FEW * ((w * i if second else 1.0) + terms) + (w * of_i if second else 0.0)
+    rolling, number = track.rolling, track.wheel - 1
+    law, (phi, kappa) = rolling.law, track.curvature_extremes
 
-    def bends(x: Array) -> Array:
-        return rolling.curvatures(x)[:, track.wheel - 1]
+    def curvature(x: Array) -> Array:
+        return rolling.curvatures_of(law.ratio.derivatives(x, 2))[number]
 
-    found = law.scatter(phi, lambda x: bends(x)[0]) + EPS * law.period * np.abs(bends(phi)[1])
-    found += top / (speed * rolling.center_distance)
-    return found + (of_speed + rolling.size_error) * np.abs(kappa)
+    found = law.scatter(phi, curvature) + rolling.size_error * np.abs(kappa)
+    for order, error in enumerate(systematic_errors(law, phi)):
+        ratios = [values.astype(complex) for values in law.ratio.derivatives(phi, 2)]
+        ratios[order] += _STEP * 1j
+        found += np.abs(rolling.curvatures_of(ratios)[number].imag) / _STEP * error
+    return found
 
 
 def bends_of(track: Centrode) -> Bends:
@@ -106,5 +100,5 @@ def bends_of(track: Centrode) -> Bends:
 
 
 def most_of(values: Array, errors: Array) -> tuple[float, float]:
-    """Return what the largest of values is at least and at most: others may come up to it."""
+    """Return what the largest of `values` with `errors` is at least and at most."""
     return float((values - errors).max()), float((values + errors).max())

@@ -13,7 +13,6 @@ import math
 from typing import Final
 
 import numpy as np
-import shapely
 
 from gearcam.gears.bends import EPS, FEW, bends_of, most_of, systematic_errors
 from gearcam.gears.flank import Curve
@@ -50,7 +49,6 @@ def estimates(subject: Subject) -> Estimates:
     steepest = [place for place, _ in subject.pressure_angles.values()]
     function = ", and the Python function against its expansion" if law.function_error else ""
     far, rounding = size_of(rolling)
-    bends = [bends_of(track) for track in rolling.tracks]
     flank = flank_error(pair, far, rounding)
     reaches, thicknesses = zip(*(tip_errors(gear, rounding) for gear in gears), strict=True)
     return {
@@ -71,15 +69,7 @@ def estimates(subject: Subject) -> Estimates:
             rolling.arc_error,
             "against Gauss-Legendre quadrature, and rounding" + function,
         ),
-        "convex_radius_mm": (
-            max(one.radius_error for one in bends),
-            "ratio, slope and second derivative, size, and knots by the slope of the curvature"
-            + function,
-        ),
-        "concave_curvature_per_mm": (
-            max(one.concave_error for one in bends),
-            "likewise; 0 where both centrodes are convex",
-        ),
+        **_bend_errors(rolling, function),
         "size": (rolling.size_error, "share of module and centre distance: the arc length's"),
         "flank_mm": (
             flank,
@@ -100,13 +90,22 @@ def estimates(subject: Subject) -> Estimates:
         "backlash_mm": (FEW * EPS * pair.toothings[0].pitch, "rounding of the pitch"),
         "root_radius_mm": (
             max(root_radius_error(gear) for gear in gears) + flank,
-            "roots and rims: by how much chords may come nearer to the shaft than their ends, and"
-            " the curve beside them, and flank_mm",
+            "roots and rims: how far chords and the curve come beyond vertices, and flank_mm",
         ),
         "area_mm2": (
             max(area_error(gear) for gear in gears),
             "chords times the height of their bows",
         ),
+    }
+
+
+def _bend_errors(rolling: Rolling, function: str) -> Estimates:
+    """Return the errors of the least radii of centrodes, the larger of both."""
+    bends = [bends_of(track) for track in rolling.tracks]
+    how = "scatter beside extremes, ratio and two derivatives at knots, closure, size" + function
+    return {
+        "convex_radius_mm": (max(one.radius_error for one in bends), how),
+        "concave_curvature_per_mm": (max(one.concave_error for one in bends), how),
     }
 
 
@@ -270,7 +269,11 @@ def root_radius_error(gear: Gear) -> float:
     beside = gear.profile.chord_error / MARGIN
     if gear.ring:
         return beside
-    nearest = shapely.distance(gear.profile.contour.polygon.exterior, shapely.Point(0.0, 0.0))
+    ends = as_complex(gear.outline)
+    chords = np.roll(ends, -1) - ends
+    length = np.maximum(np.abs(chords), np.finfo(float).tiny)
+    along = np.clip(-(ends * np.conj(chords)).real / length, 0.0, length)
+    nearest = np.abs(ends + along * chords / length).min()
     return gear.least_radius - float(nearest) + beside
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -100,26 +101,25 @@ class Rolling(Brief):
     @cached_property
     def curvature_extremes(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """Both centrodes' extremes of curvature over a lobe: driver angles, rad, and 1/mm."""
-        cells = self.cells(self._tooth_knots)
-        first, second = extremes_of_each(self.curvatures, cells, cells=True)
+
+        def curvatures(phi: Array) -> Array:
+            ratios = self.law.ratio.derivatives(phi, 3)
+            wi, r, dr, ddr, d3r = _radii(ratios, self.mate)
+            speed, first, both = _bends(wi, r, dr, ddr)
+            rate = dr * (r + ddr) / (speed * speed)  # of the speed's logarithm
+            cube = speed * speed * speed
+            slope = (2.0 * r * dr + 3.0 * dr * ddr - r * d3r) / cube - 3.0 * rate * first
+            change = self.mate * ratios[1] / speed - rate * both
+            found = [[first, both - first], [slope, change - slope]]
+            return np.array(found) / self.center_distance
+
+        first, second = extremes_of_each(curvatures, self.cells(self._tooth_knots), cells=True)
         return first, second
 
-    def curvatures(self, phi: Array) -> Array:
-        """Return what both centrodes bend by, 1/mm, and its slopes: (2, 2, n).
-
-        First curvatures, then slopes; of each those of wheel 1, then those of wheel 2.
-        """
-        ratios = self.law.ratio.derivatives(phi, 3)
-        wi, r, dr, ddr, d3r = _radii(ratios, self.mate)
-        speed = np.sqrt(r * r + dr * dr)
-        rate = dr * (r + ddr) / (speed * speed)  # of the speed's logarithm
-        cube = speed * speed * speed
-        first = (r * r + 2.0 * dr * dr - r * ddr) / cube
-        slope = (2.0 * r * dr + 3.0 * dr * ddr - r * d3r) / cube - 3.0 * rate * first
-        both = (1.0 + wi) / speed
-        change = self.mate * ratios[1] / speed - rate * both
-        found = [[first, both - first], [slope, change - slope]]
-        return np.array(found) / self.center_distance
+    def curvatures_of(self, ratios: Sequence[Any]) -> Any:
+        """Return both centrodes' curvatures, 1/mm, of a ratio and two derivatives, any numbers."""
+        _, first, both = _bends(*_radii(ratios, self.mate))
+        return np.array([first, both - first]) / self.center_distance
 
     def cells(self, knots: Array) -> Array:
         """Return `knots` and between them those of the arc length, which tell how fast it changes.
@@ -230,7 +230,7 @@ def _complex(real: Array, imag: Array) -> Plane:
     return result
 
 
-def _radii(ratios: Sequence[Array], mate: int) -> list[Array]:
+def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
     """Return w*i, and r1 for unit size with its derivatives to the third, of a ratio's."""
     i, di, *more = ratios
     wi = mate * i
@@ -243,6 +243,13 @@ def _radii(ratios: Sequence[Array], mate: int) -> list[Array]:
         bend = mate * a * di
         found.append(square * (more[1] - 6.0 * bend * (more[0] - bend * di)))
     return found
+
+
+def _bends(wi: Any, r: Any, dr: Any, ddr: Any) -> tuple[Any, Any, Any]:
+    """Return the speed for unit size, the driver's curvature, and that of both together."""
+    speed = np.sqrt(r * r + dr * dr)
+    first = (r * r + 2.0 * dr * dr - r * ddr) / (speed * speed * speed)
+    return speed, first, (1.0 + wi) / speed
 
 
 def roll(
