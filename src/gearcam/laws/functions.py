@@ -85,15 +85,28 @@ class Waves:
     sines: Array
 
     def error(self, missed: float, scale: float, order: int) -> float:
-        """Return the error of a derivative: of values that are missed, that of the next wave.
+        """Return the error of a derivative: that of the next wave.
 
         The line, by far the largest part of a driven angle, is rounded too, but does not bend.
+
+        Parameters
+        ----------
+        missed : float
+            Of values at most, before rounding.
+        scale : float
+            The largest value.
+        order : int
+            Of the derivative.
+
+        Returns
+        -------
+        float
         """
         if not order:
             return missed + _ROUNDING * scale
-        swing = float(np.hypot(self.cosines, self.sines).sum())
+        level = abs(self.start) + float(np.hypot(self.cosines, self.sines).sum())
         growth = (self.rate * (len(self.cosines) + 1)) ** order
-        return (missed + _ROUNDING * min(swing, scale)) * growth
+        return (missed + _ROUNDING * min(level, scale)) * growth
 
     def derivatives(self, x: Array, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at places `x`."""
@@ -119,7 +132,7 @@ class Pieces:
         return self._chain[order]
 
     def error(self, missed: float, scale: float, order: int) -> float:
-        """Return the error of a derivative at the ends of a piece, of values that are missed.
+        """Return the error of a derivative at the ends of a piece (see `Waves.error`).
 
         Errors at the nodes are no smooth curve: they are in all coefficients alike, and there the
         k-th derivative of ``T_n`` is the product of ``(n^2 - j^2)/(2*j + 1)`` for j below k.
