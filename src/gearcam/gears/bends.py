@@ -19,7 +19,6 @@ EPS: Final = float(np.finfo(float).eps)
 FEW: Final = 8.0
 """Roundings, in units of the last place, that a number of a few operations has at most."""
 
-
 _STEP: Final = 1e-100
 """Step into the complex plane by which a curvature is differentiated: nothing cancels there."""
 
