@@ -11,7 +11,8 @@ import numpy as np
 
 import gearcam
 from gearcam.errors import InfeasibleError
-from gearcam.gears.estimates import estimates, ratio_error, size_error
+from gearcam.gears.bends import bends_of
+from gearcam.gears.estimates import estimates, ratio_error
 from gearcam.gears.pair import GearPair
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.track import Wheel
@@ -65,16 +66,18 @@ def largest(function: Any, place: float, knots: np.ndarray, width: float) -> Num
     ends = [place - width, *(k for k in knots if abs(k - place) < width), place + width]
     low_end, high_end = float(knots[0]), float(knots[-1])
     ends = sorted({min(max(end, low_end), high_end) for end in ends})
+    return max(largest_between(function, mp.mpf(a), mp.mpf(b)) for a, b in pairwise(ends))
+
+
+def largest_between(function: Any, low: Number, high: Number) -> Number:
+    """Largest value of a function between two places, by golden section, or at an end."""
     golden = (mp.sqrt(5) - 1) / 2
-    found = [function(mp.mpf(end)) for end in ends]
-    for a, b in pairwise(ends):
-        low, high = mp.mpf(a), mp.mpf(b)
-        for _ in range(60):
-            step = golden * (high - low)
-            one, two = high - step, low + step
-            low, high = (low, two) if function(one) > function(two) else (one, high)
-        found.append(function((low + high) / 2))
-    return max(found)
+    ends = [function(low), function(high)]
+    for _ in range(60):
+        step = golden * (high - low)
+        one, two = high - step, low + step
+        low, high = (low, two) if function(one) > function(two) else (one, high)
+    return max(*ends, function((low + high) / 2))
 
 
 def of_the_law(case: Case, law: Any, exact: Exact, rolling: Rolling) -> list[Row]:
@@ -94,7 +97,7 @@ def of_the_law(case: Case, law: Any, exact: Exact, rolling: Rolling) -> list[Row
     return [
         Row("law", turned, law.error, law.advance),
         Row("arc_length_mm", arcs * lobes, rolling.arc_error, rolling.arc.length * lobes),
-        Row("size", float(abs(size / true_size - 1)), size_error(rolling), 1.0),
+        Row("size", float(abs(size / true_size - 1)), rolling.size_error, 1.0),
     ]
 
 
@@ -110,6 +113,42 @@ def of_ratios(law: Any, exact: Exact, pair: Any) -> Row:
         largest(ratio, most, law.knots, width),
     )
     return Row("ratio", off((low, high), truth), ratio_error(pair), high * (1.0 + high))
+
+
+def of_curvatures(case: Case, rolling: Rolling, exact: Exact) -> list[Row]:
+    """Least convex radius and largest concave curvature of both centrodes, each near its place.
+
+    At a knot of both pieces; those of the spirals beyond an open pair's ends are left out.
+    """
+    law = rolling.law
+    length = exact.integral(exact.period)[1] * law.lobes.n1
+    size = mp.mpf(MODULE) * mp.pi * case.teeth[0] / length
+    # of differences of knots and of ratios
+    near, finest = 1e-3 * law.period, law.period / np.diff(law.knots).min()
+
+    def most_bent(track: Any, sign: int) -> tuple[Number, float] | None:
+        """What it bends to one side by, and what that is made of: both bends add up."""
+        phi, kappa = track.curvature_extremes
+        place, found = float(phi[(sign * kappa).argmax()]), []
+        for low, high, function in exact.pieces:
+            first, last = max(low, place - near), min(high, place + near)
+            if first < last and 0.0 <= place <= law.period:
+                bent = lambda x, f=function: sign * exact.bends(f, x)[track.wheel - 1]  # noqa: E731
+                both = sum(map(abs, exact.bends(function, (first + last) / 2)))
+                found.append((largest_between(bent, first, last) / size, float(both / size)))
+        return max(found, default=None)
+
+    radii, concave = [], []
+    for track in rolling.tracks:
+        told = bends_of(track)
+        if (true := most_bent(track, 1)) and told.radius < math.inf:
+            off = float(abs(mp.mpf(told.radius) - 1 / true[0]))
+            radii.append((off, told.radius_error, told.radius**2 * true[1] * finest))
+        if true := most_bent(track, -1):
+            off = float(abs(mp.mpf(told.concave) - max(true[0], 0)))
+            concave.append((off, told.concave_error, true[1] * finest))
+    named = ("convex_radius_mm", radii), ("concave_curvature_per_mm", concave)
+    return [Row(name, *map(max, zip(*rows, strict=True))) for name, rows in named if rows]
 
 
 def of_flanks(case: Case, pair: GearPair, exact: Exact, told: float) -> Row:
@@ -273,6 +312,7 @@ def rows_of(case: Case) -> list[Row]:
     rows = of_the_law(case, law, exact, rolling)
     spec = gc.PairSpec(teeth=case.teeth, module=MODULE, type=RING_TYPE[case.mate])
     rows.append(of_ratios(law, exact, rolling))
+    rows += of_curvatures(case, rolling, exact)
     try:
         result = gc.build(gc.GearPairDesign(name="one", law=case.law, pair=spec))
         told = estimates(result.subject)

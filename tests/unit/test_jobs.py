@@ -35,8 +35,9 @@ PAIR |= {"type", "x", "backlash_mm", "rack"}
 CENTRODE = {"length_mm", "min_convex_radius_mm", "max_concave_curvature_per_mm", "closed"}
 GEAR = {"cutter", "undercut_teeth", "tip_thickness_min_mm", "outline"}
 OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}
-ACCURACY = {"law", "closure_rad", "arc_length_mm", "flank_mm", "chord_mm", "size", "ratio"}
+ACCURACY = {"law", "closure_rad", "arc_length_mm", "root_radius_mm", "chord_mm", "size", "ratio"}
 ACCURACY |= {"pressure_angle_deg", "contact_ratio", "tip_thickness_mm", "backlash_mm", "area_mm2"}
+ACCURACY |= {"acceleration_per_rad", "convex_radius_mm", "concave_curvature_per_mm", "flank_mm"}
 
 
 def small(**given: Any) -> GearPairResult:
@@ -140,8 +141,7 @@ def test_a_summary_holds_what_is_promised(tmp_path: Path) -> None:
         assert set(gear["outline"]) >= OUTLINE
         assert gear["centrode"]["closed"] is True
     accuracy = summary["accuracy"]
-    named = {*ACCURACY, "acceleration_per_rad"}
-    assert set(accuracy) - {"how"} == set(accuracy["how"]) == named
+    assert set(accuracy) - {"how"} == set(accuracy["how"]) == ACCURACY
     assert all(accuracy["how"].values())
     assert set(summary["versions"]) >= {"gearcam", "python", "numpy", "shapely"}
     assert {finding["code"] for finding in summary["findings"]} == {"no-backlash"}

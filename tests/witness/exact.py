@@ -195,6 +195,18 @@ class Exact:
         """r1 for unit centre distance."""
         return i / (1 + self.mate * i)
 
+    def bends(self, function: Function, x: Number) -> tuple[Number, Number]:
+        """Curvatures of both centrodes for unit distance by one of the pieces, by its directions.
+
+        The second derivative by a step into the complex plane, where nothing cancels.
+        """
+        step = mp.mpf(10) ** -20
+        i = function(Slope(mp.mpc(x, step), mp.mpf(1)))
+        r = self.radius(i)
+        moved = mp.mpc(mp.re(r.d), mp.re(r.v))
+        turn = mp.im(mp.mpc(mp.im(r.d), mp.im(r.v)) / step / moved)
+        return (1 + turn) / abs(moved), (self.mate * mp.re(i.v) - turn) / abs(moved)
+
     @cached_property
     def integral(self) -> Integral:
         """phi2, and the arc length for unit centre distance."""

@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.gears.bends import EPS, FEW, bends_of, systematic_errors
 from gearcam.gears.flank import Curve
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import Gear, GearPair
@@ -21,17 +22,13 @@ from gearcam.gears.rolling import Rolling
 from gearcam.gears.subject import Subject
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.sampling import MARGIN
 
 _PLACES: Final = 721
 """Places of a lobe at which the centrodes' farthest point and fastest place are looked for."""
 
 Estimates = dict[str, tuple[float, str]]
 """Estimated error and how it is known, by name."""
-
-_EPS: Final = float(np.finfo(float).eps)
-
-_FEW: Final = 8.0
-"""Roundings, in units of the last place, that a number of a few operations has at most."""
 
 
 def estimates(subject: Subject) -> Estimates:
@@ -52,6 +49,7 @@ def estimates(subject: Subject) -> Estimates:
     steepest = [place for place, _ in subject.pressure_angles.values()]
     function = ", and the Python function against its expansion" if law.function_error else ""
     far, rounding = size_of(rolling)
+    flank = flank_error(pair, far, rounding)
     reaches, thicknesses = zip(*(tip_errors(gear, rounding) for gear in gears), strict=True)
     return {
         "law": (
@@ -71,9 +69,10 @@ def estimates(subject: Subject) -> Estimates:
             rolling.arc_error,
             "against Gauss-Legendre quadrature, and rounding" + function,
         ),
-        "size": (size_error(rolling), "share of module and centre distance: the arc length's"),
+        **_bend_errors(rolling, function),
+        "size": (rolling.size_error, "share of module and centre distance: the arc length's"),
         "flank_mm": (
-            flank_error(pair, far, rounding),
+            flank,
             "arc length, driven angle and directions, with the rounding of the driver angle",
         ),
         "pressure_angle_deg": (
@@ -88,7 +87,11 @@ def estimates(subject: Subject) -> Estimates:
             max(thicknesses),
             "both flanks of the thinnest tooth at its tip",
         ),
-        "backlash_mm": (_FEW * _EPS * pair.toothings[0].pitch, "rounding of the pitch"),
+        "backlash_mm": (FEW * EPS * pair.toothings[0].pitch, "rounding of the pitch"),
+        "root_radius_mm": (
+            max(root_radius_error(gear) for gear in gears) + flank,
+            "roots and rims: how far chords and the curve come beyond vertices, and flank_mm",
+        ),
         "area_mm2": (
             max(area_error(gear) for gear in gears),
             "chords times the height of their bows",
@@ -96,9 +99,14 @@ def estimates(subject: Subject) -> Estimates:
     }
 
 
-def size_error(rolling: Rolling) -> float:
-    """Return the error of module or centre distance, whichever was solved, as a share of it."""
-    return rolling.arc_error / max(track.length for track in rolling.tracks) + _EPS
+def _bend_errors(rolling: Rolling, function: str) -> Estimates:
+    """Return the errors of the least radii of centrodes, the larger of both."""
+    bends = [bends_of(track) for track in rolling.tracks]
+    how = "scatter beside extremes, ratio and two derivatives at knots, closure, size" + function
+    return {
+        "convex_radius_mm": (max(one.radius_error for one in bends), how),
+        "concave_curvature_per_mm": (max(one.concave_error for one in bends), how),
+    }
 
 
 def ratio_error(rolling: Rolling) -> float:
@@ -109,8 +117,7 @@ def ratio_error(rolling: Rolling) -> float:
     """
     law = rolling.law
     (low, _), (high, largest) = law.ratio_range
-    solved = abs(law.closure_error) / law.advance if law.solved else 0.0
-    shared = (1.0 + abs(law.mate) * largest) * (_FEW * _EPS + solved)
+    shared = (1.0 + abs(law.mate) * largest) * (FEW * EPS + law.solved_error)
     shown = float(law.scatter(np.array([low, high]))[0].max())
     return largest * shared + shown + law.function_errors[1]
 
@@ -118,21 +125,14 @@ def ratio_error(rolling: Rolling) -> float:
 def acceleration_error(subject: Subject) -> float:
     """Return the error of the largest acceleration, 1/rad (of a rack over its mean speed).
 
-    The scatter of the ratio's slope beside its extremes, the rounding of the driver angle where it
-    changes there, that of knots and ratios about them, its own and that of closure, and a Python
-    function's own.
+    That of the ratio's slope, and the rounding of the driver angle where the slope changes.
     """
     law, (places, values) = subject.pair.law, subject.accelerations
-    sizes, jerk = np.abs(values), np.abs(law.ratio.derivatives(places, 2)[2])
-    solved = abs(law.closure_error) / law.advance if law.solved else 0.0
-    shown = law.scatter(places)[1] + law.function_errors[2] + _EPS * law.period * jerk
-    piece = np.clip(np.searchsorted(law.knots, places), 1, len(law.knots) - 1) - 1
-    width = np.diff(law.knots)[piece]
-    shown += _EPS * law.ratio_range[1][1] / width
-    share = _EPS * (_FEW + law.period / width) + solved
-    each = shown / subject.pair.rolling.mean_radius + share * sizes
+    jerk = np.abs(law.ratio.derivatives(places, 2)[2])
+    each = systematic_errors(law, places)[1] + law.scatter(places)[1] + EPS * law.period * jerk
+    sizes = np.abs(values)
     # another extreme may be the largest only if it comes up to it
-    return float((each - (sizes.max() - sizes)).max())
+    return float((each / subject.pair.rolling.mean_radius - (sizes.max() - sizes)).max())
 
 
 def direction_error(rolling: Rolling, phi: Array) -> Array:
@@ -158,7 +158,7 @@ def direction_error(rolling: Rolling, phi: Array) -> Array:
     ratio = law.ratio(phi)
     slope = law.function_errors[2] + law.scatter(phi)[1]
     own = slope * r * r / (square * ratio * (1.0 + law.mate * ratio))
-    return _EPS * (_FEW + law.period * np.abs(ddr * r - dr * dr) / square) + own
+    return EPS * (FEW + law.period * np.abs(ddr * r - dr * dr) / square) + own
 
 
 def size_of(rolling: Rolling) -> tuple[float, float]:
@@ -172,7 +172,7 @@ def size_of(rolling: Rolling) -> tuple[float, float]:
     frames = [track.frames(phi, curved=False) for track in rolling.tracks]
     far = max(float(np.abs(frame.p).max()) for frame in frames)
     long = 0.5 * rolling.tracks[0].length + law.period * float(frames[0].speed.max())
-    return far, _EPS * (_FEW * far + long)
+    return far, EPS * (FEW * far + long)
 
 
 def _places(rolling: Rolling) -> Array:
@@ -200,7 +200,7 @@ def own_error(pair: GearPair, phi: Array, rounding: float) -> Array:
     """
     cutters = [toothing.cutter for toothing in pair.toothings]
     way = max(max(one.addendum, one.dedendum) / math.sin(one.alpha) for one in cutters)
-    turned = _EPS * pair.law.period + direction_error(pair.rolling, phi)
+    turned = EPS * pair.law.period + direction_error(pair.rolling, phi)
     return way * turned + rounding
 
 
@@ -250,7 +250,7 @@ def tip_errors(gear: Gear, rounding: float) -> tuple[float, float]:
     high, low = np.split(flanks.tips.foot, 2)
     crossed = flanks.tips.full | np.tile(high <= low, 2)
     regular = toothing.regularity(toothing.frames(flanks.tips.phi), flanks.sf, flanks.sigma)
-    run = np.where(crossed, np.maximum(regular, math.sqrt(_EPS)), 1.0)
+    run = np.where(crossed, np.maximum(regular, math.sqrt(EPS)), 1.0)
     return float((own / run)[toothing.whole_flanks].max()), thickness
 
 
@@ -258,6 +258,23 @@ def _in_lobe(gear: Gear, phi: Array) -> Array:
     """Return the driver angles of the first lobe, or of an open pair's travel, next to some."""
     law = gear.pair.law
     return np.mod(phi, law.period) if law.closed else np.clip(phi, 0.0, law.period)
+
+
+def root_radius_error(gear: Gear) -> float:
+    """Return by how much a wheel's curve may be nearer to its shaft than its vertices, mm.
+
+    A curve is as near its chords as they were measured, or not much farther; chords may be nearer
+    than their ends. Of a ring, whose roots are its farthest places, ends are as far as chords.
+    """
+    beside = gear.profile.chord_error / MARGIN
+    if gear.ring:
+        return beside
+    ends = as_complex(gear.outline)
+    chords = np.roll(ends, -1) - ends
+    length = np.maximum(np.abs(chords), np.finfo(float).tiny)
+    along = np.clip(-(ends * np.conj(chords)).real / length, 0.0, length)
+    nearest = np.abs(ends + along * chords / length).min()
+    return gear.least_radius - float(nearest) + beside
 
 
 def area_error(gear: Gear) -> float:
@@ -292,7 +309,7 @@ def kink_error(outline: Outline) -> float:
     rising = (rows.kind[row] == Curve.TIP) & (rows.low[row] != rows.high[row])
     row, place = row[rising], place[rising]
     points, after = curves.at(row, place)
-    _, before = curves.at(row, place - _FEW * _EPS * (1.0 + np.abs(place)))
+    _, before = curves.at(row, place - FEW * EPS * (1.0 + np.abs(place)))
     bends = np.abs(np.angle(after * np.conj(before)))
     dense = np.concatenate([as_complex(run.points) for run in outline.dense_teeth])
     area = 0.0

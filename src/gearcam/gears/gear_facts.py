@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from gearcam.facts import Fact
+from gearcam.gears.bends import bends_of
 
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 
 def gear_tree(gear: Gear) -> dict[str, Any]:
     """Return what is known of a wheel, as a tree of facts (see `gearcam.facts.Facts`)."""
-    cutter, track = gear.toothing.cutter, gear.toothing.track
+    cutter, bends = gear.toothing.cutter, bends_of(gear.pair.rolling.tracks[gear.wheel - 1])
     pinion = cutter.kind == "pinion"
     return {
         "name": gear.name,
@@ -21,8 +22,8 @@ def gear_tree(gear: Gear) -> dict[str, Any]:
         "teeth": gear.toothing.teeth,
         "centrode": {
             "length_mm": Fact(gear.toothing.length, "centrode length"),
-            "min_convex_radius_mm": track.convex.radius if track.convex.radius < math.inf else None,
-            "max_concave_curvature_per_mm": 1.0 / track.concave.radius,
+            "min_convex_radius_mm": bends.radius if bends.radius < math.inf else None,
+            "max_concave_curvature_per_mm": bends.concave,
             "closed": gear.toothing.closed,
         },
         "cutter": cutter.kind,

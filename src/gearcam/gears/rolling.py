@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -104,18 +105,21 @@ class Rolling(Brief):
         def curvatures(phi: Array) -> Array:
             ratios = self.law.ratio.derivatives(phi, 3)
             wi, r, dr, ddr, d3r = _radii(ratios, self.mate)
-            speed = np.sqrt(r * r + dr * dr)
+            speed, first, both = _bends(wi, r, dr, ddr)
             rate = dr * (r + ddr) / (speed * speed)  # of the speed's logarithm
             cube = speed * speed * speed
-            first = (r * r + 2.0 * dr * dr - r * ddr) / cube
             slope = (2.0 * r * dr + 3.0 * dr * ddr - r * d3r) / cube - 3.0 * rate * first
-            both = (1.0 + wi) / speed
             change = self.mate * ratios[1] / speed - rate * both
             found = [[first, both - first], [slope, change - slope]]
             return np.array(found) / self.center_distance
 
         first, second = extremes_of_each(curvatures, self.cells(self._tooth_knots), cells=True)
         return first, second
+
+    def curvatures_of(self, ratios: Sequence[Any]) -> Any:
+        """Return both centrodes' curvatures, 1/mm, of a ratio and two derivatives, any numbers."""
+        _, first, both = _bends(*_radii(ratios, self.mate))
+        return np.array([first, both - first]) / self.center_distance
 
     def cells(self, knots: Array) -> Array:
         """Return `knots` and between them those of the arc length, which tell how fast it changes.
@@ -134,6 +138,12 @@ class Rolling(Brief):
             return self.law.knots
         low, high = self.arc.angle(np.array([-self.margin, self.arc.length + self.margin]))
         return np.concatenate([[low], self.law.knots, [high]])
+
+    @property
+    def size_error(self) -> float:
+        """Error of module or centre distance, whichever was solved, as a share of it."""
+        longest = max(track.length for track in self.tracks)
+        return self.arc_error / longest + float(np.finfo(float).eps)
 
     @cached_property
     def arc_error(self) -> float:
@@ -220,7 +230,7 @@ def _complex(real: Array, imag: Array) -> Plane:
     return result
 
 
-def _radii(ratios: Sequence[Array], mate: int) -> list[Array]:
+def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
     """Return w*i, and r1 for unit size with its derivatives to the third, of a ratio's."""
     i, di, *more = ratios
     wi = mate * i
@@ -233,6 +243,13 @@ def _radii(ratios: Sequence[Array], mate: int) -> list[Array]:
         bend = mate * a * di
         found.append(square * (more[1] - 6.0 * bend * (more[0] - bend * di)))
     return found
+
+
+def _bends(wi: Any, r: Any, dr: Any, ddr: Any) -> tuple[Any, Any, Any]:
+    """Return the speed for unit size, the driver's curvature, and that of both together."""
+    speed = np.sqrt(r * r + dr * dr)
+    first = (r * r + 2.0 * dr * dr - r * ddr) / (speed * speed * speed)
+    return speed, first, (1.0 + wi) / speed
 
 
 def roll(

@@ -84,9 +84,29 @@ class Waves:
     cosines: Array
     sines: Array
 
-    def growth(self, order: int) -> float:
-        """Return what makes of an error of values one of a derivative: that of the next wave."""
-        return (self.rate * (len(self.cosines) + 1)) ** order
+    def error(self, missed: float, scale: float, order: int) -> float:
+        """Return the error of a derivative: that of the next wave.
+
+        The line, by far the largest part of a driven angle, is rounded too, but does not bend.
+
+        Parameters
+        ----------
+        missed : float
+            Of values at most, before rounding.
+        scale : float
+            The largest value.
+        order : int
+            Of the derivative.
+
+        Returns
+        -------
+        float
+        """
+        if not order:
+            return missed + _ROUNDING * scale
+        level = abs(self.start) + float(np.hypot(self.cosines, self.sines).sum())
+        growth = (self.rate * (len(self.cosines) + 1)) ** order
+        return (missed + _ROUNDING * min(level, scale)) * growth
 
     def derivatives(self, x: Array, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at places `x`."""
@@ -111,8 +131,8 @@ class Pieces:
             self._chain.append(self._chain[-1].derivative())
         return self._chain[order]
 
-    def growth(self, order: int) -> float:
-        """Return what makes of errors of values one of a derivative, at the ends of a piece.
+    def error(self, missed: float, scale: float, order: int) -> float:
+        """Return the error of a derivative at the ends of a piece (see `Waves.error`).
 
         Errors at the nodes are no smooth curve: they are in all coefficients alike, and there the
         k-th derivative of ``T_n`` is the product of ``(n^2 - j^2)/(2*j + 1)`` for j below k.
@@ -120,7 +140,8 @@ class Pieces:
         n, j = np.arange(len(self.expansion.coefficients))[:, None], np.arange(order)
         slopes = np.prod((n**2 - j**2) / (2 * j + 1), axis=1)
         rate = 2.0 / float(np.diff(self.expansion.knots).min())
-        return float(np.sqrt(2.0 * np.mean(slopes**2)) * rate**order)
+        growth = float(np.sqrt(2.0 * np.mean(slopes**2)) * rate**order)
+        return (missed + _ROUNDING * scale) * growth
 
     def derivatives(self, x: Array, order: int) -> list[Array]:
         """Return ``[f, f', ..., f^(order)]`` at places `x`."""
@@ -136,21 +157,23 @@ class Expanded:
     curves : tuple of Waves or Pieces
         The function and the derivatives that were given with it.
     misses : tuple of float
-        Estimated errors of their values: the largest difference between expansion and function, at
-        places between its nodes, and rounding.
+        The largest difference between each and its function, at places between its nodes.
+    scales : tuple of float
+        The largest value of each, which is rounded.
     """
 
     curves: tuple[Waves | Pieces, ...]
     misses: tuple[float, ...]
+    scales: tuple[float, ...]
 
     @property
     def errors(self) -> tuple[float, ...]:
         """Estimated errors of the function and its first three derivatives, given or made."""
-        last = len(self.curves) - 1
-        return tuple(
-            self.misses[min(k, last)] * self.curves[min(k, last)].growth(max(k - last, 0))
-            for k in range(4)
-        )
+        found = []
+        for k in range(4):
+            own = min(k, len(self.curves) - 1)
+            found.append(self.curves[own].error(self.misses[own], self.scales[own], k - own))
+        return tuple(found)
 
     def __call__(self, x: Jet) -> Jet:
         """Return the function of a jet."""
@@ -186,6 +209,7 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
     places = np.linspace(axis.low, axis.high, _PLACES)
     curves: list[Waves | Pieces] = []
     misses: list[float] = []
+    scales: list[float] = []
     for number, function in enumerate(functions):
         ask = _Asked(function, axis, number)
         values = ask(places)
@@ -200,9 +224,10 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
         if curves:
             _demand_agreement(curves[-1], ask, places, values)
         miss = np.abs(curve.derivatives(places, 0)[0] - values)
-        misses.append(float(miss.max()) + _ROUNDING * scale)
+        misses.append(float(miss.max()))
+        scales.append(scale)
         curves.append(curve)
-    return Expanded(tuple(curves), tuple(misses))
+    return Expanded(tuple(curves), tuple(misses), tuple(scales))
 
 
 class _Asked:

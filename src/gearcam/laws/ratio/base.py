@@ -9,7 +9,7 @@ dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` puts i
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
@@ -65,16 +65,16 @@ class RatioLaw(Brief, Displacement):
         phi2 over the same interval, rad, zero at zero; of a rack its travel.
     solved : mapping of str to float
         What was left to the program, by name.
-    function_errors : (float, float, float)
-        Errors of phi2, rad, of the ratio and of its slope, 1/rad, that come from the expansion of a
-        Python function.
+    function_errors : (4,) tuple of float
+        Errors of phi2, rad, of the ratio, of its slope, 1/rad, and of its second derivative that
+        come from the expansion of a Python function.
     """
 
     lobes: Span
     ratio: Piecewise
     driven: Piecewise | Expansion
     solved: Mapping[str, float] = field(default_factory=dict)
-    function_errors: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    function_errors: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
 
     @property
     def mate(self) -> int:
@@ -178,17 +178,19 @@ class RatioLaw(Brief, Displacement):
         """Error of phi2, rad, that comes from the expansion of a Python function."""
         return self.function_errors[0]
 
-    def scatter(self, phi: Array) -> Array:
+    def scatter(self, phi: Array, function: Callable[[Array], Array] | None = None) -> Array:
         """Return how far the ratio and its slope scatter about smooth curves: their rounding.
 
         Parameters
         ----------
         phi : (n,) array, rad
             Places in the first lobe, or in an open pair's travel.
+        function : callable, optional
+            Of places, ``(m, n) -> (..., m, n)``: what is asked instead.
 
         Returns
         -------
-        (2, n) array
+        (2, n) array, or (..., n)
             Three times the root of the mean square of high differences between neighbours that
             are as good as one, over what those of noise are.
         """
@@ -197,8 +199,9 @@ class RatioLaw(Brief, Displacement):
         width = np.diff(knots)[piece]
         start = np.clip((phi - knots[piece]) / width, _BESIDE, 1.0 - _BESIDE * (_BUNCH + 1))
         x = knots[piece] + width * (start + _BESIDE * np.arange(_BUNCH)[:, None])
-        found = np.diff(self.ratio.derivatives(x, 1), _ORDER, axis=1)
-        return _SIGMAS * np.sqrt((found**2).mean(axis=1) / math.comb(2 * _ORDER, _ORDER))
+        values = function(x) if function else np.array(self.ratio.derivatives(x, 1))
+        found = np.diff(values, _ORDER, axis=-2)
+        return _SIGMAS * np.sqrt((found**2).mean(axis=-2) / math.comb(2 * _ORDER, _ORDER))
 
     @cached_property
     def error(self) -> float:
@@ -208,6 +211,11 @@ class RatioLaw(Brief, Displacement):
         """
         _, (_, fastest) = self.ratio_range
         return self.integral_error + float(np.finfo(float).eps) * self.period * fastest
+
+    @property
+    def solved_error(self) -> float:
+        """Miss of a law that was solved so that it closes, as a share of the driven angle."""
+        return abs(self.closure_error) / self.advance if self.solved else 0.0
 
     @cached_property
     def integral_error(self) -> float:

@@ -90,7 +90,7 @@ class Formula(Brief):
             axis = axis_of("phi2", span.period)
             phi2 = function_of(self.phi2, axis, tolerances.expansion)
             law = from_phi2(phi2, span, tolerances)
-            return replace(law, function_errors=errors_of(phi2)[:3])
+            return replace(law, function_errors=errors_of(phi2))
         name = "ratio" if self.ratio is not None else "r1"
         axis = axis_of(name, span.n1 * span.period)
         function = function_of(getattr(self, name), axis, tolerances.expansion)
@@ -114,8 +114,8 @@ class Formula(Brief):
 
 def _of_ratio(law: RatioLaw, factor: float, function: Callable[[Jet], Jet]) -> RatioLaw:
     """Return a law with the errors of a function that its ratio is in proportion to."""
-    ratio, slope = (factor * each for each in errors_of(function)[:2])
-    return replace(law, function_errors=(law.period * ratio, ratio, slope))
+    errors = tuple(factor * each for each in errors_of(function)[:3])
+    return replace(law, function_errors=(law.period * errors[0], *errors))
 
 
 def axis_of(name: str, high: float) -> Axis:
@@ -241,7 +241,7 @@ class RackLaw(Brief):
         law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
         if self.travel is None:
             return _of_ratio(law, 1.0, function)
-        return replace(law, function_errors=errors_of(function)[:3])
+        return replace(law, function_errors=errors_of(function))
 
 
 LAWS.register(

@@ -106,8 +106,9 @@ class MotionLaw(Brief):
             "k2_deg_per_y": math.degrees(scale),
         }
         law = from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
-        y, slope, bend = (abs(scale) * each for each in errors_of(shape)[:3])
-        errors = y, abs(per_angle) * slope, per_angle**2 * bend
+        errors = tuple(
+            abs(scale) * abs(per_angle) ** k * each for k, each in enumerate(errors_of(shape))
+        )
         return replace(law, function_errors=errors)
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -129,8 +130,8 @@ class MotionLaw(Brief):
             "crank_angle_at_start_deg": math.degrees(start),
         }
         law = make_law(lobes, knots, pieces, tolerances, solved)
-        angle, ratio, slope = (each / (radius * NARROWEST) for each in errors_of(shape)[:3])
-        return replace(law, function_errors=(angle, ratio, slope))
+        errors = tuple(each / (radius * NARROWEST) for each in errors_of(shape))
+        return replace(law, function_errors=errors)
 
 
 LAWS.register(
