@@ -19,7 +19,7 @@ from gearcam.numeric.moments import halving
 
 _SAFE = 3.0
 """Over the change by one halving. All further ones are a fifteenth more where steps are small, and
-once more as much on a step whose bend one of its halves hides."""
+once more as much on a step that bends in a small part of itself."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -129,8 +129,8 @@ def halving(points: Plane, tangents: Plane, middles: Plane, between: Plane) -> f
         np.append(np.column_stack([one[:-1], inside]).ravel(), one[-1])
         for one, inside in ((points, middles), (tangents, between))
     )
-    whole, halves = (_on_cubics(*one)[0].real for one in ((points, tangents), (p, t)))
-    return float(np.abs(halves.reshape(-1, 2).sum(axis=1) - whole).sum())
+    whole, parts = (_on_cubics(*one)[0].real for one in ((points, tangents), (p, t)))
+    return float(np.abs(parts.reshape(-1, 2).sum(axis=1) - whole).sum())
 
 
 def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
