@@ -165,9 +165,10 @@ def _highest(
     start, step = profile.points[chord], profile.chords[chord]
     z, way = turn[number] * start + shift[number], turn[number] * step
     position, part = _on_chord(mechanism, z, way, 0.0, tolerance)
-    # half of what the bound leaves: it counts the heights of the curve twice
-    error, point = 0.5 * np.maximum(upper - position, 0.0), start + part * step
-    touched = np.isfinite(position)
+    # a chord that is not touched may have a curve that is: on a steep plate the next one up
+    highest = np.full(len(angles), -np.inf)
+    np.maximum.at(highest, number, np.maximum(upper, position))
+    point, touched = start + part * step, np.isfinite(position)
     number, position = number[touched], position[touched]
     order = np.lexsort((position, number))
     last = np.searchsorted(number[order], np.arange(len(angles)), side="right")
@@ -180,9 +181,6 @@ def _highest(
             unit="deg",
         )
     best = order[last - 1]
-    # a lower place may be the highest within its error
-    highest = position[best]
-    np.maximum.at(highest, number, position + error[touched])
     return position[best], highest - position[best], point[touched][best]
 
 
@@ -314,7 +312,7 @@ def _candidates(
     angle, chord = np.repeat(angle, index.shape[1]), index[block].ravel()
     z = turn[angle] * profile.points[chord] + shift[angle]
     np.maximum.at(lower, angle, _reached(mechanism, z, 0.0, tolerance))
-    height = 2.0 * profile.sagitta[chord]
+    height = profile.sagitta[chord]
     upper = _on_chord(mechanism, z, turn[angle] * profile.chords[chord], height, tolerance)[0]
     keep = (upper >= lower[angle] - tolerance) & (upper > -np.inf)
     return angle[keep], chord[keep], upper[keep]

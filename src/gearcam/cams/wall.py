@@ -304,6 +304,11 @@ class Wall(PitchMotion):
         return size_of(self.drawn)
 
     @property
+    def cubics_missed(self) -> float:
+        """The area between the profile and cubics through its dense points, mm^2, at most."""
+        return self.sampler.dense(OVERSAMPLING).missed(self.sampler.at)
+
+    @property
     def nearest_flat(self) -> float:
         """Least distance of the axis from the inside of a straight piece, mm; inf without one."""
         if not self.mechanism.flat:

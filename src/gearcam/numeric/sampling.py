@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -19,8 +18,8 @@ from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
+from gearcam.numeric.dense import Dense, told_apart
 
 _PROBES = 24
 """Intervals per curve on which the density of points is found."""
@@ -333,21 +332,19 @@ class Sampler(Brief):
         steps = np.arange(len(self.density)) / _PROBES
         return np.interp(index + share, steps, self.density)
 
-    def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
-        """Return the dense runs between corners.
+    def dense(self, oversampling: int) -> Dense:
+        """Return dense points.
 
         Parameters
         ----------
         oversampling : int
             Points per chord of the polygon.
-        reverse : bool
-            Whether the curves run clockwise and the runs are to be turned round.
 
         Returns
         -------
-        tuple of Run
-            Counter-clockwise; the vertices of the polygon, the ends of the curves, their joints,
-            and the breaks are among their points: between two of them the curvature is smooth.
+        Dense
+            The vertices of the polygon, the ends of the curves, their joints, and the breaks are
+            among them: between two of them the curvature is smooth.
         """
         vertices = self.chords[0]
         steps = np.arange(oversampling) / oversampling
@@ -360,39 +357,29 @@ class Sampler(Brief):
         order = np.lexsort((rank, j))
         j, rank = j[order], rank[order]
         points, tangents = self.at(j)
-        kept = _told_apart(points, rank, _GRAIN * self.tolerance)
-        j, points, tangents = j[kept], points[kept], tangents[kept]
-        cuts = np.flatnonzero(rank[kept] == 0)
-        joints = np.flatnonzero(rank[kept] == 1)
-        last_points, last_tangents = self._left_ends(j[cuts[1:]])
-        runs = []
-        for number, (start, end) in enumerate(pairwise(cuts.tolist())):
-            p = np.append(points[start:end], last_points[number])
-            t = np.append(tangents[start:end], last_tangents[number])
-            first, last = np.searchsorted(joints, [start + 1, end])
-            inside = joints[first:last] - start
-            run = Run(points=as_pairs(p), tangents=as_pairs(t), joints=tuple(inside.tolist()))
-            runs.append(run.reversed if reverse else run)
-        return tuple(runs[::-1] if reverse else runs)
+        kept = told_apart(points, rank, _GRAIN * self.tolerance)
+        j, rank = j[kept], rank[kept]
+        ends = self._left_ends(j[rank == 0][1:])
+        return Dense(j, points[kept], tangents[kept], rank, ends)
+
+    def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
+        """Return the runs between corners through dense points.
+
+        Parameters
+        ----------
+        oversampling : int
+            Points per chord of the polygon.
+        reverse : bool
+            Whether the curves run clockwise and the runs are to be turned round.
+
+        Returns
+        -------
+        tuple of Run
+            Counter-clockwise.
+        """
+        return self.dense(oversampling).runs(reverse)
 
     def _left_ends(self, j: Array) -> tuple[Plane, Plane]:
         """Points and tangents at the ends of the curves that end at corners."""
         index = np.searchsorted(self.density[::_PROBES], j) - 1
         return self.curves.at(index, self.curves.end[index])
-
-
-def _told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
-    """Choose points in order so that no two are nearer than a grain; the lowest rank stays.
-
-    Points of rank 0, the corners, all stay.
-    """
-    kept = np.ones(len(points), dtype=bool)
-    while True:
-        index = np.flatnonzero(kept)
-        near = np.flatnonzero(np.abs(np.diff(points[index])) <= grain)
-        one, two = index[near], index[near + 1]
-        drop = np.where(rank[one] > rank[two], one, two)
-        drop = drop[rank[drop] > 0]
-        if drop.size == 0:
-            return kept
-        kept[drop] = False

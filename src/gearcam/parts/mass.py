@@ -115,11 +115,11 @@ def _(part: Part) -> tuple[Moments, float]:
     return total, height
 
 
-def quadrature_error(part: Part, *, steep: bool = False) -> Moments:
+def quadrature_error(part: Part) -> Moments:
     """Return the errors of a part's moments (see `numeric.moments.curve_errors`)."""
     return sum(
         (
-            layer.height * _missed(edge, steep)
+            layer.height * _missed(edge)
             for layer in (*part.layers, *part.pockets)
             for edge in (layer.edge, *(opening.shape for opening in layer.openings))
         ),
@@ -127,12 +127,12 @@ def quadrature_error(part: Part, *, steep: bool = False) -> Moments:
     )
 
 
-def _missed(edge: Edge, steep: bool) -> Moments:
+def _missed(edge: Edge) -> Moments:
     rounding = _ROUNDING * error_of(edge.moments)
     if not isinstance(edge, Contour):
         return rounding
     pieces = [piece for run in edge.runs for piece in run.pieces]
-    return curve_errors([(one.points, one.tangents) for one in pieces], steep=steep) + rounding
+    return curve_errors([(one.points, one.tangents) for one in pieces]) + rounding
 
 
 def error_of(difference: Moments) -> Moments:

@@ -96,6 +96,8 @@ def _sizes(result: CamResult) -> Iterator[tuple[str, tuple[float, str]]]:
             if wall.program.closed:
                 yield f"{prefix}area_mm2", (size.area_error, _GAUSS)
     if result.ordered and result.design.blank.density is not None:
-        off = max(quadrature_error(part, steep=True).area for part in result.parts)
-        how = "cubics through every second dense point of all edges, over their order, and rounding"
+        walls = sum(wall.cubics_missed for wall in result.cam.walls)
+        off = max(quadrature_error(part).area + part.width * walls for part in result.parts)
+        how = "cubics through dense points of walls with halved, of all edges with doubled steps; "
+        how += "rounding"
         yield "volume_mm3", (off, how)

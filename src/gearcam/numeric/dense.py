@@ -1,0 +1,115 @@
+"""Dense points of curves: the smooth runs through them, and what cubics through them miss.
+
+Depends on contour and moments; numpy only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from gearcam.display import Brief
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.contour import Run
+from gearcam.numeric.moments import halving
+
+_SAFE = 3.0
+"""Over the change by one halving. All further ones are a fifteenth more where steps are small, and
+once more as much on a step that bends in a small part of itself."""
+
+
+@dataclass(frozen=True, eq=False)
+class Dense(Brief):
+    """Points of curves in order, and which of them end runs.
+
+    Parameters
+    ----------
+    places : (n,) array
+        Where they lie, as the sampler counts (its J).
+    points, tangents : (n,) complex arrays, mm and 1
+        At a corner those after it.
+    rank : (n,) array of int
+        0 of corners and both ends, 1 of joints (see `Run`), more of other points.
+    ends : (points, tangents)
+        Where runs end, (runs,) complex arrays: before the corner.
+    """
+
+    places: Array
+    points: Plane
+    tangents: Plane
+    rank: Ints
+    ends: tuple[Plane, Plane]
+
+    def _stretches(self) -> Iterator[tuple[slice, Plane, Plane]]:
+        """Yield the numbers of each run's steps, and its points and tangents."""
+        cuts = np.flatnonzero(self.rank == 0)
+        for (start, end), point, tangent in zip(pairwise(cuts.tolist()), *self.ends, strict=True):
+            steps = slice(start, end)
+            yield (
+                steps,
+                np.append(self.points[steps], point),
+                np.append(self.tangents[steps], tangent),
+            )
+
+    def runs(self, reverse: bool) -> tuple[Run, ...]:
+        """Return the runs between corners, in `reverse` the other way."""
+        made = []
+        for steps, points, tangents in self._stretches():
+            joints = np.flatnonzero(self.rank[steps] == 1).tolist()
+            made.append(
+                Run(points=as_pairs(points), tangents=as_pairs(tangents), joints=tuple(joints))
+            )
+        return tuple(run.reversed for run in made[::-1]) if reverse else tuple(made)
+
+    def missed(self, at: Callable[[Array], tuple[Plane, Plane]]) -> float:
+        """Return the area between the curves and the cubics through the points, mm^2, at most.
+
+        Parameters
+        ----------
+        at : callable
+            The sampler's points and tangents at places.
+
+        Returns
+        -------
+        float
+            From what halving changes of every step. Steps of a steep curve are of any lengths, so
+            that leaving out every second point would say nothing of the longest.
+        """
+        points, tangents = at(0.5 * (self.places[:-1] + self.places[1:]))
+        return _SAFE * sum(
+            halving(own, ends, points[steps], tangents[steps])
+            for steps, own, ends in self._stretches()
+        )
+
+
+def told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
+    """Choose points in order so that no two are nearer than a grain; the lowest rank stays.
+
+    Parameters
+    ----------
+    points : (n,) complex array, mm
+        In order.
+    rank : (n,) array of int
+        Points of rank 0, the corners, all stay.
+    grain : float, mm
+        Least distance.
+
+    Returns
+    -------
+    (n,) array of bool
+        Which are kept.
+    """
+    kept = np.ones(len(points), dtype=bool)
+    while True:
+        index = np.flatnonzero(kept)
+        near = np.flatnonzero(np.abs(np.diff(points[index])) <= grain)
+        one, two = index[near], index[near + 1]
+        drop = np.where(rank[one] > rank[two], one, two)
+        drop = drop[rank[drop] > 0]
+        if drop.size == 0:
+            return kept
+        kept[drop] = False
