@@ -14,11 +14,13 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import gearcam
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.gears.outline import Outline
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.doubts import doubts
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
@@ -200,6 +202,16 @@ def test_outlines_that_were_torn(design: Given) -> None:
     made = job(law, teeth, module=MODULE, tolerance=tolerance * MODULE, rack=rack)
     for gear in made.gears:
         demand_outline(gear.profile)
+
+
+@pytest.mark.parametrize("name", ["loop_at_a_jump", "coarse_corners"])
+def test_what_the_study_said_against_extreme_pairs(name: str) -> None:
+    """A loop of 2 um was left in a flank, and a corner ran 1.5 um into a fillet."""
+    made = gearcam.build(gearcam.load(f"profiles/extreme/{name}.toml"))
+    assert list(doubts(made)) == []
+    for gears in made.steps:
+        for gear in gears:
+            assert shapely.Polygon(gear.outline).is_valid
 
 
 @settings(quick, max_examples=8)

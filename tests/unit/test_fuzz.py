@@ -18,7 +18,7 @@ import helpers_fuzz
 from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
 from gearcam.draws.designs import design, drawn_kinds
-from gearcam.errors import DesignError
+from gearcam.errors import DesignError, InfeasibleError
 from gearcam.fuzz import oracles, trial
 from gearcam.fuzz.campaign import Campaign, Case
 from gearcam.fuzz.outcome import BUILT, REFUSED, WRONG, Failure, Outcome, Task
@@ -142,6 +142,16 @@ def test_polygons_that_cross_themselves_are_seen(small: Any) -> None:
     (found,) = oracles.look_at(SimpleNamespace(parts=parts), written)
     assert found.kind == "polygon"
     assert "Self-intersection" in found.words
+
+
+def test_parts_that_cannot_be_made_are_no_failure_where_no_file_asks_for_them(small: Any) -> None:
+    class Refused:
+        @property
+        def parts(self) -> None:
+            raise InfeasibleError("no room", where="blank", value=1.0, limit=0.0)
+
+    written = dataclasses.replace(small.written, files=(), summary={})
+    assert [*oracles.look_at(Refused(), written)] == []
 
 
 @pytest.mark.parametrize(("off", "places"), [(1e-11, []), (1e-6, ["torn"])])

@@ -262,7 +262,7 @@ def test_damped_steps_that_go_to_and_fro_end() -> None:
     """Newton's steps for a root of the distance lead as far to the other side."""
     target = np.array([[0.01], [-0.02], [0.0]])
 
-    def bent(x: np.ndarray) -> tuple[None, np.ndarray, np.ndarray]:
+    def bent(x: np.ndarray, _: np.ndarray) -> tuple[None, np.ndarray, np.ndarray]:
         off = x - target
         slopes = np.eye(3)[..., None] * (0.5 / np.sqrt(np.maximum(np.abs(off), 1e-30)))
         return None, np.sign(off) * np.sqrt(np.abs(off)), slopes

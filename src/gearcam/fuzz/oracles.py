@@ -17,7 +17,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.errors import GearcamError
+from gearcam.errors import GearcamError, InfeasibleError
 from gearcam.fuzz.outcome import Failure
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Layer, Part
@@ -37,7 +37,7 @@ def look_at(result: Any, written: Written) -> Iterator[Failure]:
     written : Written
         What was written of it.
     """
-    parts: tuple[Part, ...] = result.parts
+    parts = _parts(result)
     for part in parts:
         yield from _polygons(part)
         yield from _torn(part)
@@ -46,6 +46,14 @@ def look_at(result: Any, written: Written) -> Iterator[Failure]:
         for words in _unread(path):
             yield Failure(kind="file", words=f"{name}: {words}", place=path.suffix)
     yield from _drawing_errors(parts, written)
+
+
+def _parts(result: Any) -> tuple[Part, ...]:
+    """Return what can be cut; nothing where that is refused, and no file asks for it."""
+    try:
+        return tuple(result.parts)
+    except InfeasibleError:
+        return ()
 
 
 def _polygons(part: Part) -> Iterator[Failure]:

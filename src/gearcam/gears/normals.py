@@ -246,10 +246,11 @@ def touch(
     scale = mounting.track.frames(start, curved=False).speed / mounting.pitch
     motion = None if np.any(known) else mounting.guide.motion(start)
 
-    def evaluate(x: Array) -> tuple[Normals, Array, Array]:
-        every[free, rows] = x
-        at = normals(mounting, Pose(*every), separation, motion)
-        return at, at.equations, at.slopes[:, free, rows]
+    def evaluate(x: Array, some: Ints) -> tuple[Normals, Array, Array]:
+        every[free[:, some], some] = x
+        given = motion if motion is None else motion[:, some]
+        at = normals(mounting, Pose(*every[:, some]), separation[some], given)
+        return at, at.equations, at.slopes[:, free[:, some], np.arange(some.size)]
 
     _, at = damped_newton(evaluate, every[free, rows], scale, _SMALL, limits)
     found = np.abs(at.equations[0]) <= _MISS

@@ -29,6 +29,10 @@ from gearcam.tolerances import Tolerances
 _NO_MATE = 3.0
 """Reach in pitches that no flank has."""
 
+_FOLLOWED = 3e-4
+"""Chord tolerance, in pitches, with which corners are followed at most: a coarser drawing is of the
+same wheels."""
+
 _AT_TIP = 1e-12
 """Share of a flank's reach within which a cusp is at its tip: rounding."""
 
@@ -249,11 +253,12 @@ def _find_flanks(
     tips, lower = find_tips(toothing, sf, sigma, limit), np.empty(0, dtype=np.int64)
     if mate is not None and tolerance is not None:
         reach = sigma * (sf - toothing.track.arc_length(tips.phi))
+        fine = min(tolerance, _FOLLOWED * toothing.pitch)
         allowed = highest_corners(
             toothing,
             mate,
-            lambda: build_outline(mate, toothing, tolerance, tolerances, follow=False).points,
-            tolerance,
+            lambda: build_outline(mate, toothing, fine, tolerances, follow=False).points,
+            fine,
             (sf, sigma),
             reach,
         )

@@ -27,6 +27,12 @@ from gearcam.numeric.crossings import (
 )
 
 ROWS_PER_TOOTH = 6
+_JUMP = 1e-3
+"""Change of the curvature at a knot, over a pitch, that turns no flank back."""
+
+_ABOUT, _WIDE = 32, 0.25
+"""Places on each side of a jump, and how far from it they lie, in lengths of the curve."""
+
 _SHARP = 0.9
 """Curvature of a root, in dedenda, from which on it is looked at: at 1 the land has a cusp."""
 
@@ -134,11 +140,11 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
     made: dict[int, Rows] = {}
     left = spaces
     for _ in range(_DENSER + 1):
+        if not left.size:
+            break
         rings = [first for first, *_ in remaining(curves, _chains(curves, left, samples))]
         made |= {int(k): _along(curves, int(k), ring) for k, ring in zip(left, rings, strict=True)}
         left = left[[ring.gap > ROUGH * near(toothing) for ring in rings]]
-        if not left.size:
-            break
         samples = 2 * samples - 1
     return [made[int(space)] for space in spaces]
 
@@ -168,16 +174,21 @@ def join(parts: list[Rows]) -> Rows:
 
 
 def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:
-    """Draw the five curves of spaces, ever denser to the form points, where loops can be tiny."""
+    """Draw the five curves of spaces, ever denser to where loops can be tiny.
+
+    These are the form points, and the jumps of the curvature, at which flanks may turn back.
+    """
     t = np.linspace(0.0, 1.0, samples)
     towards_start, towards_end = t**3, 1.0 - (1.0 - t) ** 3
     grading = [towards_end, towards_start, t, towards_end, towards_start]
     rows = curves.rows
-    curve = ROWS_PER_TOOTH * spaces[:, None] + np.repeat(np.arange(len(grading)), samples - 1)
-    start, span = rows.start[curve], (rows.end - rows.start)[curve]
-    low, high = (
-        start + span * np.concatenate([g[k:][: len(t) - 1] for g in grading]) for k in (0, 1)
-    )
+    curve = ROWS_PER_TOOTH * spaces[:, None] + np.arange(len(grading))
+    start, span = rows.start[curve][..., None], (rows.end - rows.start)[curve][..., None]
+    share = np.broadcast_to(grading, (*curve.shape, samples))
+    share = np.sort(np.concatenate([share, _about_jumps(curves, curve)], axis=2), axis=2)
+    phi = start + span * share
+    low, high = (one.reshape(len(spaces), -1) for one in (phi[..., :-1], phi[..., 1:]))
+    curve = np.repeat(curve, share.shape[2] - 1, axis=1)
     points = _points(
         curves, curve[:, [*range(curve.shape[1]), -1]], np.append(low, high[:, -1:], 1)
     )
@@ -185,6 +196,25 @@ def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:
         Chain(curve=number, low=begin, high=end, points=way)
         for number, begin, end, way in zip(curve, low, high, points, strict=True)
     ]
+
+
+def _about_jumps(curves: WheelCurves, curve: Ints) -> Array:
+    """Return shares of curves about the jumps of the curvature in them, (*curve.shape, n).
+
+    Where a curve has fewer than another its beginning is told instead, which is no place more.
+    """
+    rows, toothing = curves.rows, curves.toothing
+    start, end = rows.start[curve.ravel()], rows.end[curve.ravel()]
+    number, place = toothing.track.jumps_between(
+        np.minimum(start, end), np.maximum(start, end), _JUMP / toothing.pitch
+    )
+    count = np.bincount(number, minlength=start.size)
+    order = np.arange(number.size) - np.repeat(np.cumsum(count) - count, count)
+    about = np.zeros((start.size, int(count.max()), 2 * _ABOUT + 1))
+    away = np.arange(-_ABOUT, _ABOUT + 1) / _ABOUT
+    share = ((place - start[number]) / (end - start)[number])[:, None] + _WIDE * away**3
+    about[number, order] = np.clip(share, 0.0, 1.0)
+    return about.reshape(*curve.shape, about.shape[1] * about.shape[2])
 
 
 def _points(curves: WheelCurves, index: Ints, phi: Array) -> Plane:

@@ -39,6 +39,9 @@ WHEELS: tuple[Wheel, Wheel] = (1, 2)
 _ROWS = 1025
 """Rows of the table from which the inverse of an arc length starts: Newton then takes two steps."""
 
+_BESIDE = 1e-9
+"""Periods on both sides of a knot at which the curvature is compared."""
+
 _PAD = 1e-12
 """What brackets of the inverse are widened by, in periods: the table is rounded."""
 
@@ -250,6 +253,27 @@ class Track(Brief, ABC):
         number, place : (k,) int array, (k,) array, rad
             Of the stretch, and of the knot.
         """
+
+    def jumps_between(self, low: Array, high: Array, least: float) -> tuple[Ints, Array]:
+        """Return the knots in stretches where kappa does jump.
+
+        Parameters
+        ----------
+        low, high : (n,) arrays, rad
+            See `knots_between`.
+        least : float, 1/mm
+            Change of the curvature that is a jump.
+
+        Returns
+        -------
+        number, place : (k,) int array, (k,) array, rad
+            Of the stretch, and of the knot.
+        """
+        number, place = self.knots_between(low, high)
+        beside = _BESIDE * self.arc.period
+        change = self.frames(place + beside).kappa - self.frames(place - beside).kappa
+        jumps = np.abs(change) > least
+        return number[jumps], place[jumps]
 
     @property
     @abstractmethod

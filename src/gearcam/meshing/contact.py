@@ -12,18 +12,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.normals import touch
+from gearcam.gears.normals import Pose, normals, touch
 from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
-_NEAR = 0.5
-"""Pitches beside a jump of the curvature within which flanks may touch at more than one place."""
+_NEAR, _FARTHER = 0.5, 20.0
+"""Flanks may touch at more than one place near a jump of the curvature: so many pitches from it at
+most, and no more times than they are apart where they would touch as designed."""
 
 _JUMP = 1e-3
 """Change of the curvature at a knot, over a pitch, that makes no other place."""
 
 _ROUNDING = 1e-9
-"""Share of that distance by which both sides of a knot are told apart."""
+"""Share of that reach by which both sides of a jump are told apart."""
 
 _DIGITS = 12
 """Decimal places of leads, rad or mm, that are not rounding."""
@@ -94,7 +95,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     side = pairs.side
-    step, pair, limits = sought(pairs, phi1)
+    step, pair, limits = sought(pairs, phi1, Pose(phi1, phi1, phi1, np.zeros(phi1.shape)))
     pose, at, touching = touch(pairs, phi1[step], pairs.separation(pair), limits=limits)
     rolled = [
         sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
@@ -135,7 +136,9 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     )
 
 
-def sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Array] | None]:
+def sought(
+    pairs: FlankPairs, phi1: Array, nominal: Pose
+) -> tuple[Ints, Ints, tuple[Array, Array] | None]:
     """Return where the common normals of flanks are sought.
 
     Beside a jump of the curvature flanks that are mounted otherwise than designed may share more
@@ -147,6 +150,8 @@ def sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Arr
         The side.
     phi1 : (n,) array, rad
         Phases.
+    nominal : Pose
+        Where the search begins: what flanks miss of touching there is how far they stand apart.
 
     Returns
     -------
@@ -156,18 +161,23 @@ def sought(pairs: FlankPairs, phi1: Array) -> tuple[Ints, Ints, tuple[Array, Arr
         Driver angles, rad, between which rolls are sought; None where no jump is near.
     """
     step, pair = pairs.beside(phi1)
-    track = pairs.track
-    reach = _NEAR * pairs.pitch / track.frames(phi1, curved=False).speed
-    near, knot = track.knots_between(phi1 - reach, phi1 + reach)
-    before, after = (knot + by * reach[near] for by in (-_ROUNDING, _ROUNDING))
-    change = track.frames(after).kappa - track.frames(before).kappa
-    jumps = np.flatnonzero(np.abs(change) * pairs.pitch > _JUMP)
-    if not jumps.size:
+    track, speed = pairs.track, pairs.track.frames(phi1, curved=False).speed
+    reach = _NEAR * pairs.pitch / speed
+    near, knot = track.jumps_between(phi1 - reach, phi1 + reach, _JUMP / pairs.pitch)
+    if not near.size:
         return step, pair, None
-    nearest = jumps[np.argsort(np.abs(knot - phi1[near])[jumps], kind="stable")]
+    some, first = np.unique(step, return_index=True)
+    at = normals(pairs, nominal.take(some), pairs.separation(pair[first]))
+    apart = np.zeros(phi1.shape)
+    apart[some] = np.abs(at.equations[1:]).max(axis=0)
+    # the nearest jump of each phase
+    away = np.abs(knot - phi1[near]) * speed[near]
+    nearest = np.argsort(away, kind="stable")
+    nearest = nearest[(away <= _FARTHER * apart[near])[nearest]]
     which, first = np.unique(near[nearest], return_index=True)
+    knot, beside = knot[nearest[first]], _ROUNDING * reach[which]
     low, high = np.full(phi1.shape, np.nan), np.full(phi1.shape, np.nan)
-    low[which], high[which] = after[nearest[first]], before[nearest[first]]
+    low[which], high[which] = knot + beside, knot - beside
     again = np.flatnonzero(np.isfinite(low[step]))
     wide = np.full(len(step), np.inf)
     ends = [np.concatenate([-wide, low[step[again]], -wide[again]])]

@@ -175,12 +175,11 @@ def patches(
 
 def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array) -> Graphs:
     """Find the normals that pairs share, and the pairs that overlap along them."""
-    step, pair, limits = sought(pairs, phi1)
-    side, guide = pairs.side, pairs.guide
-    moved, motion = (guide.nominal(phi1) + lead)[step], guide.motion(phi1 + overclosure)[:, step]
-    phi1 = phi1[step]
-    ahead = phi1 + overclosure
-    pose = Pose(ahead, phi1, phi1, moved - motion[0])
+    side, guide, ahead = pairs.side, pairs.guide, phi1 + overclosure
+    moved, motion = guide.nominal(phi1) + lead, guide.motion(ahead)
+    nominal = Pose(ahead, phi1, phi1, moved - motion[0])
+    step, pair, limits = sought(pairs, phi1, nominal)
+    pose, motion, ahead, moved = nominal.take(step), motion[:, step], ahead[step], moved[step]
     center, at = _shared(pairs, pose, pairs.separation(pair), motion, limits)
     (first, second), (one, two) = at.frames, pairs.toothings
     sf = [pairs.place(wheel, pair) for wheel in WHEELS]
@@ -223,10 +222,12 @@ def _shared(
     none = np.zeros_like(separation)
     by_distance = np.stack([none, none - 1.0, none])
 
-    def evaluate(x: Array) -> tuple[Normals, Array, Array]:
-        at = normals(pairs, pose._replace(one=x[0], two=x[1]), separation, motion)
-        slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by_distance], axis=1)
-        return at, at.equations + x[2] * by_distance, slopes
+    def evaluate(x: Array, some: Ints) -> tuple[Normals, Array, Array]:
+        placed = pose.take(some)._replace(one=x[0], two=x[1])
+        at = normals(pairs, placed, separation[some], motion[:, some])
+        by = by_distance[:, some]
+        slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by], axis=1)
+        return at, at.equations + x[2] * by, slopes
 
     scale = pairs.toothings[0].frames(pose.one, curved=False).speed / pairs.pitch
     x = np.stack([pose.one, pose.two, none])

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Ints
 
 State = TypeVar("State")
 
@@ -17,12 +17,15 @@ _STEPS = 40
 _LONGEST = 0.5
 """Longest step, in units of the scale: half of what lies between neighbouring roots."""
 
+_FEW = 0.25
+"""Share of the systems below which those that are done are left alone."""
+
 _LEFT = 0.5
 """Share of the last step above which one that goes back is no approach."""
 
 
 def damped_newton(
-    evaluate: Callable[[Array], tuple[State, Array, Array]],
+    evaluate: Callable[[Array, Ints], tuple[State, Array, Array]],
     x: Array,
     scale: Array,
     small: float,
@@ -36,8 +39,8 @@ def damped_newton(
     Parameters
     ----------
     evaluate : callable
-        ``evaluate(x)`` returns any state, the equations (3, n) and their slopes (3, 3, n): by
-        equation and unknown.
+        ``evaluate(x, rows)`` returns of systems `rows` (m,) any state, the equations (3, m) and
+        their slopes (3, 3, m): by equation and unknown.
     x : (3, n) array
         First guess.
     scale : (n,) array
@@ -55,24 +58,34 @@ def damped_newton(
         What `evaluate` says of it.
     """
 
-    def held(x: Array) -> Array:
-        return x if limits is None else np.concatenate([np.clip(x[:2], *limits), x[2:]])
+    def held(x: Array, rows: Ints) -> Array:
+        if limits is None:
+            return x
+        low, high = (limit[rows] for limit in limits)
+        return np.concatenate([np.clip(x[:2], low, high), x[2:]])
 
-    x = held(x)
-    state, equations, slopes = evaluate(x)
+    every = rows = np.arange(x.shape[1])
+    x = held(x, rows)
+    found = x.copy()
+    _, equations, slopes = evaluate(x, rows)
     share, last, before = np.ones(x.shape[1]), np.zeros_like(x), np.zeros(x.shape[1])
     for _ in range(_STEPS):
         step = -solve(slopes, equations)
-        size = np.abs(step[:2]).max(axis=0) * scale
+        size = np.abs(step[:2]).max(axis=0) * scale[rows]
         with np.errstate(invalid="ignore", divide="ignore"):
             back = ((step[:2] * last[:2]).sum(axis=0) < 0.0) & (size > _LEFT * before)
             share = np.where(back, 0.5 * share, np.minimum(1.0, 2.0 * share))
             last, before = step * np.minimum(share, _LONGEST / size), size
-        x = held(x + np.where(np.isfinite(last), last, 0.0))
-        state, equations, slopes = evaluate(x)
-        if not np.any(size > small):
+        x = held(x + np.where(np.isfinite(last), last, 0.0), rows)
+        found[:, rows] = x
+        going = size > small
+        if not going.any():
             break
-    return x, state
+        if going.mean() < _FEW:
+            rows, x, share = rows[going], x[:, going], share[going]
+            last, before = last[:, going], before[going]
+        _, equations, slopes = evaluate(x, rows)
+    return found, evaluate(found, every)[0]
 
 
 def solve(matrix: Array, right: Array) -> Array:
