@@ -214,7 +214,7 @@ def volume_error(body: Body) -> float:
 def _(part: Part) -> float:
     total = 0.0
     for layer in (*part.layers, *part.pockets):
-        for edge in (layer.edge, *(opening.shape for opening in layer.openings)):
+        for edge in layer.edges:
             error = edge.chord_error if isinstance(edge, Contour) else part.tolerance
             error += ROUNDING * edge.reach
             total += edge.length * error * layer.height

@@ -138,7 +138,7 @@ def _explained(part: Part, tolerance: float) -> float:
     return sum(
         edge.length * tolerance * layer.height
         for layer in (*part.steps, *part.recesses)
-        for edge in (layer.edge, *(opening.shape for opening in layer.openings))
+        for edge in layer.edges
         if isinstance(edge, Contour)
     )
 
@@ -206,10 +206,7 @@ def _converted(prism: Any) -> Any:
 def _swept(layer: Layer, tolerance: float) -> Any:
     """Return the same with swept surfaces."""
     floor = occt.gp_Pln(_point(0j, layer.low), occt.gp_Dir(0.0, 0.0, 1.0))
-    edge, *holes = (
-        _wire(_pieces(edge, tolerance), layer.low)
-        for edge in (layer.edge, *(opening.shape for opening in layer.openings))
-    )
+    edge, *holes = (_wire(_pieces(edge, tolerance), layer.low) for edge in layer.edges)
     face = occt.BRepBuilderAPI_MakeFace(floor, edge, False)
     for hole in holes:
         face.Add(occt.TopoDS.Wire(hole.Reversed()))

@@ -69,8 +69,7 @@ def _polygons(part: Part) -> Iterator[Failure]:
 def _torn(part: Part) -> Iterator[Failure]:
     """Yield edges whose smooth curves do not begin where the ones before end."""
     for layer in (*part.layers, *part.pockets):
-        shapes = (layer.edge, *(opening.shape for opening in layer.openings))
-        for edge in (one for one in shapes if isinstance(one, Contour)):
+        for edge in (one for one in layer.edges if isinstance(one, Contour)):
             ends = np.array([run.points[[0, -1]] for run in edge.runs])
             gap = float(np.abs(np.roll(ends[:, 0], -1, axis=0) - ends[:, 1]).max())
             if not gap <= _ROUNDING * edge.reach:

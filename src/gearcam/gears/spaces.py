@@ -27,9 +27,6 @@ from gearcam.numeric.crossings import (
 )
 
 ROWS_PER_TOOTH = 6
-_JUMP = 1e-3
-"""Change of the curvature at a knot, over a pitch, that turns no flank back."""
-
 _ABOUT, _WIDE = 32, 0.25
 """Places on each side of a jump, and how far from it they lie, in lengths of the curve."""
 
@@ -206,7 +203,7 @@ def _about_jumps(curves: WheelCurves, curve: Ints) -> Array:
     rows, toothing = curves.rows, curves.toothing
     start, end = rows.start[curve.ravel()], rows.end[curve.ravel()]
     number, place = toothing.track.jumps_between(
-        np.minimum(start, end), np.maximum(start, end), _JUMP / toothing.pitch
+        np.minimum(start, end), np.maximum(start, end), toothing.pitch
     )
     count = np.bincount(number, minlength=start.size)
     order = np.arange(number.size) - np.repeat(np.cumsum(count) - count, count)

@@ -39,6 +39,10 @@ WHEELS: tuple[Wheel, Wheel] = (1, 2)
 _ROWS = 1025
 """Rows of the table from which the inverse of an arc length starts: Newton then takes two steps."""
 
+_JUMP = 1e-3
+"""Change of the curvature at a knot, over a pitch, that neither turns a flank back nor makes two
+places of contact."""
+
 _BESIDE = 1e-9
 """Periods on both sides of a knot at which the curvature is compared."""
 
@@ -254,15 +258,15 @@ class Track(Brief, ABC):
             Of the stretch, and of the knot.
         """
 
-    def jumps_between(self, low: Array, high: Array, least: float) -> tuple[Ints, Array]:
+    def jumps_between(self, low: Array, high: Array, pitch: float) -> tuple[Ints, Array]:
         """Return the knots in stretches where kappa does jump.
 
         Parameters
         ----------
         low, high : (n,) arrays, rad
             See `knots_between`.
-        least : float, 1/mm
-            Change of the curvature that is a jump.
+        pitch : float, mm
+            Of the teeth: a change that bends them by next to nothing is no jump.
 
         Returns
         -------
@@ -272,7 +276,7 @@ class Track(Brief, ABC):
         number, place = self.knots_between(low, high)
         beside = _BESIDE * self.arc.period
         change = self.frames(place + beside).kappa - self.frames(place - beside).kappa
-        jumps = np.abs(change) > least
+        jumps = np.abs(change) * pitch > _JUMP
         return number[jumps], place[jumps]
 
     @property

@@ -20,9 +20,6 @@ _NEAR, _FARTHER = 0.5, 20.0
 """Flanks may touch at more than one place near a jump of the curvature: so many pitches from it at
 most, and no more times than they are apart where they would touch as designed."""
 
-_JUMP = 1e-3
-"""Change of the curvature at a knot, over a pitch, that makes no other place."""
-
 _ROUNDING = 1e-9
 """Share of that reach by which both sides of a jump are told apart."""
 
@@ -163,7 +160,7 @@ def sought(
     step, pair = pairs.beside(phi1)
     track, speed = pairs.track, pairs.track.frames(phi1, curved=False).speed
     reach = _NEAR * pairs.pitch / speed
-    near, knot = track.jumps_between(phi1 - reach, phi1 + reach, _JUMP / pairs.pitch)
+    near, knot = track.jumps_between(phi1 - reach, phi1 + reach, pairs.pitch)
     if not near.size:
         return step, pair, None
     some, first = np.unique(step, return_index=True)

@@ -96,6 +96,11 @@ class Layer(Brief):
         return self.high - self.low
 
     @property
+    def edges(self) -> tuple[Edge, ...]:
+        """Its edge, and those of its openings."""
+        return self.edge, *(opening.shape for opening in self.openings)
+
+    @property
     def moments(self) -> Moments:
         """Moments of the plane region."""
         through = (opening.shape.moments for opening in self.openings)

@@ -121,7 +121,7 @@ def quadrature_error(part: Part) -> Moments:
         (
             layer.height * _missed(edge)
             for layer in (*part.layers, *part.pockets)
-            for edge in (layer.edge, *(opening.shape for opening in layer.openings))
+            for edge in layer.edges
         ),
         start=Moments(),
     )
