@@ -237,6 +237,13 @@ def test_a_disc_that_is_too_large_for_a_fillet_leaves_a_corner(by: float) -> Non
     demand_true(made)
 
 
+def test_what_is_left_joins_where_arcs_are_too_short_to_be_drawn() -> None:
+    bent = contour_of(chain([0j, 10 + 0j, 10 + 10j, 5 + 10.005j, 10j]), TOLERANCE)
+    gaps, turns = joins(moved(bent, 1e-4))  # the arc about the blunt corner: 2e-7 mm
+    assert len(turns[turns > 1e-6]) == 1
+    assert gaps.max() == 0.0
+
+
 def test_arcs_of_the_disc_s_own_radius_become_corners() -> None:
     """The smooth outline of a rounded square is one run; moved by its radius it has four."""
     smooth = rounded(square_contour(40.0), 3.0)

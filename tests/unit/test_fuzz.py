@@ -154,11 +154,12 @@ def test_parts_that_cannot_be_made_are_no_failure_where_no_file_asks_for_them(sm
     assert [*oracles.look_at(Refused(), written)] == []
 
 
-@pytest.mark.parametrize(("off", "places"), [(1e-11, []), (1e-6, ["torn"])])
-def test_curves_that_do_not_join_are_seen(small: Any, off: float, places: list[str]) -> None:
+@pytest.mark.parametrize(("share", "places"), [(0.009, []), (0.011, ["torn"])])
+def test_curves_that_do_not_join_are_seen(small: Any, share: float, places: list[str]) -> None:
     part = small.result.parts[0]
     first, *others = part.contour.runs
-    moved = dataclasses.replace(first, points=np.add(first.points, [off, 0.0]))
+    off = [share * part.tolerance, 0.0]
+    moved = dataclasses.replace(first, points=np.add(first.points, off))
     wrong = dataclasses.replace(part.contour, dense=lambda: (moved, *others))
     parts = (dataclasses.replace(part, contours=(wrong,)),)
     written = dataclasses.replace(small.written, files=(), summary={})

@@ -6,7 +6,7 @@ import re
 import shutil
 import time
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -135,7 +135,10 @@ class Trial:
             if any(one.severity == "error" for one in written.findings):
                 words = f"with {remedy.text} it should have no error"
                 raise FaultError(Failure(kind="remedy", words=words))
-            self._hold(look_at(other, written))
+            self._hold(
+                replace(one, words=f"with {remedy.text} {one.words}")
+                for one in look_at(other, written)
+            )
             self.followed += 1
 
 

@@ -23,7 +23,7 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.sampling import Sampler
+from gearcam.numeric.sampling import MOST, Sampler
 from gearcam.tolerances import Tolerances
 
 _NO_MATE = 3.0
@@ -87,6 +87,8 @@ class Outline(Brief):
         Dense points per chord.
     ring : RingSpec, optional
         Outside of an open ring, as its defaults say if left out.
+    most : float
+        Chords of which more are refused.
     """
 
     toothing: Toothing
@@ -95,6 +97,7 @@ class Outline(Brief):
     tolerance: float
     oversampling: int
     ring: RingSpec | None = None
+    most: float = MOST
 
     @cached_property
     def sampler(self) -> Sampler:
@@ -103,6 +106,7 @@ class Outline(Brief):
             curves=WheelCurves(toothing=self.toothing, rows=self.rows),
             tolerance=self.tolerance,
             closed=self.toothing.closed,
+            most=self.most,
         )
 
     @cached_property

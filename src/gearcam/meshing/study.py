@@ -19,6 +19,7 @@ import numpy as np
 
 from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
+from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, to_pitch_line
@@ -35,6 +36,9 @@ Progress = Callable[[str, int, int], None]
 
 SHARE = 1.0 / 200.0
 """Chord error of each outline over the penetration: both together are a hundredth."""
+
+_MOST = 1e7
+"""Chords of a studied outline: of more, its half-teeth do not fit into memory."""
 
 BLOCK = 120
 """Phases that are studied at once: few enough for progress, many enough to be fast."""
@@ -158,7 +162,7 @@ def study(
     Raises
     ------
     InfeasibleError
-        If the wheels do not reach each other, or the overclosure is lost in rounding.
+        If the wheels do not reach each other, or the overclosure is too small to be shown.
     """
     return run(mount(gears, spec, designed), progress)
 
@@ -199,7 +203,7 @@ def mount(
     Raises
     ------
     InfeasibleError
-        If the wheels do not reach each other, or the overclosure is lost in rounding.
+        If the wheels do not reach each other, or the overclosure is too small to be shown.
     """
     pair = gears[0].pair
     distance = _distance(pair, spec)
@@ -211,18 +215,7 @@ def mount(
     if not levers.size:
         levers = np.abs(pair.rolling.tracks[0].frames(np.zeros(1)).p.real)
     penetration = abs(spec.overclosure) * float(levers.min())
-    tolerance = min(SHARE * penetration, pair.chord_tolerance(None))
-    if tolerance < FINEST * pair.module:
-        least = spec.overclosure * FINEST * pair.module / tolerance
-        raise InfeasibleError(
-            "the overclosure is so small that the overlap would be lost in rounding",
-            where="meshing.overclosure_deg",
-            value=float(np.degrees(spec.overclosure)),
-            limit=float(np.degrees(least)),
-            unit="deg",
-            nearest=f"at least {shown(np.degrees(abs(least)), 3)} deg",
-        )
-    both = [half_teeth(replace(gear.profile, tolerance=tolerance)) for gear in gears]
+    both = [half_teeth(outline) for outline in _outlines(gears, spec, penetration)]
     for gear, wheel in zip(gears, both, strict=True):
         if not wheel.sound:
             raise InfeasibleError(
@@ -246,6 +239,32 @@ def mount(
         stretch=stretch(spec, pairs[side]),
         penetration=penetration,
         lever=float(levers.max()),
+    )
+
+
+def _outlines(
+    gears: tuple[Gear, Gear], spec: MeshingSpec, penetration: float
+) -> tuple[Outline, Outline]:
+    """Return the outlines that show a penetration, mm; refuse an overclosure too small for that."""
+    pair = gears[0].pair
+    tolerance = min(SHARE * penetration, pair.chord_tolerance(None))
+    one, two = (replace(gear.profile, tolerance=tolerance, most=_MOST) for gear in gears)
+    chords = max(one.sampler.least, two.sampler.least)
+    if tolerance < FINEST * pair.module:
+        reason, coarser = "the overlap would be lost in rounding", FINEST * pair.module / tolerance
+    elif chords > _MOST and tolerance < pair.chord_tolerance(None):
+        reason = f"outlines that show the overlap would take {shown(chords, 2)} chords"
+        coarser = (chords / _MOST) ** 2
+    else:
+        return one, two
+    least = float(np.degrees(spec.overclosure)) * coarser
+    raise InfeasibleError(
+        f"the overclosure is so small that {reason}",
+        where="meshing.overclosure_deg",
+        value=float(np.degrees(spec.overclosure)),
+        limit=least,
+        unit="deg",
+        nearest=f"at least {shown(abs(least), 3)} deg",
     )
 
 

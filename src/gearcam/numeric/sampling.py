@@ -27,8 +27,8 @@ _PROBES = 24
 _CURVES = 1 << 11
 """Curves whose density is found at once: the probes of more need not be in memory together."""
 
-_MOST = 1e6
-"""Chords of a polygon: of many more, what is made of them does not fit into memory."""
+MOST = 1e6
+"""Chords of a polygon: of many more, the files made of them do not fit into memory."""
 
 _EIGHTHS = np.arange(1, 8) / 8.0
 _QUARTERS = _EIGHTHS[1::2]
@@ -119,11 +119,14 @@ class Sampler(Brief):
         Largest chord error.
     closed : bool
         Whether the last curve ends where the first begins.
+    most : float
+        Chords of which more are refused.
     """
 
     curves: Curves
     tolerance: float
     closed: bool = True
+    most: float = MOST
 
     @cached_property
     def probes(self) -> tuple[Plane, Plane]:
@@ -216,9 +219,9 @@ class Sampler(Brief):
         return vertices, points[:-1] if self.closed else points, float(errors.max())
 
     def _demand_few(self) -> None:
-        """Refuse tolerances for which there are more chords than a million."""
-        if self.least > _MOST:
-            limit = self.tolerance * (self.least / _MOST) ** 2
+        """Refuse tolerances for which there are too many chords."""
+        if self.least > self.most:
+            limit = self.tolerance * (self.least / self.most) ** 2
             key = "output.chord_tolerance_mm"
             raise InfeasibleError(
                 f"the curve would take {shown(self.least, 2)} chords",
@@ -226,7 +229,7 @@ class Sampler(Brief):
                 value=self.tolerance,
                 limit=limit,
                 unit="mm",
-                nearest="at the limit there are a million",
+                nearest=f"at the limit there are {self.most:.0f}",
                 ways=(Way(near={key: 1.01 * limit}),),
             )
 

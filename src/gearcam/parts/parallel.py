@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -194,7 +195,7 @@ def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
     """Put runs together, drawn within the tolerance, and prove that they do not cross."""
     from shapely import LinearRing, get_coordinates, linestrings, simplify
 
-    real = [piece for run in runs for piece in _cut(run, _GRAIN * old.tolerance)]
+    real = _joined([piece for run in runs for piece in _cut(run, _GRAIN * old.tolerance)])
     lines: Any = np.array([linestrings(run.points) for run in real])
     thinned: Any = simplify(lines, _VERTICES * old.tolerance, preserve_topology=False)
     vertices = np.vstack([get_coordinates(line)[:-1] for line in thinned])
@@ -227,11 +228,19 @@ def _cut(run: Run, grain: float) -> list[Run]:
     low, high = low[np.append(True, corner)], high[np.append(corner, True)]
     pieces = []
     for first, last in zip(low.tolist(), high.tolist(), strict=True):
-        points = run.points[first : last + 1].copy()
-        points[0] = pieces[-1].points[-1] if pieces else points[0]
+        taken = slice(first, last + 1)
         inside = tuple(joint - first for joint in run.joints if first < joint < last)
-        pieces.append(Run(points=points, tangents=run.tangents[first : last + 1], joints=inside))
+        pieces.append(Run(points=run.points[taken], tangents=run.tangents[taken], joints=inside))
     return pieces
+
+
+def _joined(pieces: Sequence[Run]) -> list[Run]:
+    """Return pieces of which each begins where the one before it ends, not a grain beside it."""
+    ends = [piece.points[-1:] for piece in (*pieces[-1:], *pieces[:-1])]
+    return [
+        replace(piece, points=np.concatenate([end, piece.points[1:]]))
+        for piece, end in zip(pieces, ends, strict=True)
+    ]
 
 
 def touches(contour: Contour, points: Plane, normals: Plane, by: float) -> Mask:
