@@ -182,3 +182,36 @@ output = { files = ["csv"], chord_tolerance_mm = %r }
     assert limit is not None
     sampler = gearcam.build(gearcam.loads(text % (100.0 * limit))).gear1.profile.sampler
     assert sampler.least == pytest.approx(1e5, rel=0.01)  # as the root of the tolerance
+
+
+STEEP = """
+kind = "cam"
+name = "steep"
+motion = [
+    { type = "segment", to_deg = 19.9, angle_deg = 76.9378 },
+    { type = "segment", to_deg = 13.2, angle_deg = 91.9324 },
+    { type = "segment", to_deg = 0, angle_deg = 75.5386 },
+    { type = "dwell", angle_deg = 115.59119999999999 },
+]
+[follower]
+type = "roller"
+roller_radius_mm = 0.0435
+pivot_distance_mm = 0.516
+motion = "oscillating"
+arm_mm = 0.532
+[cam]
+prime_radius_mm = 0.2
+[output]
+chord_tolerance_mm = 9e-06
+"""
+
+
+def test_dense_points_lie_densely_where_the_curve_is_fast_within_a_chord() -> None:
+    sampler = gearcam.build(gearcam.loads(STEEP)).cam.walls[0].sampler
+    dense = sampler.dense(8)
+    shares = np.linspace(0.0, 1.0, 41)[1:-1]
+    places = dense.places[:-1, None] + np.diff(dense.places)[:, None] * shares
+    seen = sampler.at(places.ravel())[0].reshape(places.shape)
+    chord = np.diff(dense.points)[:, None]
+    off = np.abs(((seen - dense.points[:-1, None]) * np.conj(chord / abs(chord))).imag)
+    assert off.max() <= sampler.tolerance / 32.0

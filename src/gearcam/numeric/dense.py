@@ -113,3 +113,24 @@ def told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
         if drop.size == 0:
             return kept
         kept[drop] = False
+
+
+def sags(points: Plane, tangents: Plane, rank: Ints) -> Array:
+    """Return how far curves leave the chords between dense points, about.
+
+    Parameters
+    ----------
+    points, tangents : (n,) complex arrays, mm and 1
+        At a corner those after it.
+    rank : (n,) array of int
+        As of `Dense`: before a corner only the tangent where the chord begins counts.
+
+    Returns
+    -------
+    (n - 1,) array, mm
+    """
+    chord = np.diff(points)
+    before = np.abs(np.angle(chord * np.conj(tangents[:-1])))
+    after = np.abs(np.angle(tangents[1:] * np.conj(chord)))
+    bow: Array = np.maximum(before, np.where(rank[1:] == 0, 0.0, after))
+    return 0.25 * np.abs(chord) * bow

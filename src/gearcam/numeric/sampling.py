@@ -19,7 +19,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.contour import Run
-from gearcam.numeric.dense import Dense, told_apart
+from gearcam.numeric.dense import Dense, sags, told_apart
 
 _PROBES = 24
 """Intervals per curve on which the density of points is found."""
@@ -50,6 +50,9 @@ _FEW = 0.12
 
 _GRAIN = 1e-3
 """Distance in tolerances below which two points of a dense run are one."""
+
+_DENSE = 1.0 / 32.0
+"""Chord error of dense points, in tolerances, at most."""
 
 _STRAIGHT = 16.0 * np.finfo(float).eps
 """Turning of a tangent that is rounding, rad."""
@@ -360,6 +363,14 @@ class Sampler(Brief):
         order = np.lexsort((rank, j))
         j, rank = j[order], rank[order]
         points, tangents = self.at(j)
+        for _ in range(_ROUNDS):
+            long = np.flatnonzero(sags(points, tangents, rank) > _DENSE * self.tolerance)
+            if not long.size:
+                break
+            j = np.insert(j, long + 1, 0.5 * (j[long] + j[long + 1]))
+            rank = np.insert(rank, long + 1, len(groups))
+            new = long + 1 + np.arange(long.size)
+            points, tangents = np.insert([points, tangents], long + 1, self.at(j[new]), axis=1)
         kept = told_apart(points, rank, _GRAIN * self.tolerance)
         j, rank = j[kept], rank[kept]
         ends = self._left_ends(j[rank == 0][1:])
