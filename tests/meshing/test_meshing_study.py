@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+import gearcam.meshing.study as study_room
 from gearcam.errors import InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
@@ -223,3 +224,19 @@ def test_teeth_that_cannot_be_told_apart_are_refused() -> None:
     made = job(Ellipse(eccentricity=0.281), (9, 6), module=2.0, x=0.4)
     with pytest.raises(InfeasibleError, match="wheel 2"):
         study(made.gears, MeshingSpec())
+
+
+@pytest.mark.parametrize(("most", "words"), [(1e7, "lost in rounding"), (1e5, "chords")])
+def test_an_overclosure_too_small_to_be_shown_is_refused_with_one_that_is_not(
+    most: float, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study_room, "_MOST", most)
+    made = job(Ellipse(eccentricity=0.281), (20, 20), module=2.0)
+    with pytest.raises(InfeasibleError, match=words) as refused:
+        mount(made.gears, MeshingSpec(overclosure=-1e-11))
+    told = refused.value.nearest
+    assert told is not None
+    least = math.radians(float(told.split()[0]))
+    assert mount(made.gears, MeshingSpec(overclosure=least)).penetration > 0.0
+    with pytest.raises(InfeasibleError):
+        mount(made.gears, MeshingSpec(overclosure=0.97 * least))

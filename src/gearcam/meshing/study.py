@@ -40,6 +40,9 @@ SHARE = 1.0 / 200.0
 _MOST = 1e7
 """Chords of a studied outline: of more, its half-teeth do not fit into memory."""
 
+_ABOVE = 1.01
+"""What a nearest value is told times its limit: told in three digits, it is not below."""
+
 BLOCK = 120
 """Phases that are studied at once: few enough for progress, many enough to be fast."""
 
@@ -249,22 +252,25 @@ def _outlines(
     pair = gears[0].pair
     tolerance = min(SHARE * penetration, pair.chord_tolerance(None))
     one, two = (replace(gear.profile, tolerance=tolerance, most=_MOST) for gear in gears)
-    chords = max(one.sampler.least, two.sampler.least)
-    if tolerance < FINEST * pair.module:
-        reason, coarser = "the overlap would be lost in rounding", FINEST * pair.module / tolerance
-    elif chords > _MOST and tolerance < pair.chord_tolerance(None):
-        reason = f"outlines that show the overlap would take {shown(chords, 2)} chords"
-        coarser = (chords / _MOST) ** 2
-    else:
+    if tolerance == pair.chord_tolerance(None):
         return one, two
-    least = float(np.degrees(spec.overclosure)) * coarser
+    chords = max(one.sampler.least, two.sampler.least)
+    lost, many = FINEST * pair.module / tolerance, (chords / _MOST) ** 2
+    if max(lost, many) <= 1.0:
+        return one, two
+    reason = (
+        "the overlap would be lost in rounding"
+        if lost > many
+        else f"outlines that show the overlap would take {shown(chords, 2)} chords"
+    )
+    least = float(np.degrees(spec.overclosure)) * max(lost, many)
     raise InfeasibleError(
         f"the overclosure is so small that {reason}",
         where="meshing.overclosure_deg",
         value=float(np.degrees(spec.overclosure)),
         limit=least,
         unit="deg",
-        nearest=f"at least {shown(abs(least), 3)} deg",
+        nearest=f"{shown(_ABOVE * least, 3)} deg is enough",
     )
 
 
