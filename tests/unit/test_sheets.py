@@ -293,3 +293,16 @@ def test_drawings_are_of_the_kind_that_is_asked_for(name: str) -> None:
     for file, data in made.files("drawing-svg").items():
         assert file.endswith("_drawing.svg")
         assert ET.fromstring(data).tag.endswith("svg")
+
+
+def test_the_side_view_of_a_groove_has_both_walls() -> None:
+    made = build(load("profiles/groove_cam.toml"))
+    features = wheel_sheet(made.parts[0], {}, "groove").features
+    hidden = [
+        one.shape.points for one in features if isinstance(one.shape, Path) and one.kind == "HIDDEN"
+    ]
+    level = [points[0, 1] for points in hidden if np.ptp(points[:, 1]) == 0.0]
+    walls = [one.vertices[:, 1] for one in made.profiles]
+    bore = [-8.0, 8.0]
+    ends = [end for y in walls for end in (y.min(), y.max())]
+    assert sorted(level) == pytest.approx(sorted(ends + bore), abs=2e-3)

@@ -240,10 +240,9 @@ def _recesses(board: Board, part: Part, back: float) -> None:
     """Draw the hidden edges of what is milled out of faces into the side view."""
     for recess in part.recesses:
         low, high = back + recess.low, back + recess.high
-        bottom, top = _span(recess.edge)
-        for y in (bottom, top):
+        for y in (end for edge in recess.edges for end in _span(edge)):
             board.line(HIDDEN, (low, y), (high, y))
-        floor = low if recess.front else high
+        floor, (bottom, top) = low if recess.front else high, _span(recess.edge)
         board.line(HIDDEN, (floor, bottom), (floor, top))
 
 
