@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import gearcam
 from gearcam.cams.disc import make_cam
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec, size_problems
@@ -260,3 +261,27 @@ def test_a_base_radius_is_the_prime_radius_less_the_roller() -> None:
     assert one == two
     assert one.start == pytest.approx(math.sqrt(30.0**2 - 8.0**2), rel=1e-15)
     assert one.least == pytest.approx(30.0, rel=1e-15)
+
+
+# --- tables --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "step"),
+    [
+        ("tappet", "output.motion_step_deg", 1e-300),
+        ("translating_cam", "output.way_step_mm", 1e-5),
+    ],
+)
+def test_a_step_with_too_many_rows_is_refused_with_the_smallest(
+    name: str, key: str, step: float
+) -> None:
+    design = gearcam.load(f"profiles/{name}.toml").with_({key: step})
+    result = gearcam.build(design)
+    with pytest.raises(InfeasibleError, match="1000000 rows") as refused:
+        result.files("csv")
+    assert refused.value.where == key
+    (remedy,) = gearcam.remedies(result, refused.value).found
+    assert list(remedy.changes) == [key]
+    rows = len(gearcam.build(remedy.design).motion()["lift_mm"])
+    assert 9.8e5 < rows <= 1e6 + 1

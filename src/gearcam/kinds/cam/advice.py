@@ -27,6 +27,7 @@ def _curvature(result: Any) -> object:
 
 
 FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
+    "csv": lambda result: result.angles,
     "tool-path": _paths,
     "dxf": kerf_paths,
     "cut-svg": kerf_paths,

@@ -16,6 +16,7 @@ from gearcam.findings import Finding, in_order, run_checks
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.steps import WHOLE, even_angles
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
@@ -38,13 +39,6 @@ if TYPE_CHECKING:
 
 FOLLOWED: Final = "followed.csv"
 """The motion that a given profile makes."""
-
-WAY_STEP: Final = 1.0
-"""Step of a translating cam's way where the design gives none, mm."""
-
-_WHOLE: Final = 1e-9
-"""Part of a step by which a turn may fall short of a whole number of them, and of a way by which
-one may lie beyond it: rounding."""
 
 
 class CamResult(Result):
@@ -110,14 +104,7 @@ class CamResult(Result):
     @property
     def angles(self) -> Array:
         """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
-        output, driver = self.design.output, self.mechanism.driver
-        step = (
-            (output.way_step or WAY_STEP) / driver.rate if self.form.slides else output.motion_step
-        )
-        made = step * np.arange(math.floor(2.0 * math.pi / step + _WHOLE) + 1.0)
-        if self.program.open:  # whose end no beginning repeats
-            made = np.append(made[made < 2.0 * math.pi * (1.0 - _WHOLE)], 2.0 * math.pi)
-        return made
+        return even_angles(self.design.output, self.mechanism.driver, self.program.open)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the follower's motion and the curvature of what it touches, exactly.
@@ -165,7 +152,7 @@ class CamResult(Result):
         driver = self.mechanism.driver
         if not self.form.slides:
             return angles("theta", theta)
-        slack = _WHOLE * driver.turn
+        slack = WHOLE * driver.turn
         ways = angles("theta", theta, 0.0, driver.turn, slack, driver.unit)
         return np.minimum(ways / driver.scale, 2.0 * math.pi)
 

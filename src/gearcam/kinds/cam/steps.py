@@ -1,0 +1,72 @@
+"""The cam angles of tables: a turn, or the way of a translating cam, in steps of the design.
+
+Refused: steps so small that nobody could read the table.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.errors import InfeasibleError, Way
+from gearcam.numeric.arrays import Array
+
+if TYPE_CHECKING:
+    from gearcam.cams.mechanism import Driver
+    from gearcam.kinds.cam.design import CamOutputSpec
+
+WAY_STEP: Final = 1.0
+"""Step of a translating cam's way where the design gives none, mm."""
+
+WHOLE: Final = 1e-9
+"""Part of a step by which a turn may fall short of a whole number of them, and of a way by which
+one may lie beyond it: rounding."""
+
+_MOST: Final = 1e6
+"""Steps of a table."""
+
+_ABOVE: Final = 1.01
+"""What a nearest step is told times its limit: told in few digits, it is not below."""
+
+
+def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
+    """Return the cam angles of tables, both ends among them.
+
+    Parameters
+    ----------
+    output : CamOutputSpec
+        With the step.
+    driver : Driver
+        How the cam's place is told.
+    slides : bool
+        Whether it slides: its way ends with a shorter step where it is not a whole number of them.
+
+    Returns
+    -------
+    (n,) array, rad
+
+    Raises
+    ------
+    InfeasibleError
+        If there are more than a million.
+    """
+    turn = 2.0 * math.pi
+    step = (output.way_step or WAY_STEP) / driver.rate if slides else output.motion_step
+    if step < turn / _MOST:
+        key = f"output.{'way_step' if slides else 'motion_step'}_{driver.unit}"
+        least = turn / _MOST * driver.scale
+        raise InfeasibleError(
+            f"tables would have more than {_MOST:.0f} rows",
+            where=key,
+            value=step * driver.scale,
+            limit=least,
+            unit=driver.unit,
+            nearest="the limit is the smallest step",
+            ways=(Way(near={key: _ABOVE * least}),),
+        )
+    made = step * np.arange(math.floor(turn / step + WHOLE) + 1.0)
+    if slides:  # whose end no beginning repeats
+        made = np.append(made[made < turn * (1.0 - WHOLE)], turn)
+    return made
