@@ -94,7 +94,7 @@ def with_motion(design: Mapping[str, Any], motion: Any) -> Any:
     return gearcam.build(replace(gearcam.loads(toml(design)), motion=motion))
 
 
-@pytest.mark.parametrize("number", [10, 41, 55])
+@pytest.mark.parametrize("number", [10, 41, 55, 246])
 def test_estimates_of_random_cams_are_honest(number: int) -> None:
     assert random_faults(number) == []
 

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 from shapely import Polygon
 
 from gearcam.cams.disc import DiscCam, make_cam
+from gearcam.cams.follow import follow
+from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import OVERSAMPLING
 from gearcam.errors import InfeasibleError
 from gearcam.kinds.cam.accuracy import error_rows
@@ -16,7 +21,7 @@ from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.moments import curve_moments
 from gearcam.parts.body import Part
 from gearcam.parts.mass import quadrature_error
-from helpers_cams import back, dwell, mechanism, program, rise
+from helpers_cams import back, corners_of, dwell, mechanism, program, rise
 from helpers_sliding import built
 
 TOP, FALL, LIFT = 150.0, 90.0, 10.0
@@ -229,3 +234,67 @@ def test_slopes_of_a_thousand_multiply_the_chords_by_what_is_told(
     theta = np.linspace(wall.program.knots[:-1], wall.program.knots[1:], 400, axis=1).ravel()
     columns, _, _ = followed(wall, vertices, np.zeros(len(vertices)), theta, made.design.limits)
     assert np.all(np.abs(columns["difference"]) <= columns["error"] + 1e-9)
+
+
+LAWS = ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal", "modified-sine")
+
+
+def demand_told(follower: dict[str, Any], prime: float, walk: list[Any], tolerance: float) -> bool:
+    """Whether a swinging cam is whole; then its chords are felt no more than is told."""
+    spec = FollowerSpec(motion="oscillating", **follower)
+    touched = make_mechanism(spec, CamSpec(prime_radius=prime))
+    made = make_cam(program(walk, swings=True), touched, tolerance=tolerance)
+    if made.corners:
+        return False
+    knots = made.program.knots
+    theta = np.linspace(knots[:-1], knots[1:], 400, axis=1).ravel()
+    found = follow(corners_of(made), touched, theta, tolerance)
+    off = np.abs(found.lift - made.program.derivatives(theta, 0)[0])
+    assert np.all(off <= found.error + 1e-12)
+    assert found.error.max() < math.inf
+    return True
+
+
+def steep(seed: int, radius: float) -> tuple[dict[str, Any], float, list[Any], float]:
+    """An arm, a prime radius, a program with a short phase and a tolerance, at random."""
+    random = np.random.default_rng(seed)
+    prime, tolerance = random.uniform(20.0, 60.0), 10.0 ** random.uniform(-3.5, -1.5)
+    pivot = random.uniform(1.5, 4.0) * prime
+    arm = {"pivot_distance": pivot, "arm": pivot + random.uniform(-0.8, 0.8) * prime}
+    tip = {"type": "roller", "roller_radius": radius} if radius else {"type": "point"}
+    short, long = random.uniform(1.0, 15.0), random.uniform(40.0, 200.0)
+    up, down = (short, long) if random.random() < 0.5 else (long, short)
+    walk = [
+        rise(str(random.choice(LAWS)), up, random.uniform(3.0, 25.0), swings=True),
+        dwell(60.0),
+        back(str(random.choice(LAWS)), down),
+        dwell(300.0 - up - down),
+    ]
+    return {**tip, **arm}, prime, walk, tolerance
+
+
+@pytest.mark.parametrize("radius", [0.0, 1e-3, 0.05])
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        pytest.param((28, 53, 112), id="few"),
+        pytest.param(range(400), id="many", marks=pytest.mark.slow),
+    ],
+)
+def test_a_small_face_on_an_arm_feels_no_more_of_the_chords_than_is_told(
+    seeds: Sequence[int], radius: float
+) -> None:
+    """Both ways: where the curve is below steep chords the arm comes down farther than up."""
+    assert sum(demand_told(*steep(seed, radius)) for seed in seeds) >= len(seeds) // 3
+
+
+def test_turns_between_bends_of_both_signs_tell_little_of_chords() -> None:
+    """One chord is hollow where this rise begins: what turns tell is what is left of two bends."""
+    arm = {"type": "point", "pivot_distance": 102.0, "arm": 142.3}
+    walk = [
+        rise("constant-acceleration", 55.356, 12.7674, swings=True),
+        dwell(60.0),
+        back("harmonic", 4.2655),
+        dwell(360.0 - 55.356 - 60.0 - 4.2655),
+    ]
+    assert demand_told(arm, 59.38, walk, 0.00381)

@@ -62,8 +62,8 @@ class Followed:
         Lift at them.
     error : (m,) array, mm or rad
         Estimated error of the lift, with points that are exact: what a curve through the points may
-        differ from the chords (a corner between points, cut off by its chord, is known to it as far
-        as it is told what chords may miss).
+        differ from the chords, either way (a corner between points, cut off by its chord, is known
+        to it as far as it is told what chords may miss).
     contact : (m,) complex array, mm
         Where the follower touches, in the cam's frame.
     """
@@ -161,17 +161,18 @@ def _highest(
         If nothing is touched at one of them.
     """
     (turn, shift), tolerance = _stand(mechanism, angles), _ROUNDING * profile.size
-    number, chord, upper = _candidates(profile, mechanism, (turn, shift), tolerance)
+    (number, chord, upper), lower = _candidates(profile, mechanism, (turn, shift), tolerance)
     start, step = profile.points[chord], profile.chords[chord]
     z, way = turn[number] * start + shift[number], turn[number] * step
-    position, part = _on_chord(mechanism, z, way, 0.0, tolerance)
+    found, part = _on_chord(mechanism, z, way, 0.0, tolerance)
+    upper = np.maximum(upper, found)
     # a chord that is not touched may have a curve that is: on a steep plate the next one up
     highest = np.full(len(angles), -np.inf)
-    np.maximum.at(highest, number, np.maximum(upper, position))
-    point, touched = start + part * step, np.isfinite(position)
-    number, position = number[touched], position[touched]
-    order = np.lexsort((position, number))
-    last = np.searchsorted(number[order], np.arange(len(angles)), side="right")
+    np.maximum.at(highest, number, upper)
+    touched = np.isfinite(found)
+    point, within, position = (start + part * step)[touched], number[touched], found[touched]
+    order = np.lexsort((position, within))
+    last = np.searchsorted(within[order], np.arange(len(angles)), side="right")
     missed = np.diff(last, prepend=0) == 0
     if missed.any():
         raise InfeasibleError(
@@ -181,7 +182,28 @@ def _highest(
             unit="deg",
         )
     best = order[last - 1]
-    return position[best], highest - position[best], point[touched][best]
+    rest = position[best]
+    np.maximum.at(lower, number, _certain(mechanism, z, way, profile.hollow[chord], tolerance))
+    free = np.isneginf(lower)
+    np.logical_or.at(free, number, mechanism.radius < profile.hollow[chord])
+    if free.any():
+        below = _left(mechanism, z, way, profile.hollow[chord], tolerance)
+        lower[free] = np.maximum(lower, _passed(rest, number, upper, below))[free]
+    return rest, np.maximum(highest - rest, rest - lower), point[best]
+
+
+def _passed(rest: Array, number: Ints, upper: Array, below: Array) -> Array:
+    """Return how far a follower may come down from where it rests: out of all bands it is in.
+
+    Bands around chords, in which the curve is, are entered at `upper` and left at `below`, each by
+    the angle of its `number`.
+    """
+    lowest, before = rest.copy(), np.full(rest.shape, np.inf)
+    while np.any(lowest < before):
+        before = lowest.copy()
+        joined = upper >= before[number]
+        np.minimum.at(lowest, number[joined], below[joined])
+    return lowest
 
 
 def _stand(mechanism: Mechanism, angles: Array) -> tuple[Plane, Plane]:
@@ -294,10 +316,32 @@ def _on_chord(
     return position, part
 
 
+def _certain(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
+    """Return the positions at which curves stop it that are below chords by a depth at most.
+
+    Minus infinity where the follower is smaller than the depth.
+    """
+    found = np.full(z.shape, -np.inf)
+    wide = mechanism.radius >= depth
+    found[wide] = _on_chord(mechanism, z[wide], chord[wide], -depth[wide], tolerance)[0]
+    return found
+
+
+def _left(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
+    """Return the positions at which it comes out of bands around chords; infinite without one.
+
+    Seen in a mirror it comes in.
+    """
+    mirrored = replace(mechanism, start=-mechanism.start)
+    return -_on_chord(mirrored, np.conj(z), np.conj(chord), depth, tolerance)[0]
+
+
 def _candidates(
     profile: ProfilePoints, mechanism: Mechanism, stand: tuple[Plane, Plane], tolerance: float
-) -> tuple[Ints, Ints, Array]:
+) -> tuple[tuple[Ints, Ints, Array], Array]:
     """Return the chords that may hold the contact: number of angle and chord, and upper bound.
+
+    Then a lower bound for each angle, minus infinity where no point is reached.
 
     `stand` holds how the cam is turned and shifted. Points lie on the curve, so that the highest of
     some is a lower bound; what cannot reach it is left out, first by blocks, then by chords.
@@ -315,4 +359,4 @@ def _candidates(
     height = profile.sagitta[chord]
     upper = _on_chord(mechanism, z, turn[angle] * profile.chords[chord], height, tolerance)[0]
     keep = (upper >= lower[angle] - tolerance) & (upper > -np.inf)
-    return angle[keep], chord[keep], upper[keep]
+    return (angle[keep], chord[keep], upper[keep]), lower

@@ -41,7 +41,7 @@ _TRIES: Final = 4
 
 _PLACES: Final = 256
 _FEWEST: Final = 3
-"""Places over a turn, and at least in a stretch between cuts of the lift, its ends among them."""
+"""Places over a turn's phases, and at least between cuts of the lift, the ends among them."""
 
 Quantity = Callable[[CamCurve, Array, Array], Array | Plane]
 """What ``quantity(curve, theta, found)`` tells of cam angles, rad, and lift with derivatives."""
@@ -80,10 +80,12 @@ class Moved(Brief):
     def _places(self) -> tuple[Ints, Array]:
         """Pieces of the lift, and cam angles in them, at knots once for each side."""
         cuts, knots = self.program.cuts, self.program.knots
-        count = max(_FEWEST, _PLACES // (len(cuts) - 1))
-        places = cuts[:-1, None] + np.diff(cuts)[:, None] * np.linspace(0.0, 1.0, count)
-        middle = 0.5 * (cuts[:-1] + cuts[1:])
-        return np.repeat(np.searchsorted(knots, middle) - 1, count), places.ravel()
+        index = np.searchsorted(knots, 0.5 * (cuts[:-1] + cuts[1:])) - 1
+        # all phases have as many, so that one cut up leaves enough to the others
+        share = np.diff(cuts) / np.diff(knots)[index]
+        counts = np.maximum(_FEWEST, (_PLACES // (len(knots) - 1) * share).astype(int))
+        stretches = zip(cuts[:-1], cuts[1:], counts, strict=True)
+        return np.repeat(index, counts), np.concatenate([np.linspace(*one) for one in stretches])
 
     def _states(self, index: Ints, theta: Array) -> list[_State]:
         """Return the state at places as it is, and then moved."""

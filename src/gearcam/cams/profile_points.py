@@ -58,14 +58,25 @@ class ProfilePoints:
     @cached_property
     def sagitta(self) -> Array:
         """Estimated height of the curve over each chord, mm: the larger of those from its ends."""
-        length = np.abs(self.chords)
-        turn = np.angle(self.chords * np.conj(np.roll(self.chords, 1)))
+        length, turn = np.abs(self.chords), self._turns.copy()
         # all of a turn may be in the arc over one chord, but no chord misses more than it may
-        arcs = 0.25 * length * np.maximum(np.abs(turn), np.abs(np.roll(turn, -1)))
+        bent = _bent(turn)
+        arcs = 0.25 * length * np.maximum(bent, np.roll(bent, -1))
         turn[np.abs(turn) >= self.corner] = 0.0
         back = _heights(length[::-1], np.roll(turn[::-1], 1))[::-1]
         likely = np.maximum(_heights(length, turn), back)
         return np.maximum(likely, np.minimum(arcs, self.missed))
+
+    @cached_property
+    def hollow(self) -> Array:
+        """The same below each chord, mm: of one that turns left at both ends what it may miss."""
+        right = np.minimum(self._turns, np.roll(self._turns, -1)) < 0.0
+        return np.where(right, self.sagitta, np.minimum(self.sagitta, self.missed))
+
+    @cached_property
+    def _turns(self) -> Array:
+        """Turn at each point from the chord before, rad."""
+        return np.angle(self.chords * np.conj(np.roll(self.chords, 1)))
 
     @cached_property
     def blocks(self) -> tuple[Ints, Plane, Array]:
@@ -87,6 +98,15 @@ class ProfilePoints:
         middle = 0.5 * (reach[:, 0] + reach[:, -1])
         radius = np.abs(reach - middle[:, None]).max(axis=1)
         return index, middle, radius + 2.0 * self.sagitta[index].max(axis=1)
+
+
+def _bent(turn: Array) -> Array:
+    """Return the largest turns of curves at points, rad.
+
+    Beside one to the other side a turn is what is left of bends to both: as large as that one.
+    """
+    besides = [np.roll(turn, step) for step in (-1, 1)]
+    return np.max([np.abs(turn), *(-np.sign(turn) * one for one in besides)], axis=0)
 
 
 def _heights(length: Array, turn: Array) -> Array:

@@ -263,6 +263,7 @@ class GearPairResult(PairStages):
         if not settings:
             return self
         design = self.design.with_({f"meshing.{key}": value for key, value in settings.items()})
+        _ = self.steps  # made here, once for all studies
         other = type(self)(design, self.tolerances)
         own = {"design": design, "timings": dict(self.timings), "sought": {}}
         vars(other).update(vars(self) | own)
