@@ -215,3 +215,27 @@ def test_dense_points_lie_densely_where_the_curve_is_fast_within_a_chord() -> No
     chord = np.diff(dense.points)[:, None]
     off = np.abs(((seen - dense.points[:-1, None]) * np.conj(chord / abs(chord))).imag)
     assert off.max() <= sampler.tolerance / 32.0
+
+
+COARSE = """
+kind = "cam"
+name = "coarse"
+motion = [
+    { type = "rise", law = "2-3", lift_mm = 0.004, angle_deg = 92.752 },
+    { type = "return", law = "2-3", angle_deg = 267.248 },
+]
+[follower]
+type = "domed"
+dome_radius_mm = 0.3
+[cam]
+prime_radius_mm = 1.0
+[output]
+chord_tolerance_mm = 0.6
+"""
+
+
+def test_a_closed_curve_has_eight_chords_at_least() -> None:
+    result = gearcam.build(gearcam.loads(COARSE))
+    assert 8 <= len(result.profile.vertices) <= 12
+    assert result.profile.chord_error < 0.704 * (1.0 - np.cos(np.pi / 8))
+    assert result.follow(result.profile.vertices).facts["followed.error"] < 0.2

@@ -80,7 +80,7 @@ def test_between_dense_points_are_cubics_where_the_curvature_jumps_too(before: f
     """So are fits measured: a step across the jump would hide the bend in a cubic of its own."""
     tolerance = 1e-3
     curves = Rounded(np.array([-before]))
-    (run,) = Sampler(curves=curves, tolerance=tolerance, closed=False).runs(6, False)
+    (run,) = Sampler(curves=curves, tolerance=tolerance, closed=False).dense(6).runs()
     p, t = as_complex(run.points), as_complex(run.tangents)
     assert np.abs(p).min() < 1e-9
     steps = np.repeat(np.arange(len(p) - 1), 9)

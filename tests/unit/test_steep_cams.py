@@ -159,7 +159,7 @@ def test_the_volume_of_a_steep_swinging_cam_is_as_exact_as_told(
             prime=prime, radius=radius, arm=arm, pivot=pivot,
         )
     )  # fmt: skip
-    runs = made.cam.walls[0].sampler.runs(16 * OVERSAMPLING, reverse=False)
+    runs = made.cam.walls[0].sampler.dense(16 * OVERSAMPLING).runs()
     points, tangents = (
         np.vstack([getattr(run, n) for run in runs]) for n in ("points", "tangents")
     )

@@ -16,9 +16,7 @@ import numpy as np
 from gearcam.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
-
-FEWEST: Final = 8
-"""Fewest points of a profile."""
+from gearcam.numeric.sampling import FEWEST
 
 _CORNER: Final = 0.5
 """Turn between two chords of a plate, rad, that hardly a curve makes: one of its corners."""

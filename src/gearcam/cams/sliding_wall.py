@@ -80,7 +80,7 @@ class SlidingWall(Wall):
 
     def stretch(self, *, reverse: bool = False) -> Stretch:
         """Return the wall as a part of a contour, from right to left, or in `reverse`."""
-        runs = self.sampler.runs(OVERSAMPLING, reverse=reverse)
+        runs = self.sampler.dense(OVERSAMPLING).runs(reverse)
         return runs, (self.line[::-1] if reverse else self.line)[:-1]
 
     @cached_property

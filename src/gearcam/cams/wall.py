@@ -352,7 +352,7 @@ class Wall(PitchMotion):
         _, points, error = sampler.chords
         clockwise = not self.clockwise  # theta draws against the cam's turning
         return Contour(
-            dense=lambda: sampler.runs(OVERSAMPLING, reverse=clockwise),
+            dense=lambda: sampler.dense(OVERSAMPLING).runs(clockwise),
             vertices=as_pairs(points[::-1] if clockwise else points),
             tolerance=self.tolerance,
             chord_error=error,

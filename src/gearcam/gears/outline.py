@@ -161,7 +161,7 @@ class Outline(Brief):
     @cached_property
     def dense_teeth(self) -> tuple[Run, ...]:
         """The dense runs of the teeth, counter-clockwise."""
-        return self.sampler.runs(self.oversampling, reverse=self.toothing.track.clockwise)
+        return self.sampler.dense(self.oversampling).runs(self.toothing.track.clockwise)
 
     @cached_property
     def contour(self) -> Contour:

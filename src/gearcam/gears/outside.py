@@ -62,7 +62,7 @@ def outside(gear: Gear, rim: float) -> Contour:
     sampler = Sampler(curves=curves, tolerance=profile.tolerance)
     _, points, error = sampler.chords
     made = Contour(
-        dense=lambda: sampler.runs(profile.oversampling, reverse=False),
+        dense=lambda: sampler.dense(profile.oversampling).runs(),
         vertices=as_pairs(points),
         tolerance=profile.tolerance,
         chord_error=error,

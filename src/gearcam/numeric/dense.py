@@ -55,8 +55,8 @@ class Dense(Brief):
                 np.append(self.tangents[steps], tangent),
             )
 
-    def runs(self, reverse: bool) -> tuple[Run, ...]:
-        """Return the runs between corners, in `reverse` the other way."""
+    def runs(self, reverse: bool = False) -> tuple[Run, ...]:
+        """Return the smooth runs between corners, in `reverse` the other way."""
         made = []
         for steps, points, tangents in self._stretches():
             joints = np.flatnonzero(self.rank[steps] == 1).tolist()

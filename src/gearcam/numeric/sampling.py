@@ -8,6 +8,7 @@ chord the error is measured, and the chord is halved if it is too large.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
@@ -18,7 +19,6 @@ from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.contour import Run
 from gearcam.numeric.dense import Dense, sags, told_apart
 
 _PROBES = 24
@@ -29,6 +29,9 @@ _CURVES = 1 << 11
 
 MOST = 1e6
 """Chords of a polygon: of many more, the files made of them do not fit into memory."""
+
+FEWEST = 8
+"""Chords of a closed polygon: fewer do not tell its curve, however coarse the tolerance is."""
 
 _EIGHTHS = np.arange(1, 8) / 8.0
 _QUARTERS = _EIGHTHS[1::2]
@@ -247,6 +250,8 @@ class Sampler(Brief):
         counts = np.maximum(
             np.ceil(np.diff(ends) / _FILL).astype(int), 1 if least is None else least
         )
+        if self.closed:
+            counts *= math.ceil(FEWEST / counts.sum())
         first = np.repeat(ends[:-1], counts)
         step = np.repeat(np.diff(ends) / counts, counts)
         number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -375,23 +380,6 @@ class Sampler(Brief):
         j, rank = j[kept], rank[kept]
         ends = self._left_ends(j[rank == 0][1:])
         return Dense(j, points[kept], tangents[kept], rank, ends)
-
-    def runs(self, oversampling: int, reverse: bool) -> tuple[Run, ...]:
-        """Return the runs between corners through dense points.
-
-        Parameters
-        ----------
-        oversampling : int
-            Points per chord of the polygon.
-        reverse : bool
-            Whether the curves run clockwise and the runs are to be turned round.
-
-        Returns
-        -------
-        tuple of Run
-            Counter-clockwise.
-        """
-        return self.dense(oversampling).runs(reverse)
 
     def _left_ends(self, j: Array) -> tuple[Plane, Plane]:
         """Points and tangents at the ends of the curves that end at corners."""
