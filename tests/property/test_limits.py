@@ -146,5 +146,5 @@ def test_nothing_jumps_but_what_is_told(name: str, steps: int) -> None:
         for one, other in zip(before.outlines, after.outlines, strict=True):
             assert shapely.hausdorff_distance(one, other) <= allowed + 2.0 * FINE
         for one, other in zip(before.numbers, after.numbers, strict=True):
-            assert abs(other - one) <= walk.pace / steps
+            assert abs(other - one) <= walk.pace / (steps - 1)
     assert tuple(came) == walk.changes
