@@ -133,7 +133,7 @@ def test_a_wrong_setting_is_refused(
     [
         (["--center", "500"], "do not mesh"),
         (["--teeth", "12"], "take more steps or another range"),
-        (["--overclosure", "1e-9"], "at least"),
+        (["--overclosure", "1e-9"], "is enough"),
     ],
 )
 def test_an_impossible_setting_says_what_is_possible(

@@ -38,7 +38,7 @@ WATCHED = {
     "gearcam.laws.program": ("make_program",),
     "gearcam.cams.measures": ("range_of", "undercut"),
     "gearcam.cams.wall": ("Wall.contour",),
-    "gearcam.numeric.sampling": ("Sampler.chords", "Sampler.runs"),
+    "gearcam.numeric.sampling": ("Sampler.chords", "Sampler.dense"),
     "gearcam.findings": ("run_checks",),
     "gearcam.parts.make": ("make_part",),
     "gearcam.parts.tools": ("tool_limits",),
@@ -183,7 +183,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
     ("ellipse", build): {
         **PAIR, **BOTH_SIDES, **CHARTED, **SUMMARY,
         # the page shows solids with coarser outlines of the same centrodes
-        "build_outline": 4, "Sampler.chords": 4, "make_part": 4, "Sampler.runs": 4, "solid": 4,
+        "build_outline": 4, "Sampler.chords": 4, "make_part": 4, "Sampler.dense": 4, "solid": 4,
         # of teeth, and of parts
         "run_checks": 2,
         "tool_limits": 2, "wheel_drawing": 2, "pair_drawing": 1, "wheel_sheet": 2, "pair_sheet": 1,
@@ -215,7 +215,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
         # the page shows the solid with a coarser profile; the pitch curve is drawn too
         "Wall.contour": 2, "undercut": 2, "make_part": 2, "solid": 2, "Sampler.chords": 3,
         # and the dense points of the way of a cutter
-        "Sampler.runs": 3,
+        "Sampler.dense": 3,
         "tool_limits": 1, "wheel_sheet": 1, "scene_data": 1, "view_page": 1,
         # as it is cut, and with its follower
         "cam_drawing": 2,
@@ -228,7 +228,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
         **WALL, **RANGES, **SUMMARY, "run_checks": 1, "Sampler.chords": 1,
     },
     ("plate_cam_offset_roller", view): {
-        **WALL, **RANGES, "run_checks": 2, "make_part": 1, "tool_limits": 1, "Sampler.runs": 1,
+        **WALL, **RANGES, "run_checks": 2, "make_part": 1, "tool_limits": 1, "Sampler.dense": 1,
         "Sampler.chords": 2, "cam_drawing": 1, "scene_data": 1,
     },
     ("groove_cam", check): {
