@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import gearcam.meshing.study as study_room
+from gearcam import build, loads
 from gearcam.errors import InfeasibleError
 from gearcam.findings import run_checks
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
@@ -240,3 +241,21 @@ def test_an_overclosure_too_small_to_be_shown_is_refused_with_one_that_is_not(
     assert mount(made.gears, MeshingSpec(overclosure=least)).penetration > 0.0
     with pytest.raises(InfeasibleError):
         mount(made.gears, MeshingSpec(overclosure=0.97 * least))
+
+
+SHARP = """
+kind = "gear-pair"
+name = "sharp"
+law = { type = "rounded-polygon", corners = 3, corner_radius = 0.4 }
+pair = { module_mm = 0.4, teeth = [46, 46] }
+rack = { tip_radius = 0.0001 }
+"""
+
+
+def test_middles_of_lands_are_halfway_however_many_vertices_their_fillets_have() -> None:
+    """At the corners of the polygon a root once ended in a fillet, and its half-teeth crossed."""
+    gears = build(loads(SHARP)).gears
+    turning = mount(gears, MeshingSpec()).turning
+    for wheel in (turning.driver, turning.driven):
+        assert wheel.sound
+    assert study(gears, MeshingSpec(steps=3)).complete

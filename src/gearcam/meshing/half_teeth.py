@@ -135,8 +135,7 @@ def half_teeth(outline: Outline) -> HalfTeeth:
         space before tooth 1 (wheel 2), of an open wheel from its end.
     """
     toothing, (_, points, chord_error) = outline.toothing, outline.sampler.chords
-    low, high, tip_first = _lands(outline)
-    middles = 0.5 * (points[low % len(points)] + points[high % len(points)])
+    middles, low, high, tip_first = _middles(outline)
     inner = _inner(outline, len(middles))
     parts: list[Plane] = []
     for k in range(len(middles) - 1):
@@ -171,47 +170,66 @@ def _teeth(toothing: Toothing) -> Ints:
     return teeth[beyond:-beyond]
 
 
-def _lands(outline: Outline) -> tuple[Ints, Ints, bool]:
-    """Vertices before and after the middles of lands, in order, and whether a tip is the first.
+def _middles(outline: Outline) -> tuple[Plane, Ints, Ints, bool]:
+    """Middles of lands, mm, vertices before and after them, and whether a tip is the first.
 
     From the first tooth's tip to the same one again; of an open wheel from end to end. Vertices
     are counted on where the outline closes. A middle may be a vertex: it is both then.
     """
-    size = len(outline.sampler.chords[1])
+    j, points, _ = outline.sampler.chords
+    lands, tip_first = _lands(outline, j[-1])
+    size = len(j) - 1
+    ring = np.append(points, points[:1])[: size + 1]
+    way = np.append(0.0, np.cumsum(np.abs(np.diff(ring))))
+    # the first tip of a closed wheel begins before the outline closes
+    j, way = (np.concatenate([one[:-1] - one[-1], one]) for one in (j, way))
+    ring = np.concatenate([ring[:-1], ring])
+    chord = np.minimum(np.searchsorted(j, lands, side="right"), len(j) - 1) - 1
+    ends = outline.sampler.at(np.where(lands < 0.0, lands + j[-1], lands).ravel())[0]
+    middle = (way[chord] + np.abs(ends.reshape(lands.shape) - ring[chord])).mean(axis=1)
+    middle = np.minimum(middle, way[-1])
+    low = np.searchsorted(way, middle, side="right") - 1
+    beside = middle - way[low]
+    high = low + (beside > 0.0)
+    step = ring[high] - ring[low]
+    middles = ring[low] + beside * step / np.maximum(np.abs(step), np.finfo(float).tiny)
+    return middles, low - size, high - size, tip_first
+
+
+def _lands(outline: Outline, whole: float) -> tuple[Array, bool]:
+    """J at the ends of lands, (n, 2), `whole` at the end; and whether a tip is the first."""
     (front, front_end), (back, back_end) = _flanks(outline)
     roots = np.stack([front_end, back], axis=1)
     tips = np.stack([back_end[:-1], front[1:]], axis=1)
     if outline.toothing.closed:
-        tips = np.concatenate([[[back_end[-1] - size, 0]], tips, [[back_end[-1], size]]])
+        tips = np.concatenate([[[back_end[-1] - whole, 0.0]], tips, [[back_end[-1], whole]]])
     elif outline.toothing.wheel == 1:
-        roots[0], roots[-1] = 0, size - 1
+        roots[0], roots[-1] = 0.0, whole
     else:
-        tips = np.concatenate([[[0, 0]], tips, [[size - 1, size - 1]]])
+        tips = np.concatenate([[[0.0, 0.0]], tips, [[whole, whole]]])
     tip_first = len(tips) > len(roots)
-    ends = np.empty(len(tips) + len(roots), dtype=np.int64)
-    ends[int(not tip_first) :: 2], ends[int(tip_first) :: 2] = tips.sum(axis=1), roots.sum(axis=1)
-    return ends // 2, (ends + 1) // 2, tip_first
+    lands = np.empty((len(tips) + len(roots), 2))
+    lands[int(not tip_first) :: 2], lands[int(tip_first) :: 2] = tips, roots
+    return lands, tip_first
 
 
-def _flanks(outline: Outline) -> Ints:
-    """Vertices at which the front of each space begins and ends, and the back, (2, 2, spaces).
+def _flanks(outline: Outline) -> Array:
+    """J at which the front of each space begins and ends, and the back, (2, 2, spaces).
 
     A space begins with the + flank of its tooth and ends with the - flank of the next one. At the
     ends of an open driver there is half a space.
     """
-    rows, toothing = outline.rows, outline.toothing
-    vertices = outline.sampler.chords[0]
-    row = outline.sampler.curve_of(vertices[:-1] if toothing.closed else vertices)
+    rows, toothing, joints = outline.rows, outline.toothing, outline.sampler.joints
     flank = np.flatnonzero(rows.kind == Curve.FLANK)
     plus = rows.sigma[flank] > 0.0
     count = len(toothing.numbers) - (0 if toothing.closed else 1)
     space = (rows.tooth[flank] - toothing.numbers[0] - np.where(plus, 0, 1)) % count
-    ends = np.zeros((2, 2, count), dtype=np.int64)
+    ends = np.zeros((2, 2, count))
     for side, mine in enumerate((plus, ~plus)):
         first, last = np.full(count, len(rows.kind)), np.full(count, -1)
         np.minimum.at(first, space[mine], flank[mine])
         np.maximum.at(last, space[mine], flank[mine])
-        ends[side] = np.searchsorted(row, first), np.searchsorted(row, last + 1)
+        ends[side] = joints[first], joints[last + 1]
     return ends
 
 

@@ -187,10 +187,15 @@ class Sampler(Brief):
         """Return points and forward unit tangents at places given by their J (after a corner)."""
         return self._along(*self._places(j))
 
+    @property
+    def joints(self) -> Array:
+        """J at which each curve begins, and the end."""
+        return self.density[::_PROBES]
+
     @cached_property
     def corners(self) -> Array:
         """J at the corners; the first is the start."""
-        return self.density[:-1][::_PROBES][self.curves.corner]
+        return self.joints[:-1][self.curves.corner]
 
     @cached_property
     def chords(self) -> tuple[Array, Plane, float]:
@@ -327,7 +332,7 @@ class Sampler(Brief):
 
     def _rough(self, vertices: Array) -> Mask:
         """Whether the curvature may jump inside chords: at ends of curves, and at breaks."""
-        jumps = np.append(self.density[::_PROBES], self._breaks)
+        jumps = np.append(self.joints, self._breaks)
         chord = np.searchsorted(vertices, jumps, side="right") - 1
         inside = (chord < len(vertices) - 1) & (jumps > vertices[chord])
         rough = np.zeros(len(vertices) - 1, dtype=bool)
@@ -360,7 +365,7 @@ class Sampler(Brief):
         vertices = self.chords[0]
         steps = np.arange(oversampling) / oversampling
         j = (vertices[:-1, None] + np.diff(vertices)[:, None] * steps).ravel()
-        smooth = self.density[:-1:_PROBES][~self.curves.corner]
+        smooth = self.joints[:-1][~self.curves.corner]
         fixed = np.append(self.corners, self.least)
         groups = (fixed, smooth, self._breaks, j)
         rank = np.repeat(range(len(groups)), [len(group) for group in groups])
@@ -383,5 +388,5 @@ class Sampler(Brief):
 
     def _left_ends(self, j: Array) -> tuple[Plane, Plane]:
         """Points and tangents at the ends of the curves that end at corners."""
-        index = np.searchsorted(self.density[::_PROBES], j) - 1
+        index = np.searchsorted(self.joints, j) - 1
         return self.curves.at(index, self.curves.end[index])
