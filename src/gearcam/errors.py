@@ -98,6 +98,10 @@ class DesignError(GearcamError, ValueError):
         return type(self), (self.problems,)
 
 
+ABOVE = 1.01
+"""What a nearest value is told times its limit: told in three digits, it is not below."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Way:
     """A change of a design that may lift a refusal; nobody knows before it is built.

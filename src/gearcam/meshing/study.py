@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.errors import ABOVE, InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
@@ -39,9 +39,6 @@ SHARE = 1.0 / 200.0
 
 _MOST = 1e7
 """Chords of a studied outline: of more, its half-teeth do not fit into memory."""
-
-_ABOVE = 1.01
-"""What a nearest value is told times its limit: told in three digits, it is not below."""
 
 BLOCK = 120
 """Phases that are studied at once: few enough for progress, many enough to be fast."""
@@ -270,7 +267,7 @@ def _outlines(
         value=float(np.degrees(spec.overclosure)),
         limit=least,
         unit="deg",
-        nearest=f"{shown(_ABOVE * least, 3)} deg is enough",
+        nearest=f"{shown(ABOVE * least, 3)} deg is enough",
     )
 
 

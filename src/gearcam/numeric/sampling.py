@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.errors import ABOVE, InfeasibleError, Way
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.dense import Dense, sags, told_apart
@@ -241,7 +241,7 @@ class Sampler(Brief):
                 limit=limit,
                 unit="mm",
                 nearest=f"at the limit there are {self.most:.0f}",
-                ways=(Way(near={key: 1.01 * limit}),),
+                ways=(Way(near={key: ABOVE * limit}),),
             )
 
     def _spread(

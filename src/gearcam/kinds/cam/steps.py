@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.errors import ABOVE, InfeasibleError, Way
 from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from gearcam.cams.mechanism import Driver
     from gearcam.kinds.cam.design import CamOutputSpec
 
-WAY_STEP: Final = 1.0
+_WAY_STEP: Final = 1.0
 """Step of a translating cam's way where the design gives none, mm."""
 
 WHOLE: Final = 1e-9
@@ -26,9 +26,6 @@ one may lie beyond it: rounding."""
 
 _MOST: Final = 1e6
 """Steps of a table."""
-
-_ABOVE: Final = 1.01
-"""What a nearest step is told times its limit: told in few digits, it is not below."""
 
 
 def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
@@ -53,7 +50,7 @@ def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
         If there are more than a million.
     """
     turn = 2.0 * math.pi
-    step = (output.way_step or WAY_STEP) / driver.rate if slides else output.motion_step
+    step = (output.way_step or _WAY_STEP) / driver.rate if slides else output.motion_step
     if step < turn / _MOST:
         key = f"output.{'way_step' if slides else 'motion_step'}_{driver.unit}"
         least = turn / _MOST * driver.scale
@@ -64,7 +61,7 @@ def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
             limit=least,
             unit=driver.unit,
             nearest="the limit is the smallest step",
-            ways=(Way(near={key: _ABOVE * least}),),
+            ways=(Way(near={key: ABOVE * least}),),
         )
     made = step * np.arange(math.floor(turn / step + WHOLE) + 1.0)
     if slides:  # whose end no beginning repeats
