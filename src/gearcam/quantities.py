@@ -15,6 +15,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
+from gearcam.numerals import shown
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -37,15 +39,20 @@ REQUIRED: Final = dataclasses.MISSING
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of value: its suffix in files, its factor to the inner unit, its unit's name."""
+    """A kind of value: its suffix in files, its factor to the inner unit, its unit's name.
+
+    What has to be above 0 is not below `least`, in the file's unit, so that powers of it are
+    numbers too.
+    """
 
     suffix: str
     factor: float
     unit: str
+    least: float = 0.0
 
 
-ANGLE: Final = Quantity("_deg", math.pi / 180.0, "deg")
-LENGTH: Final = Quantity("_mm", 1.0, "mm")
+ANGLE: Final = Quantity("_deg", math.pi / 180.0, "deg", least=1e-6)
+LENGTH: Final = Quantity("_mm", 1.0, "mm", least=1e-15)
 NUMBER: Final = Quantity("", 1.0, "")
 COUNT: Final = Quantity("", 1.0, "")
 TEXT: Final = Quantity("", 1.0, "")
@@ -54,6 +61,13 @@ LENGTH_PER_RAD: Final = Quantity("_mm_per_rad", 1.0, "mm/rad")
 LENGTH_PER_RAD2: Final = Quantity("_mm_per_rad2", 1.0, "mm/rad2")
 ANGLE_PER_RAD: Final = Quantity("_deg_per_rad", math.pi / 180.0, "deg/rad")
 ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
+
+
+NARROWEST: Final = ANGLE.least * ANGLE.factor
+"""Least width of a phase, rad; a narrower one cannot be told from a jump."""
+
+RISING: Final = f"at least {shown(ANGLE.least)} deg more than the knot before"
+"""What is allowed of a knot."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +111,11 @@ class Param:
     function: bool = False
     angular: Param | None = None
     sliding: Param | None = None
+
+    @property
+    def least(self) -> float:
+        """What a value is not below where it is above 0; 0 where it may be 0 too."""
+        return self.quantity.least if self.gt == 0.0 else 0.0
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""

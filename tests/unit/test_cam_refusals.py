@@ -269,7 +269,7 @@ def test_a_base_radius_is_the_prime_radius_less_the_roller() -> None:
 @pytest.mark.parametrize(
     ("name", "key", "step"),
     [
-        ("tappet", "output.motion_step_deg", 1e-300),
+        ("tappet", "output.motion_step_deg", 1e-6),
         ("translating_cam", "output.way_step_mm", 1e-5),
     ],
 )

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import trace
+from gearcam.numeric import sampling
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.hermite import on_cubics
 from gearcam.numeric.sampling import Sampler
@@ -87,3 +89,31 @@ def test_between_dense_points_are_cubics_where_the_curvature_jumps_too(before: f
     places = on_cubics(p, t, steps, np.tile(np.arange(1, 10) / 10, len(p) - 1))[0]
     off = np.where(places.real < 0, np.abs(places.imag), np.abs(np.abs(places - 1j) - 1))
     assert off.max() < 1e-3 * tolerance
+
+
+def test_chords_that_measuring_asks_for_are_counted_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the density promises is less than what the jump takes."""
+    monkeypatch.setattr(sampling, "_MEASURED", 1.0)
+    curves = Rounded(np.array([-3.3]))
+    every = Sampler(curves=curves, tolerance=1e-5, closed=False)
+    count = len(every.chords[0]) - 1
+    assert every.least < 93 < count
+    with pytest.raises(InfeasibleError, match="chords") as refused:
+        _ = Sampler(curves=curves, tolerance=1e-5, closed=False, most=93).chords
+    assert refused.value.where == "output.chord_tolerance_mm"
+
+
+class Point(Rounded):
+    """A curve that stays in a place: rounding makes the narrowest ones such."""
+
+    def at(self, index: np.ndarray, parameter: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        del index
+        return np.ones(len(parameter), dtype=complex), np.ones(len(parameter), dtype=complex)
+
+
+@pytest.mark.filterwarnings("error")
+def test_chords_of_no_length_have_an_error_too() -> None:
+    made = Sampler(curves=Point(np.array([-2.0])), tolerance=1e-3)
+    _, points, error = made.chords
+    assert (points == 1.0).all()
+    assert error == 0.0

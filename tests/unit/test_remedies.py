@@ -343,3 +343,16 @@ def test_flanks_alone_bound_the_contact_ratio_and_refuse_what_cannot_drive(folde
     assert caught.value.value < 1.0 == caught.value.limit
     with pytest.raises(InfeasibleError, match=r"allow a contact ratio of at most 1\.44$"):
         _ = job_of(pair(tight, [46, 46]), folder).pair
+
+
+def test_a_larger_cam_is_no_remedy_for_chords_that_are_too_fine(tmp_path: Path) -> None:
+    """Whether its profile can be drawn is asked where any file is, not when it is written."""
+    follower = {"type": "domed", "dome_radius_mm": 500.0}
+    document = cam(follower, {"base_radius_mm": 2000.0}, 400)
+    document["output"]["chord_tolerance_mm"] = 1e-12
+    made = job_of(document, tmp_path)
+    with pytest.raises(InfeasibleError, match="chords") as refused:
+        made.write(tmp_path / "out")
+    found = gearcam.remedies(made, refused.value, patience=20.0).found
+    assert [set(one.changes) for one in found] == [{"output.chord_tolerance_mm"}]
+    gearcam.build(found[0].design).write(tmp_path / "out")

@@ -19,7 +19,7 @@ from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.jets import Jet, acos, asin, atan, cos, sin, sqrt
+from gearcam.numeric.jets import Jet, asin, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import extremes
 
 _TURN = 2.0 * math.pi
@@ -72,8 +72,14 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
         seen = 2.0 * atan(y / (sqrt(square) + across))
         if m.flat:
             return seen + asin(m.face_offset / sqrt(square)) - m.start
-        reach = (square + (m.arm**2 - m.radius**2)) / (2.0 * m.arm * sqrt(square))
-        return seen + side * acos(reach) - m.start
+        # by two halves too: beside the arm a round follower may be tiny
+        away, more = sqrt(square) - m.arm, sqrt(square) + m.arm
+        inside = (m.radius - away) * (m.radius + away)
+        return (
+            seen
+            + side * 2.0 * atan(sqrt(inside / ((more - m.radius) * (more + m.radius))))
+            - m.start
+        )
 
     return swinging if m.oscillating else sliding
 

@@ -310,6 +310,9 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
         return Fault(path, f"{show(value)} is not {_a_kind(entry)}", value, rule, hint)
     if isinstance(value, float) and not math.isfinite(value):
         return Fault(path, f"{show(value)} is not a finite number", value, rule)
+    if isinstance(value, float) and 0.0 < value < entry.param.least:
+        least = f"{shown(entry.param.least)} {entry.param.quantity.unit}"
+        return Fault(path, f"{show(value)} is too near to 0", value, f"{rule}, at least {least}")
     return Fault(path, f"{show(value)} is out of range", value, rule)
 
 

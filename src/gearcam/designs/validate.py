@@ -101,6 +101,7 @@ def _fits(key: Key, value: Any) -> bool:
     return (
         (math.isfinite(number) or key.base is int)
         and (made.gt is None or number > made.gt)
+        and not 0.0 < number < made.least
         and (made.ge is None or number >= made.ge)
         and (made.lt is None or number < made.lt)
         and (made.le is None or number <= made.le)

@@ -32,6 +32,7 @@ from gearcam.quantities import (
     LENGTH,
     LENGTH_PER_RAD,
     LENGTH_PER_RAD2,
+    NARROWEST,
     Param,
     Quantity,
     param,
@@ -304,6 +305,13 @@ def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     for number, phase in enumerate(phases):
         if phase.angle == "rest":
             yield number, "angle", "no turn is there to be filled", "a length above 0"
+            return
+    ways = [float(phase.angle) for phase in phases]
+    least = sum(ways) * NARROWEST / TURN
+    for number, way in enumerate(ways):
+        if way < least:
+            rule = f"at least {shown(least)} mm of {shown(sum(ways))} mm"
+            yield number, "angle", "the phase cannot be told from a jump", rule
 
 
 def _closure_problems(

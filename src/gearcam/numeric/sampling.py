@@ -27,6 +27,9 @@ _PROBES = 24
 _CURVES = 1 << 11
 """Curves whose density is found at once: the probes of more need not be in memory together."""
 
+_MEASURED = 2.0
+"""Times as many chords as were promised that measuring may ask for."""
+
 MOST = 1e6
 """Chords of a polygon: of many more, the files made of them do not fit into memory."""
 
@@ -200,7 +203,7 @@ class Sampler(Brief):
     @cached_property
     def chords(self) -> tuple[Array, Plane, float]:
         """Vertices of the polygon: their J (start and end), points, and the measured error."""
-        self._demand_few()
+        self._demand_few(self.least)
         made = self._spread(np.append(self.corners, self.least), self.density, self.density)
         for _ in range(_ROUNDS):
             if made.bad <= _FEW:
@@ -208,6 +211,7 @@ class Sampler(Brief):
             # The error that a chord has, not the one that its J promised, says how long it may be.
             steps = np.sqrt(made.errors / self.tolerance) + _RISING
             effort = np.concatenate([[0.0], np.cumsum(steps)])
+            self._demand_few(float(effort[-1]) / _MEASURED)
             at_corners = np.interp(np.append(self.corners, self.least), made.vertices, effort)
             anew = self._spread(at_corners, effort, made.vertices, made.counts)
             if anew.bad >= made.bad:
@@ -218,6 +222,7 @@ class Sampler(Brief):
             bad = errors > MARGIN * self.tolerance
             if not bad.any():
                 break
+            self._demand_few((len(errors) + int(bad.sum())) / _MEASURED)
             middles = 0.5 * (vertices[:-1] + vertices[1:])[bad]
             old = np.arange(len(errors)).repeat(1 + bad)
             new = np.flatnonzero(old[1:] == old[:-1]) + 1
@@ -229,18 +234,18 @@ class Sampler(Brief):
             errors[halves] = self._measure(vertices, points, halves, rough[halves], new)
         return vertices, points[:-1] if self.closed else points, float(errors.max())
 
-    def _demand_few(self) -> None:
-        """Refuse tolerances for which there are too many chords."""
-        if self.least > self.most:
-            limit = self.tolerance * (self.least / self.most) ** 2
+    def _demand_few(self, count: float) -> None:
+        """Refuse tolerances for which there are too many chords: so many."""
+        if count > self.most:
+            limit = self.tolerance * (count / self.most) ** 2
             key = "output.chord_tolerance_mm"
             raise InfeasibleError(
-                f"the curve would take {shown(self.least, 2)} chords",
+                f"the curve would take {shown(count, 2)} chords",
                 where=key,
                 value=self.tolerance,
                 limit=limit,
                 unit="mm",
-                nearest=f"at the limit there are {self.most:.0f}",
+                nearest=f"at the limit there are about {self.most:.0f}",
                 ways=(Way(near={key: ABOVE * limit}),),
             )
 
@@ -282,12 +287,13 @@ class Sampler(Brief):
         """
         chord = np.diff(ends[0])
         rise, fall = chord * np.conj(ends[1, :-1]), ends[1, 1:] * np.conj(chord)
-        rise, fall = rise.imag / rise.real, fall.imag / fall.real
-        length, bend = np.abs(chord), rise + fall
+        length, some = np.abs(chord), chord != 0.0  # of those of no length nothing is known
+        rise, fall = (np.divide(x.imag, x.real, where=some, out=0.0 * length) for x in (rise, fall))
+        bend = rise + fall
         errors = length * np.abs(bend) / 8.0
         # Within a chord the ends' angles differ, along the curve the chords' curvatures.
-        rough = self._rough(vertices) | (np.abs(rise - fall) > _UNEVEN * np.abs(bend))
-        curvature = bend / length
+        rough = self._rough(vertices) | (np.abs(rise - fall) > _UNEVEN * np.abs(bend)) | ~some
+        curvature = np.divide(bend, length, where=some, out=0.0 * length)
         jump = np.abs(np.diff(curvature)) > 2.0 * _UNEVEN * np.abs(curvature[1:])
         unsure = rough | np.append(jump, False) | np.append(False, jump)
         errors[unsure] = self._measure(vertices, ends[0], np.flatnonzero(unsure), rough[unsure])

@@ -14,7 +14,7 @@ from gearcam.errors import InfeasibleError, Way
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Opening
 from gearcam.parts.shapes import Circle
-from gearcam.parts.workpiece import FINE, Workpiece
+from gearcam.parts.workpiece import Workpiece
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -62,7 +62,7 @@ def demand_apart(
     given = {"bolt_circle_mm": blank.bolt_circle} if places is None else places
     from shapely import Polygon
 
-    edges = [opening.shape.points(FINE * work.rim) for opening in found]
+    edges = [work.points(opening.shape) for opening in found]
     regions = [Polygon(edge) for edge in edges]
     for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
         if not solid.contains(region):

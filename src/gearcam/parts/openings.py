@@ -26,7 +26,7 @@ from gearcam.parts.apart import demand_apart
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.parts.workpiece import FINE, Workpiece
+from gearcam.parts.workpiece import Workpiece
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -112,7 +112,7 @@ def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> P
     from shapely import Polygon, intersection_all
 
     regions = [
-        Polygon(edge.points(FINE * work.rim), [hole.points(FINE * work.rim) for hole in at])
+        Polygon(work.points(edge), [work.points(hole) for hole in at])
         for edge, at in zip(edges, [[hole] for hole in inner] or [[]] * len(edges), strict=True)
     ]
     made: Any = intersection_all(regions)

@@ -1,4 +1,4 @@
-"""Bolt holes in the rim of a ring: between its roots and its outside.
+"""The rim of a ring, between its roots and its outside, and bolt holes in it.
 
 Refused: holes that the rim has no room for, with the largest that keep their walls, and with the
 bolt circle that has the most room.
@@ -18,7 +18,9 @@ import numpy as np
 from gearcam.errors import Way
 from gearcam.numerals import rounded_down, shown
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
+from gearcam.parts.body import Edge
 from gearcam.parts.workpiece import FINE, Workpiece
 
 if TYPE_CHECKING:
@@ -29,6 +31,25 @@ _CIRCLES: Final = 400
 
 _SHARE: Final = 0.999
 """Share of a room that a remedy takes: walls are measured between chords."""
+
+
+def is_around(outside: Edge, inner: Contour) -> bool:
+    """Tell whether a ring's outside goes around its inner edge, as both are drawn.
+
+    Parameters
+    ----------
+    outside : Contour or Circle
+        Of the ring.
+    inner : Contour
+        The edge of its teeth.
+
+    Returns
+    -------
+    bool
+    """
+    from shapely import Polygon
+
+    return Polygon(outside.points(inner.tolerance), [inner.vertices]).is_valid
 
 
 def demand_bolts(

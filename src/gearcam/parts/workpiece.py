@@ -6,9 +6,14 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.errors import InfeasibleError
+from gearcam.numeric.arrays import Array
+from gearcam.parts.body import Edge
 
 FINE: Final = 4e-5
 """Sagitta of chords that stand for openings when it is asked what they meet, in rims."""
+
+_GRAIN: Final = 1e-9
+"""The least of it, over how far from the shaft an edge reaches, however thin a rim is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,6 +39,10 @@ class Workpiece:
     travel: float | None = None
     wheel: int | None = None
     within: str = "the outline"
+
+    def points(self, edge: Edge) -> Array:
+        """Return points of an `edge`, (n, 2), mm, that stand for it when it is asked what meets."""
+        return edge.points(max(FINE * self.rim, _GRAIN * edge.reach))
 
     def key(self, name: str) -> str:
         """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.advice import kerf_paths
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
+from gearcam.kinds.cam.design import CAM_FORMATS
 
 if TYPE_CHECKING:
     from gearcam.advice import Search
@@ -18,20 +19,23 @@ _SMALLER: Final = 0.05
 """How far a cam grows and a roller or a lift shrinks in the search, over what is given."""
 
 
-def _paths(result: Any) -> object:
-    return result.form.paths(result, result.design.output.tool_radius)
+_ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
+    "csv": lambda result: result.angles,
+    "tool-path": lambda result: result.form.paths(result, result.design.output.tool_radius),
+    "dxf": kerf_paths,
+    "cut-svg": kerf_paths,
+    "curvature": lambda result: result.files("curvature"),
+}
+"""What refuses some of the files, by their kinds, where the profiles can be drawn."""
 
 
-def _curvature(result: Any) -> object:
-    return result.files("curvature")
+def _demand(kind: str) -> Callable[[Any], object]:
+    """Return what refuses files of a kind for which all profiles are drawn."""
+    return lambda result: (result.profiles, kind in _ALSO and _ALSO[kind](result))
 
 
 FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
-    "csv": lambda result: result.angles,
-    "tool-path": _paths,
-    "dxf": kerf_paths,
-    "cut-svg": kerf_paths,
-    "curvature": _curvature,
+    kind: _demand(kind) for kind in CAM_FORMATS
 }
 """What refuses, by their kinds, files of cams that can be made."""
 

@@ -7,11 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from gearcam.errors import InfeasibleError, Way
 from gearcam.findings import limit_of
 from gearcam.gears.outside import outside
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import RIM
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.numerals import shown
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
@@ -21,13 +23,16 @@ from gearcam.parts.checks import PartsSubject
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Workpiece, solid_of
-from gearcam.parts.rim import demand_bolts
+from gearcam.parts.rim import demand_bolts, is_around
 from gearcam.parts.shapes import Circle
 
 Steps = tuple[tuple[Gear, Gear], ...]
 
 _PLACES = 65
 """Places on each flank at which it is asked whether a cutter gets there."""
+
+_CHORDS = 4
+"""Times its chords' tolerance that a rim is wide, where it is wide enough for them."""
 
 
 def make_parts(steps: Steps, design: GearPairDesign) -> tuple[Part, Part]:
@@ -94,6 +99,9 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
             return {"ring.outer_diameter_mm": 2.0 * radius}
         return {"ring.rim_mm": radius - roots}
 
+    if inner and not all(map(is_around, contours, inner)):
+        tolerance = gear.profile.tolerance
+        raise _crossing_chords(rim, tolerance, larger(roots + _CHORDS * tolerance))
     demand_bolts(blank, solid_of(contours, inner, work), work, wall, larger)
     return make_part(
         gear.name,
@@ -103,6 +111,20 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
         work,
         lambda: _mark(gear, design, rim, around),
         inner=inner,
+    )
+
+
+def _crossing_chords(rim: float, tolerance: float, larger: dict[str, object]) -> InfeasibleError:
+    """Return the refusal of a rim, mm, that is no wider than chords are off."""
+    key = "output.chord_tolerance_mm"
+    return InfeasibleError(
+        f"the rim of the ring, {shown(rim)} mm, is so thin that chords of both its edges meet",
+        where=key,
+        value=tolerance,
+        limit=rim / _CHORDS,
+        unit="mm",
+        nearest="the limit is a quarter of the rim",
+        ways=(Way(near={key: rim / _CHORDS}), Way(near=larger)),
     )
 
 

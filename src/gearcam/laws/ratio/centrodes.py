@@ -128,7 +128,9 @@ class LogSpiral(Brief):
     that its travel gives k.
     """
 
-    ratios: tuple[float, float] = param(NUMBER, gt=0, doc="i21 at the start and at the end")
+    ratios: tuple[float, float] = param(
+        NUMBER, ge=1e-10, le=1e10, doc="i21 at the start and at the end"
+    )
     driven_travel: float = param(ANGLE, gt=0, le=360, doc="how far the driven wheel turns")
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:

@@ -20,7 +20,7 @@ from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equa
 from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
-from gearcam.quantities import ANGLE, NUMBER, TEXT, Row, RowOfSome, Solve, param
+from gearcam.quantities import ANGLE, NARROWEST, NUMBER, RISING, TEXT, Row, RowOfSome, Solve, param
 from gearcam.tolerances import Tolerances
 
 
@@ -63,7 +63,7 @@ class Multispeed(Brief):
             (width, ratio)
             for angle, ratio in zip(self.angles, self.ratios, strict=True)
             for width in (self.transition, angle)
-            if width > 0.0
+            if width >= NARROWEST  # a shorter one is none
         ]
         steps[0] = (0.0, self.ratios[0])  # to which no transition leads
         if self.driven_travel is None:
@@ -99,8 +99,8 @@ class ThreePhasePolynomial(Brief):
         if self.knots[0] != 0.0:
             yield "knots", 0, "the first knot is not 0", "0"
         for index in (1, 2, 3):
-            if not self.knots[index] > self.knots[index - 1]:
-                yield "knots", index, "knots must rise", "more than the knot before"
+            if not self.knots[index] >= self.knots[index - 1] + NARROWEST:
+                yield "knots", index, "knots must rise", RISING
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

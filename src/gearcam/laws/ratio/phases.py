@@ -16,7 +16,7 @@ from gearcam.laws.ratio.arcs import ARCS, Arc
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, NUMBER, TEXT, RowOfSome, Solve, param
+from gearcam.quantities import ANGLE, NARROWEST, NUMBER, RISING, TEXT, RowOfSome, Solve, param
 from gearcam.tolerances import Tolerances
 
 
@@ -55,8 +55,8 @@ class Phases(Brief):
             yield "knots", 0, "the first knot is not 0", "0"
         known = [(k, value) for k, value in enumerate(self.knots) if value != "solve"]
         for (_, before), (index, value) in pairwise(known):
-            if not value > before:
-                yield "knots", index, "knots must rise", "more than the knot before"
+            if not value >= before + NARROWEST:
+                yield "knots", index, "knots must rise", RISING
         open_places = [("knots", k) for k, value in enumerate(self.knots) if value == "solve"]
         open_places += [("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"]
         if self.driven_travel is None:

@@ -1,0 +1,34 @@
+"""The lift of a follower that rests on a point of the cam, against fifty digits."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+
+from gearcam.cams.lost import resting
+from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.numeric.jets import Jet
+
+
+@pytest.mark.parametrize("radius", [5.0, 1e-3, 1e-8])
+def test_an_arm_with_a_tiny_dome_rests_where_its_triangle_says(radius: float) -> None:
+    """By the cosine of the angle at the pivot a dome of 1e-8 of the arm would be lost."""
+    follower = FollowerSpec(
+        type="domed", motion="oscillating", dome_radius=radius, arm=60.0, pivot_distance=80.0
+    )
+    mechanism = make_mechanism(follower, CamSpec(base_radius=40.0))
+    # a point the dome touches from above, 0.4 radii off the line of the arm's end
+    reach = 60.0 + 0.6 * radius
+    point = complex(80.0 - reach * math.cos(0.3), reach * math.sin(0.3))
+    lift = resting(mechanism, point)(Jet.variable(0.0, 0)).c[0]
+    with mpmath.workdps(50):
+        away = mpmath.sqrt(mpmath.mpf(80.0 - point.real) ** 2 + mpmath.mpf(point.imag) ** 2)
+        r, arm = mpmath.mpf(mechanism.radius), mpmath.mpf(mechanism.arm)
+        inside = mpmath.acos((away**2 + arm**2 - r**2) / (2 * arm * away))
+        seen = mpmath.atan2(mpmath.mpf(point.imag), mpmath.mpf(80.0 - point.real))
+        exact = seen + inside - mpmath.mpf(mechanism.start)
+        # what the point's own rounding does to it, where the dome is nearly passed by
+        assert abs(lift - float(exact)) < 1e-15
