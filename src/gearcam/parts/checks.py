@@ -96,20 +96,28 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
         edges.append((circle, "hub's edge"))
     for number, (opening, (ring, radius)) in enumerate(zip(part.openings, rings, strict=True)):
         for (other, more), name in zip(rings[:number], part.openings[:number], strict=True):
-            wall = float(ring.distance(other)) - radius - more
+            wall = _apart(ring, other) - radius - more
             yield max(wall, 0.0), f"{opening.name} and the {name.name}"
         for edge, what in edges:
-            yield max(float(ring.distance(edge)) - radius, 0.0), f"{opening.name} and the {what}"
+            yield max(_apart(ring, edge) - radius, 0.0), f"{opening.name} and the {what}"
     for recess in part.recesses:
         rim = LinearRing(recess.edge.points(part.tolerance))
-        yield float(rim.distance(edges[0][0])), "groove and the outline"
+        yield _apart(rim, edges[0][0]), "groove and the outline"
         floor = recess.low if recess.front else part.width - recess.high
         yield floor, "groove's floor and the other face"
         islands = [LinearRing(one.shape.points(part.tolerance)) for one in recess.openings] or [rim]
         for opening, (ring, radius) in zip(part.openings, rings, strict=True):
             for island in islands:
-                wall = float(ring.distance(island)) - radius
+                wall = _apart(ring, island) - radius
                 yield max(wall, 0.0), f"{opening.name} and the groove"
+
+
+def _apart(one: Any, other: Any) -> float:
+    """Return the distance of two edges, or of points, mm; that of long ones by an index."""
+    from shapely import length, prepare, shortest_line
+
+    prepare(one)
+    return float(length(shortest_line(one, other)))
 
 
 @check("wide-kerf", kind=KIND, unit="mm")

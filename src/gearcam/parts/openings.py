@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
 
+_THIN: Final = 1e-6
+"""The thinnest rim that makes the search finer, over how far the wheel reaches across."""
 
 _RIMS: Final = 32
 """Chords of a quarter of a circle around the outline's corners."""
@@ -240,25 +242,26 @@ def _lightening(
     web = blank.web if blank.web is not None else rim
     count = blank.lightening_holes
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)
+    far = 2.0 * float(np.abs(solid.bounds).max())
+    fine = _SEARCH * max(rim, _THIN * far)
     outside = 1.0 / math.cos(math.pi / (4 * _QUARTER))  # chords around the arcs, not inside
     taken = [Point(0.0, 0.0).buffer((core + web) * outside, quad_segs=_QUARTER)]
     taken += [
-        Polygon(other.shape.points(_SEARCH * rim)).buffer(web * outside, quad_segs=_QUARTER)
+        Polygon(other.shape.points(fine)).buffer(web * outside, quad_segs=_QUARTER)
         for other in others
         if other.kind != "BORE"
     ]
     free: Any = solid.buffer(-rim, quad_segs=_RIMS).difference(union_all(taken))
-    far = 2.0 * float(np.abs(solid.bounds).max())
     for number in range(count):
         middle = 2.0 * math.pi * (number + 0.5) / count
         room = free if count == 1 else free.intersection(_sector(middle, math.pi / count, far, web))
         size, center = 0.0, None
         for piece in getattr(room, "geoms", (room,)):
             if not piece.is_empty and piece.geom_type == "Polygon":
-                spoke = maximum_inscribed_circle(piece, tolerance=_SEARCH * rim)
+                spoke = maximum_inscribed_circle(piece, tolerance=fine)
                 if spoke.length > size:
                     size, center = float(spoke.length), np.array(spoke.coords[0])
-        size -= _SEARCH * rim
+        size -= fine
         if center is None or size <= 0.0:
             raise _no_lightening(number + 1, solid, core, rim, work)
         name = f"lightening hole {number + 1}"
