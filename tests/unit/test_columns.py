@@ -115,7 +115,7 @@ def test_rows_are_found_wherever_their_parameters_stand(tmp_path: Path) -> None:
 
 
 def test_a_million_rows_are_refused_before_they_are_taken_apart(tmp_path: Path) -> None:
-    """Its lines take 38 times the memory of the text, lists of their cells 55 times as much more."""
+    """Its lines take 38 times the memory of the text, lists of their cells 55 times more."""
     text = "phi1_deg,ratio\n" + "1,2\n" * 1_000_000
     many = written(tmp_path, text)
     tracemalloc.start()
