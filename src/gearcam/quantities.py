@@ -15,8 +15,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from gearcam.numerals import shown
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -65,9 +63,6 @@ ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
 
 NARROWEST: Final = ANGLE.least * ANGLE.factor
 """Least width of a phase, rad; a narrower one cannot be told from a jump."""
-
-RISING: Final = f"at least {shown(ANGLE.least)} deg more than the knot before"
-"""What is allowed of a knot."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ def test_an_arm_with_a_tiny_dome_rests_where_its_triangle_says(radius: float) ->
         type="domed", motion="oscillating", dome_radius=radius, arm=60.0, pivot_distance=80.0
     )
     mechanism = make_mechanism(follower, CamSpec(base_radius=40.0))
-    # a point the dome touches from above, 0.4 radii off the line of the arm's end
+    # a point that the dome reaches: 0.6 of its radius beyond the arm's end, seen from the pivot
     reach = 60.0 + 0.6 * radius
     point = complex(80.0 - reach * math.cos(0.3), reach * math.sin(0.3))
     lift = resting(mechanism, point)(Jet.variable(0.0, 0)).c[0]
@@ -30,5 +30,4 @@ def test_an_arm_with_a_tiny_dome_rests_where_its_triangle_says(radius: float) ->
         inside = mpmath.acos((away**2 + arm**2 - r**2) / (2 * arm * away))
         seen = mpmath.atan2(mpmath.mpf(point.imag), mpmath.mpf(80.0 - point.real))
         exact = seen + inside - mpmath.mpf(mechanism.start)
-        # what the point's own rounding does to it, where the dome is nearly passed by
         assert abs(lift - float(exact)) < 1e-15

@@ -35,6 +35,16 @@ def test_an_open_program_ends_where_its_way_does() -> None:
     assert [one[:2] for one in told] == [(0, "angle")]
 
 
+def test_every_way_that_is_wrong_is_told() -> None:
+    angles = ("rest", 20.0, 1e-8, "rest", 1e-7)
+    law = RISES["constant-velocity"].parameters()
+    phases = [RisePhase(angle=angle, law=law, lift=1.0) for angle in angles]
+    told = list(program_problems(phases, oscillating=False, closed=False))
+    jump, rest = "the phase cannot be told from a jump", "no turn is there to be filled"
+    assert [(number, words) for number, _, words, _ in told] == [(0, rest), (3, rest), (2, jump)]
+    assert told[-1][-1] == "at least 5.55556e-08 mm of 20 mm"
+
+
 def test_an_open_program_begins_at_rest_before_a_segment() -> None:
     end = ReturnPhase(angle=1.0, law=RISES["constant-velocity"].parameters())
     made = make_program([SegmentPhase(angle=1.0, to=5.0), end], DEFAULT, closed=False)

@@ -74,12 +74,9 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
             return seen + asin(m.face_offset / sqrt(square)) - m.start
         # by two halves too: beside the arm a round follower may be tiny
         away, more = sqrt(square) - m.arm, sqrt(square) + m.arm
-        inside = (m.radius - away) * (m.radius + away)
-        return (
-            seen
-            + side * 2.0 * atan(sqrt(inside / ((more - m.radius) * (more + m.radius))))
-            - m.start
-        )
+        within = (m.radius - away) * (m.radius + away)
+        beyond = (more - m.radius) * (more + m.radius)
+        return seen + side * 2.0 * atan(sqrt(within / beyond)) - m.start
 
     return swinging if m.oscillating else sliding
 

@@ -302,15 +302,15 @@ def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
 
 
 def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
-    for number, phase in enumerate(phases):
-        if phase.angle == "rest":
+    ways = {k: phase.angle for k, phase in enumerate(phases) if phase.angle != "rest"}
+    for number in range(len(phases)):
+        if number not in ways:
             yield number, "angle", "no turn is there to be filled", "a length above 0"
-            return
-    ways = [float(phase.angle) for phase in phases]
-    least = sum(ways) * NARROWEST / TURN
-    for number, way in enumerate(ways):
+    whole = sum(ways.values())
+    least = whole * NARROWEST / TURN
+    for number, way in ways.items():
         if way < least:
-            rule = f"at least {shown(least)} mm of {shown(sum(ways))} mm"
+            rule = f"at least {shown(least)} mm of {shown(whole)} mm"
             yield number, "angle", "the phase cannot be told from a jump", rule
 
 

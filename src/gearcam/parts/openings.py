@@ -26,7 +26,7 @@ from gearcam.parts.apart import demand_apart
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.parts.workpiece import Workpiece
+from gearcam.parts.workpiece import GRAIN, Workpiece
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -34,9 +34,6 @@ if TYPE_CHECKING:
 
 _SEARCH: Final = 1e-3
 """How exactly the largest circle is found, in rims; the hole is made smaller by it."""
-
-_THIN: Final = 1e-6
-"""The thinnest rim that makes the search finer, over how far the wheel reaches across."""
 
 _RIMS: Final = 32
 """Chords of a quarter of a circle around the outline's corners."""
@@ -243,7 +240,7 @@ def _lightening(
     count = blank.lightening_holes
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)
     far = 2.0 * float(np.abs(solid.bounds).max())
-    fine = _SEARCH * max(rim, _THIN * far)
+    fine = max(_SEARCH * rim, GRAIN * far)
     outside = 1.0 / math.cos(math.pi / (4 * _QUARTER))  # chords around the arcs, not inside
     taken = [Point(0.0, 0.0).buffer((core + web) * outside, quad_segs=_QUARTER)]
     taken += [

@@ -12,8 +12,8 @@ from gearcam.parts.body import Edge
 FINE: Final = 4e-5
 """Sagitta of chords that stand for openings when it is asked what they meet, in rims."""
 
-_GRAIN: Final = 1e-9
-"""The least of it, over how far from the shaft an edge reaches, however thin a rim is."""
+GRAIN: Final = 1e-9
+"""The least of it, over how far an edge reaches, however thin a rim is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,7 @@ class Workpiece:
 
     def points(self, edge: Edge) -> Array:
         """Return points of an `edge`, (n, 2), mm, that stand for it when it is asked what meets."""
-        return edge.points(max(FINE * self.rim, _GRAIN * edge.reach))
+        return edge.points(max(FINE * self.rim, GRAIN * edge.reach))
 
     def key(self, name: str) -> str:
         """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""

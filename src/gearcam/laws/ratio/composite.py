@@ -15,12 +15,12 @@ from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.arcs import ARCS, SMOOTH
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.phases import arcs_law, one_lobe
+from gearcam.laws.ratio.phases import arcs_law, knot_problems, one_lobe
 from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
-from gearcam.quantities import ANGLE, NARROWEST, NUMBER, RISING, TEXT, Row, RowOfSome, Solve, param
+from gearcam.quantities import ANGLE, NARROWEST, NUMBER, TEXT, Row, RowOfSome, Solve, param
 from gearcam.tolerances import Tolerances
 
 
@@ -96,11 +96,7 @@ class ThreePhasePolynomial(Brief):
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        if self.knots[0] != 0.0:
-            yield "knots", 0, "the first knot is not 0", "0"
-        for index in (1, 2, 3):
-            if not self.knots[index] >= self.knots[index - 1] + NARROWEST:
-                yield "knots", index, "knots must rise", RISING
+        yield from knot_problems(self.knots)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

@@ -16,7 +16,7 @@ from gearcam.laws.ratio.arcs import ARCS, Arc
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
 from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, NARROWEST, NUMBER, RISING, TEXT, RowOfSome, Solve, param
+from gearcam.quantities import ANGLE, NARROWEST, NUMBER, TEXT, RowOfSome, Solve, param
 from gearcam.tolerances import Tolerances
 
 
@@ -51,12 +51,7 @@ class Phases(Brief):
                 "one ratio for each knot",
             )
             return
-        if self.knots[0] != 0.0:
-            yield "knots", 0, "the first knot is not 0", "0"
-        known = [(k, value) for k, value in enumerate(self.knots) if value != "solve"]
-        for (_, before), (index, value) in pairwise(known):
-            if not value >= before + NARROWEST:
-                yield "knots", index, "knots must rise", RISING
+        yield from knot_problems(self.knots)
         open_places = [("knots", k) for k, value in enumerate(self.knots) if value == "solve"]
         open_places += [("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"]
         if self.driven_travel is None:
@@ -94,6 +89,17 @@ class Phases(Brief):
         knots, solved = _solve_knot(arc, self.knots, self.ratios, self.driven_travel)
         span = Travel(float(knots[-1]), self.driven_travel, lobes.mate)
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
+
+
+def knot_problems(knots: RowOfSome) -> Iterator[tuple[str, int | None, str, str]]:
+    """Yield what is wrong by reading with `knots`, rad: field, index, message, allowed."""
+    if knots[0] != 0.0:
+        yield "knots", 0, "the first knot is not 0", "0"
+    known = [(k, value) for k, value in enumerate(knots) if value != "solve"]
+    for (_, before), (index, value) in pairwise(known):
+        if not value >= before + NARROWEST:
+            rule = f"at least {shown(ANGLE.least)} deg more than the knot before"
+            yield "knots", index, "knots must rise", rule
 
 
 def one_lobe(
