@@ -8,8 +8,11 @@ import pytest
 import shapely
 
 from gearcam.cams.disc import make_cam
+from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import Wall
-from helpers_cams import mechanism, there_and_back
+from gearcam.errors import InfeasibleError
+from helpers_cams import back, mechanism, program, rise, there_and_back
 
 RADIUS = 6.0
 
@@ -38,3 +41,21 @@ def test_trimmed_walls_are_the_edges_of_all_rollers(law: str) -> None:
         region = shapely.Polygon(edge)
         off = shapely.symmetric_difference(contour.polygon, region).area
         assert off < 3.0 * contour.tolerance * region.length
+
+
+@pytest.mark.parametrize("degrees", [7e-6, 7e-3])
+def test_sides_that_miss_each_other_at_a_corner_are_refused(degrees: float) -> None:
+    """Where a return is as short as angles are rounded; of a longer one they meet."""
+    phases = [rise("modified-sine", 360.0 - degrees, 5000.0), back("cycloidal", degrees)]
+    dome = FollowerSpec(type="domed", dome_radius=10000.0)
+    wall = make_cam(program(phases), make_mechanism(dome, CamSpec(prime_radius=20000.0)))
+    if degrees > 1e-3:
+        (run,) = wall.contour.runs
+        assert math.dist(run.points[0], run.points[-1]) < 0.5 * wall.tolerance
+        return
+    with pytest.raises(InfeasibleError, match="two sides of a corner") as caught:
+        _ = wall.contour
+    assert caught.value.value is not None
+    assert caught.value.limit == 0.5 * wall.tolerance
+    assert caught.value.value > 100.0 * wall.tolerance
+    assert "360 deg" in caught.value.where

@@ -6,6 +6,7 @@ import math
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from gearcam.drawings import cut_drawing, reach
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import LinearDimension
+from helpers_extreme import EXTREME
 from helpers_sliding import DEEP, FILE, ONE, built, cam_of
 
 
@@ -109,6 +111,15 @@ def test_three_points_tell_the_curvature_of_an_open_pitch_curve() -> None:
     assert 1.3 < order < 2.1
     assert table["largest_error_per_mm"][-1] < 2e-5
     assert np.all(np.diff(table["spacing_mm"]) < 0.0)
+
+
+def test_points_on_straight_lines_have_no_order() -> None:
+    """While few of them all fall on the run-out, three points tell exactly that nothing bends."""
+    result = gearcam.build(gearcam.load(EXTREME / "run_of_300_m.toml"))
+    measured: dict[str, Any] = {}
+    rows = result.files("curvature", measured)["curvature.csv"].decode().splitlines()
+    np.testing.assert_array_equal(np.loadtxt(rows[1:], delimiter=",")[:3, 2:], 0.0)
+    assert set(measured["curvature"]) == {"points"}
 
 
 def test_the_way_of_a_tool() -> None:

@@ -52,6 +52,9 @@ _OVERLAP = 1e-12
 _MISS = 1e-12
 """Distance of two curves at their crossing, in sizes of the cam: rounding of points."""
 
+_JOINED = 0.5
+"""Part of the chord tolerance by which sides may miss each other at a corner."""
+
 _ROUNDING = 4.0 * np.finfo(float).eps
 """Part of an angle by which it is rounded where two curves cross: a steep curve moves far by it."""
 
@@ -169,6 +172,46 @@ def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
     beside = (np.clip(parameter + shift, *ends) for shift in (-rounding, 0.0, rounding))
     ways = [rounding * np.abs(segments.moving(index, place)[1]) for place in beside]
     return ring.gap <= _MISS * size + float(np.max(ways))
+
+
+def demand_joined(segments: ProfileSegments, tolerance: float) -> None:
+    """Refuse a profile whose sides do not meet at its corners.
+
+    Where it moves far within the rounding of a cam angle, crossings are no better than that.
+
+    Parameters
+    ----------
+    segments : ProfileSegments
+        All that is left of it.
+    tolerance : float, mm
+        Its chord tolerance.
+
+    Raises
+    ------
+    InfeasibleError
+        If sides stay farther apart than half of it.
+    """
+    number = np.arange(len(segments.start))
+    after = np.roll(number, -1)
+    sides = (number, segments.end), (after, segments.start[after])
+    before, behind = (segments.at(*side)[0] for side in sides)
+    gaps = np.abs(behind - before)
+    if segments.curve.program.open:
+        gaps = gaps[:-1]
+    worst = int(gaps.argmax())
+    gap, limit = float(gaps[worst]), _JOINED * tolerance
+    if gap <= limit:
+        return
+    fast = max(sides, key=lambda side: float(np.abs(segments.moving(*side)[1][worst])))
+    raise InfeasibleError(
+        "the lift changes so abruptly that two sides of a corner miss each other by the rounding "
+        "of cam angles",
+        where=segments.curve.mechanism.driver.told(float(segments.states(*fast)[0][worst])),
+        value=gap,
+        limit=limit,
+        unit="mm",
+        nearest="the limit is half the chord tolerance; a longer phase there leaves less",
+    )
 
 
 def _about_axis(ring: Ring) -> bool:

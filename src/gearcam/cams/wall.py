@@ -26,7 +26,7 @@ from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.trim import Corner, crossing_chords, star_shaped, trimmed
+from gearcam.cams.trim import Corner, crossing_chords, demand_joined, star_shaped, trimmed
 from gearcam.display import Brief
 from gearcam.facts import Fact
 from gearcam.laws.program import Program
@@ -255,6 +255,8 @@ class Wall(PitchMotion):
             starts = set(kept.states(np.arange(len(kept.start)), kept.start)[0].tolist())
             corners = (*(corner for corner in corners if corner.after in starts), *more)
             drawn, sampler = self._sampled(self._drawn(kept))
+        if corners:
+            demand_joined(drawn, self.tolerance)
         corners = tuple(sorted(corners, key=lambda corner: corner.before))
         return _Kept(drawn=drawn, sampler=sampler, corners=corners)
 

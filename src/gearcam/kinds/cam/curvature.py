@@ -31,7 +31,7 @@ def curvature_columns(
     columns : dict of str to (n,) array
         For ``curvature.csv``.
     facts : dict
-        For the summary: the order at which the mean error falls.
+        For the summary: the order at which the mean error falls, if there is an error at all.
 
     Raises
     ------
@@ -61,6 +61,8 @@ def curvature_columns(
         "largest_error_per_mm": study.largest,
         "rms_error_per_mm": study.rms,
     }
-    with np.errstate(divide="ignore"):
+    facts: dict[str, Any] = {"points": list(counts)}
+    if np.all(study.rms > 0.0):  # all points may lie on a straight run before a short phase
         order = np.polyfit(np.log(study.spacing), np.log(study.rms), 1)[0]
-    return columns, {"points": list(counts), "order_of_rms": float(order)}
+        facts["order_of_rms"] = float(order)
+    return columns, facts
