@@ -122,6 +122,15 @@ def test_points_on_straight_lines_have_no_order() -> None:
     assert set(measured["curvature"]) == {"points"}
 
 
+def test_a_plate_of_a_few_points_is_followed() -> None:
+    """A ramp that is straight from corner to corner."""
+    result = gearcam.build(gearcam.load(EXTREME / "straight_ramp.toml"))
+    outline = result.cam.walls[0].outline
+    assert len(outline) < 8
+    study = result.follow(outline)
+    np.testing.assert_allclose(study.columns["difference"], 0.0, atol=1.1e-3)
+
+
 def test_the_way_of_a_tool() -> None:
     result = built(FILE)
     rows = result.files("tool-path")["tool_path.csv"].decode().splitlines()

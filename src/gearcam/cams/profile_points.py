@@ -1,7 +1,7 @@
 """The points of a cam profile: cleaned, and bounded by blocks.
 
-Refused: fewer than eight points, numbers that are not finite, a profile that does not go around
-the cam's axis once.
+Refused: fewer than eight points, of a plate fewer than three, numbers that are not finite, a
+profile that does not go around the cam's axis once.
 """
 
 from __future__ import annotations
@@ -20,6 +20,12 @@ from gearcam.numeric.sampling import FEWEST
 
 _CORNER: Final = 0.5
 """Turn between two chords of a plate, rad, that hardly a curve makes: one of its corners."""
+
+_LEAST: Final = 3
+"""Points of a plate at least: it may be straight from corner to corner."""
+
+_BLOCK: Final = 8
+"""Chords of a block at least, where there are as many."""
 
 _ALIKE: Final = 1e-12
 """Distance over the profile's size below which neighbours are one point: rounding."""
@@ -89,7 +95,7 @@ class ProfilePoints:
             The estimated heights of the curve are counted twice.
         """
         count = len(self.points)
-        width = max(FEWEST, math.isqrt(count) // 2)
+        width = min(count, max(_BLOCK, math.isqrt(count) // 2))
         first = np.minimum(np.arange(0, count, width), count - width)
         index = first[:, None] + np.arange(width)
         reach = self.points[(first[:, None] + np.arange(width + 1)) % count]
@@ -150,9 +156,10 @@ def profile_points(
             where=f"point {int(np.argmin(np.isfinite(z)))}",
         )
     z = z[np.abs(z - np.roll(z, 1)) > _ALIKE * np.abs(z).max(initial=0.0)]
-    if len(z) < FEWEST:
+    least = FEWEST if around else _LEAST
+    if len(z) < least:
         raise InfeasibleError(
-            "the profile has too few points", value=len(z), limit=FEWEST, unit="points"
+            "the profile has too few points", value=len(z), limit=least, unit="points"
         )
     if not around:
         turned = float((np.conj(z) * np.roll(z, -1)).imag.sum())

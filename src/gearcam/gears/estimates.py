@@ -20,6 +20,7 @@ from gearcam.gears.outline import Outline
 from gearcam.gears.pair import Gear, GearPair
 from gearcam.gears.rolling import Rolling
 from gearcam.gears.subject import Subject
+from gearcam.gears.tip_pass import TipPass
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.sampling import MARGIN
@@ -51,6 +52,7 @@ def estimates(subject: Subject) -> Estimates:
     far, rounding = size_of(rolling)
     flank = flank_error(pair, far, rounding)
     reaches, thicknesses = zip(*(tip_errors(gear, rounding) for gear in gears), strict=True)
+    passed = subject.tip_pass
     return {
         "law": (
             law.error,
@@ -87,6 +89,7 @@ def estimates(subject: Subject) -> Estimates:
             max(thicknesses),
             "both flanks of the thinnest tooth at its tip",
         ),
+        **({} if passed is None else _pass_error(passed, sum(reaches) + flank)),
         "backlash_mm": (FEW * EPS * pair.toothings[0].pitch, "rounding of the pitch"),
         "root_radius_mm": (
             max(root_radius_error(gear) for gear in gears) + flank,
@@ -97,6 +100,12 @@ def estimates(subject: Subject) -> Estimates:
             "chords times the height of their bows",
         ),
     }
+
+
+def _pass_error(passed: TipPass, corners: float) -> Estimates:
+    """Return the error of the tip-pass margin, by what the places of both corners are off, mm."""
+    how = "flanks at both tips and flank_mm, along the centrode and as the corner's way runs away"
+    return {"tip_pass_margin_mm": ((1.0 + passed.slope) * corners, how)}
 
 
 def _bend_errors(rolling: Rolling, function: str) -> Estimates:

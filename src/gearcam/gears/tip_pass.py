@@ -22,7 +22,7 @@ from gearcam.gears.outline import Outline
 from gearcam.gears.polar import PolarCurve
 from gearcam.gears.stays import Stays, find_stays, rolls_of
 from gearcam.gears.tips import feet
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import bracketed_root
 
 _ROLLS = 4
@@ -30,6 +30,9 @@ _ROLLS = 4
 
 _ANGLE = 1e-14
 """Driver angle in turns to which a crossing is found: feet are no better."""
+
+_NEAR = 1e-6
+"""Part of a turn over which a corner's way is taken as straight, where it crosses a height."""
 
 _DIGITS = 9
 """Digits of margins in pitches that tell which is the least: of equal ones the first is named."""
@@ -48,12 +51,16 @@ class TipPass(NamedTuple):
         Its side: 1 where s is larger, else -1.
     phi1 : float, rad
         Driver angle.
+    slope : float
+        How far it goes along the centrode there while it goes away from it by as much as 1; 0 where
+        it is looked at an angle that is given.
     """
 
     margin: float
     tooth: int
     sigma: float
     phi1: float
+    slope: float = 0.0
 
 
 class _Corners(NamedTuple):
@@ -80,16 +87,22 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     own, edge = wheel.toothing, PolarCurve(ring.toothing, ring.toothing.cutter.addendum)
     corners = _corners(wheel, ring.toothing)
     stays = _follow(own, ring.toothing, corners, edge)
-    margins, angles = _margins(own, ring, corners.points, edge, stays)
+    margins, angles, crosses = _margins(own, ring, corners.points, edge, stays)
     if not np.isfinite(margins).any():
         return TipPass(math.inf, 0, 0.0, 0.0)
     worst = int(np.argmin(np.round(margins / own.pitch, _DIGITS)))
     corner, phi1 = stays.corner[worst % len(stays.corner)], float(angles[worst])
+    slope = 0.0
+    if crosses[worst]:
+        beside = phi1 + _NEAR * own.track.around * np.array([-1.0, 1.0])
+        along, height = _feet(own, ring.toothing, edge, corners.points[corner], beside)
+        slope = abs(float(np.diff(along)[0] / np.diff(height)[0]))
     return TipPass(
         float(margins[worst]),
         int(corners.tooth[corner]),
         float(corners.sigma[corner]),
         phi1 % own.track.around if own.closed else phi1,
+        slope,
     )
 
 
@@ -122,8 +135,8 @@ def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve) 
 
 def _margins(
     own: Toothing, ring: Outline, points: Plane, edge: PolarCurve, stays: Stays
-) -> tuple[Array, Array]:
-    """Return margins, mm, and driver angles, rad, of all stays, (2n,).
+) -> tuple[Array, Array, Mask]:
+    """Return margins, mm, driver angles, rad, and which cross a tip's height, of all stays, (2n,).
 
     First to the tooth that begins a space, with its flank sigma = 1, then to that which ends it.
     """
@@ -155,11 +168,11 @@ def _margins(
     margin = side * (seen(phi)[0] - mate.track.arc_length(tips.foot[index]))
     if mate.closed:
         margin = (margin + 0.5 * mate.length) % mate.length - 0.5 * mate.length
-    return np.where(meets, margin, math.inf), phi
+    return np.where(meets, margin, math.inf), phi, crosses
 
 
 def _feet(
-    own: Toothing, mate: Toothing, edge: PolarCurve, points: Plane, phi: Array
+    own: Toothing, mate: Toothing, edge: PolarCurve, points: Plane | complex, phi: Array
 ) -> tuple[Array, Array]:
     """Return arc lengths of feet of corners on the ring's centrode, and heights, mm."""
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.display import Brief
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.hermite import on_cubics
@@ -50,6 +50,20 @@ _ALL: Final = 8000
 _BLOCK: Final = 1 << 16
 """Pairs of points that are looked at in one go: what a cache holds."""
 
+_SHARE: Final = 0.9
+"""Bends of more than this part of the sharpest may be the sharpest between their ends."""
+
+_SCATTER: Final = 1.5
+"""Times what parabolas tell: they are as good as the next order of the curvature is small."""
+
+_ROUNDING: Final = 32.0 * float(np.finfo(float).eps)
+"""Of a turn between two tangents, rad, and of a width."""
+
+_HOW: Final = (
+    "inner radii by parabolas through the bends of dense steps; slots, where they are as narrow,"
+    " by what a finer search found"
+)
+
 _FINER: Final = np.linspace(-1.5, 1.5, 121)
 """Places, in steps of the first search, at which the narrowest slot is then refined."""
 
@@ -68,17 +82,27 @@ class ToolLimits(Brief):
         Width of the narrowest slot; inf without one.
     slot_place : (float, float) or None, mm
         Its middle.
+    inner_error, slot_error : float, mm
+        Estimated error of the radius, and a bound of that of the width.
     """
 
     inner_radius: float
     inner_place: tuple[float, float] | None
     slot: float
     slot_place: tuple[float, float] | None
+    inner_error: float = 0.0
+    slot_error: float = 0.0
 
     @property
     def diameter(self) -> float:
         """Diameter of the largest tool that reaches every place, mm."""
         return min(2.0 * self.inner_radius, self.slot)
+
+    @property
+    def error(self) -> float:
+        """Estimated error of that diameter, mm: of what limits it, or may as well."""
+        sizes = ((2.0 * self.inner_radius, 2.0 * self.inner_error), (self.slot, self.slot_error))
+        return max(error for size, error in sizes if size - error <= self.diameter)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the limits for JSON: what does not exist is left out."""
@@ -112,35 +136,98 @@ def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
     points = as_complex(np.concatenate([run.points for run in runs]))
     tangents = as_complex(np.concatenate([run.tangents for run in runs]))
     size = float(np.ptp(contour.vertices, axis=0).max())
-    radius, place = _inner(points, tangents, ends, size)
+    joints = np.concatenate([np.isin(np.arange(len(run.points)), run.joints) for run in runs])
+    radius, off, place = _inner(points, tangents, ends, joints, size)
     # no place of a convex outline faces another
-    slot, middle = (math.inf, None) if place is None else _slot(points, tangents, ends)
+    nothing = math.inf, 0.0, None
+    slot, missed, middle = nothing if place is None else _slot(points, tangents, ends)
     return ToolLimits(
         inner_radius=radius,
         inner_place=None if place is None else (place.real, place.imag),
         slot=slot,
         slot_place=None if middle is None else (middle.real, middle.imag),
+        inner_error=off,
+        slot_error=missed,
     )
 
 
-def _inner(points: Plane, tangents: Plane, ends: Ints, size: float) -> tuple[float, complex | None]:
-    """Find the smallest concave radius and its place; each run ends before one of `ends`."""
+def tool_errors(tools: Iterable[ToolLimits]) -> dict[str, tuple[float, str]]:
+    """Return how exact the diameters of largest tools are told.
+
+    Parameters
+    ----------
+    tools : iterable of ToolLimits
+        One of each part.
+
+    Returns
+    -------
+    dict of str to (float, str)
+        The largest of their errors, and how it was made; empty where no round tool is limited, or
+        where inner corners take none.
+    """
+    errors = [one.error for one in tools if 0.0 < one.diameter < math.inf]
+    return {"tool_mm": (max(errors), _HOW)} if errors else {}
+
+
+def _inner(
+    points: Plane, tangents: Plane, ends: Ints, joints: Mask, size: float
+) -> tuple[float, float, complex | None]:
+    """Find the smallest concave radius, its error and its place.
+
+    Each run ends before one of `ends`; one curve passes into another at `joints`.
+    """
     turn = -np.angle(np.append(tangents[1:], tangents[0]) * np.conj(tangents))
     corners = np.flatnonzero(turn[ends - 1] > _CORNER)
     if corners.size:
-        return 0.0, complex(points[ends[corners[0]] - 1])
-    length = np.abs(np.diff(points))
+        return 0.0, 0.0, complex(points[ends[corners[0]] - 1])
+    # of an arc, whose chord is shorter
+    length = np.abs(np.diff(points)) / np.sinc(turn[:-1] / (2.0 * np.pi))
     length[ends[:-1] - 1] = 0.0  # a run begins where the one before it ends
     real = length > _GRAIN * size
     bend = np.divide(turn[:-1], length, out=np.zeros_like(length), where=real)
     k = int(bend.argmax())
     if bend[k] * size <= _GRAIN:
-        return math.inf, None
-    return 1.0 / float(bend[k]), complex(0.5 * (points[k] + points[k + 1]))
+        return math.inf, 0.0, None
+    cuts = joints.copy()
+    cuts[ends - 1] = cuts[ends[:-1]] = True
+    more = _SCATTER * _peaks(bend[real], length[real], np.cumsum(cuts, dtype=np.int64)[:-1][real])
+    radius = 1.0 / float(bend[k])
+    off = radius**2 * (max(float((bend[real] + more).max() - bend[k]), 0.0) + _ROUNDING / length[k])
+    return radius, off, complex(0.5 * (points[k] + points[k + 1]))
 
 
-def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, complex | None]:
-    """Width and middle of the narrowest slot."""
+def _peaks(mean: Array, length: Array, piece: Ints) -> Array:
+    """Return by how much a curve bends more somewhere in a step than it does on the mean of it.
+
+    By the flattest parabola that has the means of the step and of two neighbours on its piece: the
+    curvature may jump between others. Of fewer it is not known.
+    """
+    first, last = (np.searchsorted(piece, piece, side=side) for side in ("left", "right"))
+    (of,) = np.nonzero((last - first >= 3) & (mean > _SHARE * mean.max()))
+    begin = np.clip(of + np.array([[-2], [-1], [0]]), first[of], last[of] - 3)
+    h, b = (np.stack([values[begin + i] for i in range(3)]) for values in (length, mean))
+    way = 0.5 * (h[1:] + h[:-1])
+    slopes = np.diff(b, axis=0) / way
+    c = np.concatenate([np.zeros_like(way[:1]), np.cumsum(way, axis=0)])
+    second = np.diff(c * c + h * h / 12.0, axis=0) / way
+    q = (slopes[1] - slopes[0]) / (second[1] - second[0])
+    p = slopes[0] - q * second[0]
+    level = b[0] - q * h[0] ** 2 / 12.0
+    middle = np.take_along_axis(c, (of - begin)[None], axis=0)[0]
+    flat = np.abs(q).argmin(axis=0)[None]
+    q, p, level, middle = (
+        np.take_along_axis(one, flat, axis=0)[0] for one in (q, p, level, middle)
+    )
+    ends = middle + np.array([[-0.5], [0.5]]) * length[of]
+    top = np.divide(-0.5 * p, q, out=middle.copy(), where=q < 0.0)
+    places = np.concatenate([ends, np.clip(top, *ends)[None]])
+    found = np.zeros_like(mean)
+    found[of] = (level + places * (p + q * places)).max(axis=0) - mean[of]
+    return found
+
+
+def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, float, complex | None]:
+    """Width of the narrowest slot, a bound of its error, and its middle."""
     last = ends - 1
     first = np.append(0, ends[:-1])
     steps = np.abs(np.diff(points, prepend=points[0]))
@@ -164,12 +251,16 @@ def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, complex | 
     along = way[first[number]] + share * length[number]
     best, pair = _narrowest(*at(number, along))
     if math.isinf(best):
-        return best, None
+        return best, 0.0, None
     (p, n), (q, m) = (at(number[[k]], along[k] + step * _FINER) for k in pair)
     width = _width(p[:, None], n[:, None], q[None], m[None])
-    a = int(width.min(axis=1).argmin())
-    best = float(width[a].min())
-    return best, complex(p[a] + 0.5 * best * n[a])
+    least = width.min(axis=1)
+    a = int(least.argmin())
+    beside = least[max(a - 1, 0) : a + 2]
+    # another one may be narrower by as much as this one turned out to be
+    missed = max(best - float(least[a]), 0.0) + float(beside[np.isfinite(beside)].max() - least[a])
+    best = float(least[a])
+    return best, missed + _ROUNDING * best, complex(p[a] + 0.5 * best * n[a])
 
 
 def _narrowest(p: Plane, n: Plane) -> tuple[float, tuple[int, int]]:

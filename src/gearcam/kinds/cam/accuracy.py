@@ -18,6 +18,7 @@ from gearcam.cams.moved import (
     undercut_error,
 )
 from gearcam.parts.mass import quadrature_error
+from gearcam.parts.tools import tool_errors
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
@@ -54,6 +55,8 @@ def error_rows(result: CamResult) -> Rows:
     rows |= {name: (value, how) for name, value in _shape(cam, moved)}
     rows |= dict(_trimming(result, moved))
     rows |= dict(_sizes(result))
+    if result.ordered:
+        rows |= tool_errors(result.part_subject.tools)
     return rows
 
 

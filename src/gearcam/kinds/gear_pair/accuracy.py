@@ -9,6 +9,7 @@ from gearcam.gears.estimates import Estimates, estimates, kink_error
 from gearcam.gears.pair import make_gear
 from gearcam.numeric.moments import Moments, curve_moments
 from gearcam.parts.mass import error_of, mass_errors, quadrature_error
+from gearcam.parts.tools import tool_errors
 
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
@@ -42,6 +43,8 @@ def error_rows(result: GearPairResult) -> Estimates:
     """
     rows = estimates(result.subject)
     flank, _ = rows["flank_mm"]
+    if result.ordered:
+        rows |= tool_errors(result.parts_subject.tools)
     return rows | {name: (value, _HOW) for name, value in _weights(result, flank)}
 
 
