@@ -266,11 +266,6 @@ GIVEN_UP: Final = {
     ("harmonics of a formula", "build"): MANY,
     ("files of conjugate", "cut-svg"): "parts are laid side by side by the distance of their "
     "hulls, which is sought between all sides of both.",
-    **{
-        (f"files of {name}", kind): "the triangulation of hollow edges grows with its square."
-        for name in ("translating", "groove")
-        for kind in ("stl", "3mf", "glb")
-    },
 }
 """Why what grows faster does so, by words of the series and the stage."""
 

@@ -3,8 +3,9 @@
 The one place that knows manifold3d. A *mesh* is plain arrays: the library's own objects cannot be
 pickled and its interface is moving.
 
-Refused: parts whose solid comes out empty, open, or without a part of its volume. (The library
-silently makes nothing of clockwise contours; parts refuse them.)
+Refused: layers too thin for single precision, and parts whose solid comes out empty, open, or
+without a part of its volume. (The library silently makes nothing of clockwise contours; parts
+refuse them.)
 
 Depends on parts; manifold3d only inside the functions.
 """
@@ -12,16 +13,19 @@ Depends on parts; manifold3d only inside the functions.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, singledispatch
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import GearcamError
+from gearcam.errors import GearcamError, InfeasibleError
 from gearcam.numerals import shown
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.fans import fans
 from gearcam.parts.body import Body, Layer, Mark, Part
 from gearcam.parts.shapes import circle_segments
 
@@ -37,6 +41,14 @@ it keeps them on a grid of 1e-8, whatever their size, in whole numbers of 64 bit
 
 ROUNDING: Final = 1e-8 * 2.0 ** (1 - _FILLED)
 """What that grid is of the reach of an outline, at most."""
+
+
+_MANY: Final = 4000
+"""Vertices of an edge from which on fans are cut off it: triangulations grow with their square."""
+
+
+_THINNEST: Final = 1e-6
+"""Least height of a layer in reaches of its part: single precision takes places to 6e-8 of it."""
 
 
 class SolidError(GearcamError, RuntimeError):
@@ -122,6 +134,7 @@ def solid(body: Body) -> Mesh:
 def _(part: Part) -> Mesh:
     import manifold3d
 
+    _demand_thick(part)
     slabs = [_slab(manifold3d, layer, part.tolerance) for layer in part.layers]
     made = slabs[0]
     if len(slabs) > 1:
@@ -135,6 +148,21 @@ def _(part: Part) -> Mesh:
         raise SolidError(f"{part.name}: the solid came out empty or open")
     demand_volume(part, mesh.volume, volume_error(part))
     return mesh
+
+
+def _demand_thick(part: Part) -> None:
+    """Refuse layers so thin that their faces are one in files of single precision."""
+    reach = max(edge.reach for edge in part.contours)
+    height = min(layer.height for layer in part.layers)
+    if height < _THINNEST * reach:
+        raise InfeasibleError(
+            "a layer is too thin for a mesh",
+            where=f"{part.name}, its thickness",
+            value=height,
+            limit=_THINNEST * reach,
+            unit="mm",
+            nearest="the limit is a millionth of the part's reach from its axis",
+        )
 
 
 def demand_volume(part: Part, volume: float, allowed: float) -> None:
@@ -166,10 +194,56 @@ def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
     """Return a layer: its edge pulled up along z, less its openings, which run clockwise."""
     holes = [opening.shape.points(tolerance)[::-1] for opening in layer.openings]
     loops = [np.ascontiguousarray(loop) for loop in (layer.edge.points(tolerance), *holes)]
+    if max(map(len, loops)) > _MANY and (faces := _faces(manifold3d, loops)) is not None:
+        return _prism(manifold3d, loops, faces, layer)
     times = math.ldexp(1.0, _FILLED - math.frexp(layer.edge.reach)[1])
     section = manifold3d.CrossSection([times * loop for loop in loops])
     slab = manifold3d.Manifold.extrude(section, layer.height).scale((1.0 / times, 1.0 / times, 1.0))
     return slab.translate((0.0, 0.0, layer.low))
+
+
+def _faces(manifold3d: Any, loops: Sequence[Array]) -> tuple[Plane, Ints] | None:
+    """Return the places, those of loops first, and triangles of a face; None if any is turned over.
+
+    By fans along the edges, and the library's triangulation of what they leave.
+    """
+    points = np.concatenate([as_complex(loop) for loop in loops])
+    left: list[Ints] = []
+    triangles: list[Ints] = []
+    low = 0
+    for loop in loops:
+        cut = fans(as_complex(loop))
+        own, apexes = np.arange(len(loop)), np.arange(len(cut.apexes))
+        numbers = np.append(low + own, len(points) + apexes)
+        points = np.append(points, cut.apexes)
+        left.append(numbers[cut.loop])
+        triangles.append(numbers[cut.triangles])
+        low += len(loop)
+    rest = manifold3d.triangulate([as_pairs(points[loop]) for loop in left])
+    made = np.concatenate([*triangles, np.concatenate(left)[rest]])
+    a, b, c = points[made].T
+    return (points, made) if np.all((np.conj(b - a) * (c - a)).imag >= 0.0) else None
+
+
+def _prism(
+    manifold3d: Any, loops: Sequence[Array], faces: tuple[Plane, Ints], layer: Layer
+) -> Manifold:
+    """Return a layer whose faces are given, with its walls."""
+    points, above = faces
+    count = len(points)
+    triangles, first = [above[:, ::-1], count + above], 0
+    for loop in loops:
+        one = first + np.arange(len(loop))
+        two = np.roll(one, -1)
+        triangles.append(np.stack([one, two, count + two], axis=1))
+        triangles.append(np.stack([one, count + two, count + one], axis=1))
+        first += len(loop)
+    heights = np.repeat([layer.low, layer.high], count)
+    mesh = manifold3d.Mesh64(
+        vert_properties=np.column_stack([np.tile(as_pairs(points), (2, 1)), heights]),
+        tri_verts=np.concatenate(triangles).astype(np.uint64),
+    )
+    return manifold3d.Manifold(mesh)
 
 
 def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:

@@ -383,3 +383,10 @@ def test_any_distance_gives_the_points_at_that_distance(by: float) -> None:
     assert off == pytest.approx(np.full(len(off), abs(by)), abs=2 * TOLERANCE)
     wanted = buffered(contour, by)
     assert made.area == pytest.approx(wanted.area, abs=1.5 * TOLERANCE * wanted.length)
+
+
+@pytest.mark.parametrize("by", [5e-10, -5e-10])
+def test_a_parallel_within_a_thousandth_of_the_tolerance_is_the_outline(by: float) -> None:
+    wheel = gear_contour(12)
+    assert moved(wheel, by) is wheel
+    assert moved(wheel, by * 1e4) is not wheel

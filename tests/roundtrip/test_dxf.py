@@ -116,11 +116,14 @@ def test_the_measured_error_stays_within_the_tolerance(curves: str, tolerance: f
     assert 0.8 * tolerance < error <= tolerance
 
 
-@pytest.mark.parametrize("name", ["straight_into_round", "long_flank_short_bend"])
-def test_straight_flanks_that_end_in_bends_keep_the_tolerance(name: str) -> None:
+@pytest.mark.parametrize("curves", ["arcs", "splines"])
+@pytest.mark.parametrize(
+    "name", ["straight_into_round", "long_flank_short_bend", "dome_below_a_micron", "yoke_step"]
+)
+def test_long_curves_that_end_in_short_bends_keep_the_tolerance(name: str, curves: str) -> None:
     result = gearcam.build(gearcam.load(EXTREME / f"{name}.toml"))
     part = result.parts[0]
-    data = dxf_bytes(wheel_drawing(part), style(tolerance=part.tolerance))
+    data = dxf_bytes(wheel_drawing(part), style(curves, tolerance=part.tolerance))
     assert measure_dxf(data, wheel_drawing(part).contours) <= part.tolerance
 
 

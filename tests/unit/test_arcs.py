@@ -329,3 +329,9 @@ def test_runs_fitted_side_by_side_are_those_fitted_alone() -> None:
         ((alone, bends),) = fit_arcs([run], TOLERANCE)
         assert (vertices == alone).all()
         assert bulges == pytest.approx(bends, abs=1e-14)
+
+
+def test_a_chain_of_one_place_is_as_far_as_that_place() -> None:
+    """As a pitch curve that is smaller than its tolerance."""
+    place, dense = np.array([[1.0, 2.0]]), np.array([[1.0, 2.0], [4.0, 6.0], [1.0, 2.0]])
+    assert farthest(dense, place, np.zeros(1)) == 5.0

@@ -7,10 +7,13 @@ import math
 import mpmath
 import pytest
 
-from gearcam.cams.lost import resting
+from gearcam.cams.lost import lost_lift, resting
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.cams.trim import Corner
+from gearcam.errors import InfeasibleError
 from gearcam.numeric.jets import Jet
+from helpers_cams import mechanism, there_and_back
 
 
 @pytest.mark.parametrize("radius", [5.0, 1e-3, 1e-8])
@@ -31,3 +34,11 @@ def test_an_arm_with_a_tiny_dome_rests_where_its_triangle_says(radius: float) ->
         seen = mpmath.atan2(mpmath.mpf(point.imag), mpmath.mpf(80.0 - point.real))
         exact = seen + inside - mpmath.mpf(mechanism.start)
         assert abs(lift - float(exact)) < 1e-15
+
+
+def test_a_corner_out_of_reach_is_refused() -> None:
+    swinging = mechanism("swinging roller")
+    program = there_and_back("cycloidal", 10.0, swings=True)
+    corner = Corner(point=complex(1e4, 1e4), before=0.1, after=0.3)
+    with pytest.raises(InfeasibleError, match="cannot rest"):
+        lost_lift(program, swinging, corner)

@@ -17,6 +17,7 @@ import numpy as np
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner
+from gearcam.errors import InfeasibleError
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, asin, atan, cos, sin, sqrt
@@ -99,6 +100,11 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int 
     -------
     Extreme
         Cam angle, rad, and lift, mm or rad, never negative.
+
+    Raises
+    ------
+    InfeasibleError
+        If the follower cannot touch the corner anywhere.
     """
     rest, start, end = resting(mechanism, corner.point, side), corner.before, corner.after
     if end < start:
@@ -112,5 +118,11 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int 
         return list(side * np.subtract(program.derivatives(theta, 1), given))
 
     places, values = extremes(missing, program.cuts_between(start, end))
+    if np.isnan(values).all():
+        raise InfeasibleError(
+            "a corner that trimming leaves is where the follower cannot rest",
+            where=mechanism.driver.told(start),
+            nearest="its arm or its pivot leaves it no place there",
+        )
     best = int(np.nanargmax(values))
     return Extreme(theta=float(places[best]) % _TURN, value=max(0.0, float(values[best])))

@@ -193,8 +193,9 @@ class Mechanism(Brief):
             return self.start if self.flat else math.hypot(self.offset, self.start)
         if self.flat:
             return self.pivot * math.sin(self.start) - self.face_offset
-        span = self.pivot**2 + self.arm**2 - 2.0 * self.pivot * self.arm * math.cos(self.start)
-        return math.sqrt(span)
+        # the law of cosines by half the angle: beside a long arm a short pivot's would be below 0
+        half = math.sqrt(self.pivot * self.arm) * math.sin(0.5 * self.start)
+        return math.hypot(self.pivot - self.arm, 2.0 * half)
 
 
 def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:

@@ -52,7 +52,7 @@ _OVERLAP = 1e-12
 _MISS = 1e-12
 """Distance of two curves at their crossing, in sizes of the cam: rounding of points."""
 
-_JOINED = 0.5
+_JOINED = 0.1
 """Part of the chord tolerance by which sides may miss each other at a corner."""
 
 _ROUNDING = 4.0 * np.finfo(float).eps
@@ -189,7 +189,7 @@ def demand_joined(segments: ProfileSegments, tolerance: float) -> None:
     Raises
     ------
     InfeasibleError
-        If sides stay farther apart than half of it.
+        If sides stay farther apart than a tenth of it.
     """
     number = np.arange(len(segments.start))
     after = np.roll(number, -1)
@@ -210,7 +210,7 @@ def demand_joined(segments: ProfileSegments, tolerance: float) -> None:
         value=gap,
         limit=limit,
         unit="mm",
-        nearest="the limit is half the chord tolerance; a longer phase there leaves less",
+        nearest="the limit is a tenth of the chord tolerance; a longer phase there leaves less",
     )
 
 

@@ -26,9 +26,9 @@ from gearcam.written import Written
 _ROUNDING: Final = 1e-9
 """Part of a part's reach that coordinates in files are rounded by, at most."""
 
-_JOINED: Final = 0.01
+_JOINED: Final = 0.1
 """Gap between the curves of an edge, in tolerances: where a profile is fast the rounding of an
-angle moves their ends."""
+angle moves their ends; more is refused."""
 
 
 def look_at(result: Any, written: Written) -> Iterator[Failure]:

@@ -182,6 +182,8 @@ def farthest(points: Array, vertices: Array, bulges: Array) -> float:
     """
     start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
     real = chord != 0
+    if not real.any():  # all is one point
+        return float(np.abs(as_complex(points) - start[0]).max())
     start, chord, half = start[real], chord[real], 2 * np.arctan(bends[real])
     size, end = np.abs(chord), start + chord
     into, out = (chord / size * np.exp(1j * sign * half) for sign in (-1, 1))

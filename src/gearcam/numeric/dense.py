@@ -44,6 +44,44 @@ class Dense(Brief):
     rank: Ints
     ends: tuple[Plane, Plane]
 
+    def told_apart(self, grain: float, sag: float) -> Dense:
+        """Return points of which no two are nearer than a grain; roundings within it are corners.
+
+        Parameters
+        ----------
+        grain : float, mm
+            Least distance; corners all stay.
+        sag : float, mm
+            How far a curve along the chord beside a rounding may go astray by its turn.
+
+        Returns
+        -------
+        Dense
+        """
+        kept = _told_apart(self.points, self.rank, grain)
+        if kept.all():
+            return self
+        index, points, rank = np.flatnonzero(kept), self.points[kept], self.rank[kept]
+        # what is left out belongs to the nearer one of both beside it
+        low = np.cumsum(kept) - 1
+        high = np.minimum(low + 1, len(index) - 1)
+        nearer = np.abs(self.points - points[high]) < np.abs(self.points - points[low])
+        group = np.maximum.accumulate(np.where(~kept & nearer, high, low))
+        first, last = (np.searchsorted(group, range(len(index)), side=s) for s in ("left", "right"))
+        before, after = self.tangents[first], self.tangents[last - 1]
+        longest = np.abs(np.diff(points, prepend=points[0], append=points[-1]))
+        longest = np.maximum(longest[:-1], longest[1:])
+        sharp = 0.25 * longest * np.abs(np.angle(after * np.conj(before))) > sag
+        tangents = np.where(sharp, after, self.tangents[kept])
+        corner, made = rank == 0, np.where(sharp, 0, rank)
+        ends = np.stack([points, before])
+        # where nothing is left out before a corner it is known from that side
+        plain = corner & ~(sharp & (first < index))
+        ends[:, np.flatnonzero(plain)[1:]] = np.stack(self.ends)[:, plain[corner][1:]]
+        return Dense(
+            self.places[kept], points, tangents, made, tuple(ends[:, np.flatnonzero(made == 0)[1:]])
+        )
+
     def _stretches(self) -> Iterator[tuple[slice, Plane, Plane]]:
         """Yield the numbers of each run's steps, and its points and tangents."""
         cuts = np.flatnonzero(self.rank == 0)
@@ -86,7 +124,7 @@ class Dense(Brief):
         )
 
 
-def told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
+def _told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
     """Choose points in order so that no two are nearer than a grain; the lowest rank stays.
 
     Parameters

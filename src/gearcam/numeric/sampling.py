@@ -19,7 +19,7 @@ from gearcam.display import Brief
 from gearcam.errors import ABOVE, InfeasibleError, Way
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.dense import Dense, sags, told_apart
+from gearcam.numeric.dense import Dense, sags
 
 _PROBES = 24
 """Intervals per curve on which the density of points is found."""
@@ -387,10 +387,8 @@ class Sampler(Brief):
             rank = np.insert(rank, long + 1, len(groups))
             new = long + 1 + np.arange(long.size)
             points, tangents = np.insert([points, tangents], long + 1, self.at(j[new]), axis=1)
-        kept = told_apart(points, rank, _GRAIN * self.tolerance)
-        j, rank = j[kept], rank[kept]
-        ends = self._left_ends(j[rank == 0][1:])
-        return Dense(j, points[kept], tangents[kept], rank, ends)
+        made = Dense(j, points, tangents, rank, self._left_ends(j[rank == 0][1:]))
+        return made.told_apart(_GRAIN * self.tolerance, _DENSE * self.tolerance)
 
     def _left_ends(self, j: Array) -> tuple[Plane, Plane]:
         """Points and tangents at the ends of the curves that end at corners."""

@@ -37,7 +37,7 @@ _VERTICES: Final = 0.95
 """Part of the tolerance that the polygon's chords may take; the rest covers the dense points."""
 
 _GRAIN: Final = 1e-3
-"""Length in tolerances below which a stretch is a point."""
+"""Length in tolerances below which a stretch is a point, and a parallel the outline itself."""
 
 _TURN: Final = 1e-6
 """Angle, rad, by which a tangent turns at a corner: far above rounding."""
@@ -69,7 +69,7 @@ def moved(contour: Contour, by: float) -> Contour:
     InfeasibleError
         If no simple outline is left.
     """
-    if by == 0.0:
+    if abs(by) <= _GRAIN * contour.tolerance:
         return contour
     runs = [part.as_run(part.by) for part, _, _ in roll(contour, by)]
     return _contour(runs, contour, by)
