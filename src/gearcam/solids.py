@@ -42,10 +42,8 @@ it keeps them on a grid of 1e-8, whatever their size, in whole numbers of 64 bit
 ROUNDING: Final = 1e-8 * 2.0 ** (1 - _FILLED)
 """What that grid is of the reach of an outline, at most."""
 
-
 _MANY: Final = 4000
 """Vertices of an edge from which on fans are cut off it: triangulations grow with their square."""
-
 
 _THINNEST: Final = 1e-6
 """Least height of a layer in reaches of its part: single precision takes places to 6e-8 of it."""

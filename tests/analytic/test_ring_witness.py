@@ -108,7 +108,9 @@ def test_the_witness_rolls_as_the_pair_does() -> None:
         assert np.abs(own - rolling.frames(2, s).point @ [1.0, 1.0j]).max() < 1e-10
 
 
-@pytest.mark.parametrize(("name", "k"), PLACES)
+@pytest.mark.parametrize(
+    ("name", "k"), [*PLACES[:2], pytest.param(*PLACES[2], marks=pytest.mark.slow)]
+)
 def test_flanks_and_fillets_are_those_that_a_shaper_leaves(name: str, k: int) -> None:
     found = points(name, k, Curve.FLANK, Curve.FILLET, Curve.LAND)
     assert len(found) > 150

@@ -16,14 +16,8 @@ from helpers_contour import Curve, arc, as_pairs, contour_of, line
 from helpers_pairs import PROFILES
 
 TIGHT = 100.0
-WHEELS = (
-    "ellipse",
-    "lobed",
-    "limacon",
-    "rounded_square",
-    "nail_machine_three_phase",
-    "ring_uneven",
-)
+WHEELS = ("ellipse", "rounded_square", "ring_uneven")
+MORE = ("lobed", "limacon", "nail_machine_three_phase", "press", "measured", "stepped_ellipse")
 
 
 def plate(cut: list[Curve], half_mouth: float) -> Contour:
@@ -127,7 +121,9 @@ def wheel(teeth: int) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("name", WHEELS)
+@pytest.mark.parametrize(
+    "name", [*WHEELS, *(pytest.param(name, marks=pytest.mark.slow) for name in MORE)]
+)
 def test_fillets_against_denser_points(name: str) -> None:
     """Sixteen times as many: what is left then is 250 times less."""
     design = gearcam.load(PROFILES / f"{name}.toml")

@@ -149,6 +149,7 @@ def test_a_chain_with_a_gap_is_refused() -> None:
         dxf_bytes(wheel_drawing(part), DxfStyle(tolerance=TOLERANCE, curves="splines"))
 
 
+@pytest.mark.slow
 def test_a_pair_of_splines_is_measured_wheel_by_wheel() -> None:
     part = wheel(12)
     drawing = pair_drawing([part, part], 95.0, placements=((-0.4, (0.0, 0.0)), (0.3, (95.0, 0.0))))

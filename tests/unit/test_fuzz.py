@@ -154,7 +154,7 @@ def test_parts_that_cannot_be_made_are_no_failure_where_no_file_asks_for_them(sm
     assert [*oracles.look_at(Refused(), written)] == []
 
 
-@pytest.mark.parametrize(("share", "places"), [(0.009, []), (0.011, ["torn"])])
+@pytest.mark.parametrize(("share", "places"), [(0.09, []), (0.11, ["torn"])])
 def test_curves_that_do_not_join_are_seen(small: Any, share: float, places: list[str]) -> None:
     part = small.result.parts[0]
     first, *others = part.contour.runs

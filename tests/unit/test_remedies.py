@@ -345,6 +345,7 @@ def test_flanks_alone_bound_the_contact_ratio_and_refuse_what_cannot_drive(folde
         _ = job_of(pair(tight, [46, 46]), folder).pair
 
 
+@pytest.mark.slow
 def test_a_larger_cam_is_no_remedy_for_chords_that_are_too_fine(tmp_path: Path) -> None:
     """Whether its profile can be drawn is asked where any file is, not when it is written."""
     follower = {"type": "domed", "dome_radius_mm": 500.0}

@@ -16,7 +16,7 @@ from gearcam.fuzz.pool import Pool
 from gearcam.fuzz.trial import tried
 from gearcam.numeric.arguments import whole
 
-QUICK: Final = 60
+QUICK: Final = 40
 """Designs of a quick campaign."""
 
 _COUNT: Final = 10_000
