@@ -59,28 +59,30 @@ class Dense(Brief):
         Dense
         """
         kept = _told_apart(self.points, self.rank, grain)
-        if kept.all():
-            return self
-        index, points, rank = np.flatnonzero(kept), self.points[kept], self.rank[kept]
+        index, gone = np.flatnonzero(kept), np.flatnonzero(~kept)
+        points, tangents, rank = self.points[kept], self.tangents[kept], self.rank[kept]
         # what is left out belongs to the nearer one of both beside it
-        low = np.cumsum(kept) - 1
-        high = np.minimum(low + 1, len(index) - 1)
-        nearer = np.abs(self.points - points[high]) < np.abs(self.points - points[low])
-        group = np.maximum.accumulate(np.where(~kept & nearer, high, low))
-        first, last = (np.searchsorted(group, range(len(index)), side=s) for s in ("left", "right"))
-        before, after = self.tangents[first], self.tangents[last - 1]
-        longest = np.abs(np.diff(points, prepend=points[0], append=points[-1]))
-        longest = np.maximum(longest[:-1], longest[1:])
-        sharp = 0.25 * longest * np.abs(np.angle(after * np.conj(before))) > sag
-        tangents = np.where(sharp, after, self.tangents[kept])
-        corner, made = rank == 0, np.where(sharp, 0, rank)
+        high = np.searchsorted(index, gone)
+        away = [np.abs(self.points[gone] - points[side]) for side in (high - 1, high)]
+        owner = np.where(away[1] < away[0], high, high - 1)
+        first, last = index.copy(), index.copy()
+        np.minimum.at(first, owner, gone)
+        np.maximum.at(last, owner, gone)
+        some = np.unique(owner)
+        turned = np.angle(self.tangents[last[some]] * np.conj(self.tangents[first[some]]))
+        chords = np.abs(np.diff(points, prepend=points[0], append=points[-1]))
+        longest = np.maximum(chords[some], chords[some + 1])
+        sharp = some[0.25 * longest * np.abs(turned) > sag]
+        before, made = tangents.copy(), rank.copy()
+        before[sharp], tangents[sharp] = self.tangents[first[sharp]], self.tangents[last[sharp]]
+        made[sharp] = 0
         ends = np.stack([points, before])
         # where nothing is left out before a corner it is known from that side
-        plain = corner & ~(sharp & (first < index))
-        ends[:, np.flatnonzero(plain)[1:]] = np.stack(self.ends)[:, plain[corner][1:]]
-        return Dense(
-            self.places[kept], points, tangents, made, tuple(ends[:, np.flatnonzero(made == 0)[1:]])
-        )
+        known = rank == 0
+        known[sharp] &= first[sharp] == index[sharp]
+        ends[:, np.flatnonzero(known)[1:]] = np.stack(self.ends)[:, known[rank == 0][1:]]
+        corners = np.flatnonzero(made == 0)[1:]
+        return Dense(self.places[kept], points, tangents, made, tuple(ends[:, corners]))
 
     def _stretches(self) -> Iterator[tuple[slice, Plane, Plane]]:
         """Yield the numbers of each run's steps, and its points and tangents."""

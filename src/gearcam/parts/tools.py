@@ -21,7 +21,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.display import Brief
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.hermite import on_cubics
@@ -50,7 +50,7 @@ _ALL: Final = 8000
 _BLOCK: Final = 1 << 16
 """Pairs of points that are looked at in one go: what a cache holds."""
 
-_SHARE: Final = 0.9
+_SHARE: Final = 0.99
 """Bends of more than this part of the sharpest may be the sharpest between their ends."""
 
 _SCATTER: Final = 1.5
@@ -136,7 +136,8 @@ def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
     points = as_complex(np.concatenate([run.points for run in runs]))
     tangents = as_complex(np.concatenate([run.tangents for run in runs]))
     size = float(np.ptp(contour.vertices, axis=0).max())
-    joints = np.concatenate([np.isin(np.arange(len(run.points)), run.joints) for run in runs])
+    begins = zip(ends.tolist(), runs, strict=True)
+    joints = [end - len(run.points) + one for end, run in begins for one in run.joints]
     radius, off, place = _inner(points, tangents, ends, joints, size)
     # no place of a convex outline faces another
     nothing = math.inf, 0.0, None
@@ -170,7 +171,7 @@ def tool_errors(tools: Iterable[ToolLimits]) -> dict[str, tuple[float, str]]:
 
 
 def _inner(
-    points: Plane, tangents: Plane, ends: Ints, joints: Mask, size: float
+    points: Plane, tangents: Plane, ends: Ints, joints: list[int], size: float
 ) -> tuple[float, float, complex | None]:
     """Find the smallest concave radius, its error and its place.
 
@@ -180,16 +181,16 @@ def _inner(
     corners = np.flatnonzero(turn[ends - 1] > _CORNER)
     if corners.size:
         return 0.0, 0.0, complex(points[ends[corners[0]] - 1])
-    # of an arc, whose chord is shorter
-    length = np.abs(np.diff(points)) / np.sinc(turn[:-1] / (2.0 * np.pi))
+    # of an arc, whose chord is shorter by a sinc of half the turn
+    length = np.abs(np.diff(points)) * (1.0 + turn[:-1] ** 2 / 24.0)
     length[ends[:-1] - 1] = 0.0  # a run begins where the one before it ends
     real = length > _GRAIN * size
     bend = np.divide(turn[:-1], length, out=np.zeros_like(length), where=real)
     k = int(bend.argmax())
     if bend[k] * size <= _GRAIN:
         return math.inf, 0.0, None
-    cuts = joints.copy()
-    cuts[ends - 1] = cuts[ends[:-1]] = True
+    cuts = np.zeros(len(points), dtype=bool)
+    cuts[joints] = cuts[ends - 1] = cuts[ends[:-1]] = True
     more = _SCATTER * _peaks(bend[real], length[real], np.cumsum(cuts, dtype=np.int64)[:-1][real])
     radius = 1.0 / float(bend[k])
     off = radius**2 * (max(float((bend[real] + more).max() - bend[k]), 0.0) + _ROUNDING / length[k])
@@ -202,9 +203,10 @@ def _peaks(mean: Array, length: Array, piece: Ints) -> Array:
     By the flattest parabola that has the means of the step and of two neighbours on its piece: the
     curvature may jump between others. Of fewer it is not known.
     """
-    first, last = (np.searchsorted(piece, piece, side=side) for side in ("left", "right"))
-    (of,) = np.nonzero((last - first >= 3) & (mean > _SHARE * mean.max()))
-    begin = np.clip(of + np.array([[-2], [-1], [0]]), first[of], last[of] - 3)
+    (of,) = np.nonzero(mean > _SHARE * mean.max())
+    first, last = (np.searchsorted(piece, piece[of], side=side) for side in ("left", "right"))
+    of, first, last = (one[last - first >= 3] for one in (of, first, last))
+    begin = np.clip(of + np.array([[-2], [-1], [0]]), first, last - 3)
     h, b = (np.stack([values[begin + i] for i in range(3)]) for values in (length, mean))
     way = 0.5 * (h[1:] + h[:-1])
     slopes = np.diff(b, axis=0) / way
