@@ -53,7 +53,7 @@ def strictly(folder: Path, *words: str) -> None:
         pytest.param(
             "plate_cam_offset_roller", GEARS + ",tool-path,curvature", marks=pytest.mark.slow
         ),
-        ("flat_follower", GEARS + ",tool-path,curvature"),
+        ("flat_follower", GEARS + ",curvature"),
     ],
 )
 def test_designs_of_all_kinds_are_built_quietly(tmp_path: Path, name: str, files: str) -> None:
