@@ -157,6 +157,19 @@ def square_contour(side: float, tolerance: float = 1e-3) -> Contour:
     return contour_of(pieces, tolerance)
 
 
+def plate(cut: list[Curve], half_mouth: float) -> Contour:
+    """A square of 40 mm with a cut in its upper side, about x = 0, given from right to left."""
+    pieces = [
+        line(-20 - 20j, 20 - 20j),
+        line(20 - 20j, 20 + 20j),
+        line(20 + 20j, half_mouth + 20j),
+        *cut,
+        line(-half_mouth + 20j, -20 + 20j),
+        line(-20 + 20j, -20 - 20j),
+    ]
+    return contour_of(pieces, 1e-3)
+
+
 def bore(diameter: float) -> tuple[Opening, ...]:
     """A round bore about the origin."""
     return (Opening(kind="BORE", shape=Circle(center=np.zeros(2), diameter=diameter), name="bore"),)

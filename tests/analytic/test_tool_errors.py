@@ -12,24 +12,12 @@ import pytest
 import gearcam
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.tools import ToolLimits, tool_errors, tool_limits
-from helpers_contour import Curve, arc, as_pairs, contour_of, line
+from helpers_contour import arc, as_pairs, line, plate
 from helpers_pairs import PROFILES
 
 TIGHT = 100.0
 WHEELS = ("ellipse", "rounded_square", "ring_uneven")
 MORE = ("lobed", "limacon", "nail_machine_three_phase", "press", "measured", "stepped_ellipse")
-
-
-def plate(cut: list[Curve], half_mouth: float) -> Contour:
-    """A square of 40 mm with a cut in its upper side, given from right to left."""
-    around = [
-        line(-half_mouth + 20j, -20 + 20j),
-        line(-20 + 20j, -20 - 20j),
-        line(-20 - 20j, 20 - 20j),
-        line(20 - 20j, 20 + 20j),
-        line(20 + 20j, half_mouth + 20j),
-    ]
-    return contour_of([*around, *cut], 1e-3)
 
 
 def bowl(half: float, deep: float, steps: int) -> Contour:
@@ -41,8 +29,7 @@ def bowl(half: float, deep: float, steps: int) -> Contour:
         tangents=as_pairs(slope / np.abs(slope)),
     )
     sides = plate([line(half + 20j, half + 10j), line(-half + 10j, -half + 20j)], half)
-    *around, down, up = sides.runs
-    runs = (*around, down, bottom, up)
+    runs = (*sides.runs[:4], bottom, *sides.runs[4:])
     return Contour(
         dense=lambda: runs,
         vertices=np.vstack([run.points[:-1] for run in runs]),

@@ -10,22 +10,18 @@ import pytest
 
 from gearcam.numeric.contour import Contour
 from gearcam.parts.tools import ToolLimits, tool_limits
-from helpers_contour import Curve, arc, contour_of, disc_contour, gear_contour, line, square_contour
+from helpers_contour import (
+    Curve,
+    arc,
+    contour_of,
+    disc_contour,
+    gear_contour,
+    line,
+    plate,
+    square_contour,
+)
 
 TOLERANCE = 1e-3
-
-
-def plate(cut: list[Curve], half_mouth: float) -> Contour:
-    """A square of 40 mm with a cut in its upper side, about x = 0, given from right to left."""
-    pieces = [
-        line(-20 - 20j, 20 - 20j),
-        line(20 - 20j, 20 + 20j),
-        line(20 + 20j, half_mouth + 20j),
-        *cut,
-        line(-half_mouth + 20j, -20 + 20j),
-        line(-20 + 20j, -20 - 20j),
-    ]
-    return contour_of(pieces, TOLERANCE)
 
 
 def u_slot(width: float, depth: float) -> Contour:

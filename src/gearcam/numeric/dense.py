@@ -59,16 +59,9 @@ class Dense(Brief):
         Dense
         """
         kept = _told_apart(self.points, self.rank, grain)
-        index, gone = np.flatnonzero(kept), np.flatnonzero(~kept)
         points, tangents, rank = self.points[kept], self.tangents[kept], self.rank[kept]
-        # what is left out belongs to the nearer one of both beside it
-        high = np.searchsorted(index, gone)
-        away = [np.abs(self.points[gone] - points[side]) for side in (high - 1, high)]
-        owner = np.where(away[1] < away[0], high, high - 1)
-        first, last = index.copy(), index.copy()
-        np.minimum.at(first, owner, gone)
-        np.maximum.at(last, owner, gone)
-        some = np.unique(owner)
+        first, last = _clusters(self.points, kept)
+        some = np.flatnonzero(first < last)
         turned = np.angle(self.tangents[last[some]] * np.conj(self.tangents[first[some]]))
         chords = np.abs(np.diff(points, prepend=points[0], append=points[-1]))
         longest = np.maximum(chords[some], chords[some + 1])
@@ -79,7 +72,7 @@ class Dense(Brief):
         ends = np.stack([points, before])
         # where nothing is left out before a corner it is known from that side
         known = rank == 0
-        known[sharp] &= first[sharp] == index[sharp]
+        known[sharp] &= kept[first[sharp]]
         ends[:, np.flatnonzero(known)[1:]] = np.stack(self.ends)[:, known[rank == 0][1:]]
         corners = np.flatnonzero(made == 0)[1:]
         return Dense(self.places[kept], points, tangents, made, tuple(ends[:, corners]))
@@ -153,6 +146,21 @@ def _told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
         if drop.size == 0:
             return kept
         kept[drop] = False
+
+
+def _clusters(points: Plane, kept: Mask) -> tuple[Ints, Ints]:
+    """Return the first and the last of the points that each kept one stands for.
+
+    Itself, and of what is left out beside it that to which it is the nearer one.
+    """
+    index, gone = np.flatnonzero(kept), np.flatnonzero(~kept)
+    high = np.searchsorted(index, gone)
+    before, after = (np.abs(points[gone] - points[index[side]]) for side in (high - 1, high))
+    owner = np.where(after < before, high, high - 1)
+    first, last = index.copy(), index.copy()
+    np.minimum.at(first, owner, gone)
+    np.maximum.at(last, owner, gone)
+    return first, last
 
 
 def sags(points: Plane, tangents: Plane, rank: Ints) -> Array:
