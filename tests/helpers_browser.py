@@ -22,6 +22,7 @@ def open_page(
 
     `media` are features such as ``prefers_color_scheme="dark"``.
     """
+    browser.get("about:blank")  # what was open before is not to complain of its new size
     width, height = size
     metrics = {
         "width": width,
