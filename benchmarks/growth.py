@@ -33,7 +33,7 @@ grow by a tenth of a second is not judged.
 SLOPE, LAST, SEEN = 1.1, 1.2, 0.1
 """Largest exponents over all and of the last step, and growth in s that is judged."""
 
-AGAIN = 0.5
+AGAIN = 2.0
 """Seconds below which it is measured twice."""
 
 
