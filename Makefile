@@ -47,7 +47,7 @@ lint: $(VENV)/.lint
 
 slow: $(VENV)/.test
 	tools/browser
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest -n 2 -m slow
 
 bench: $(VENV)/.bench
 	$(BIN)/python benchmarks/run.py

@@ -6,6 +6,7 @@ Words as arguments choose the series whose names hold one of them; then nothing 
 from __future__ import annotations
 
 import gc
+import os
 import sys
 import time
 import tracemalloc
@@ -25,10 +26,11 @@ PAGE = ROOT / "docs" / "growth.md"
 HEAD = """# Growth
 
 Written by `make growth`: processor time and peak memory of one build, of short ones the better of
-two. `build` is everything from reading to checks and facts; each kind of file and the
-meshing study of 120 steps are what they take beyond it. Exponents are those of the time by least
-squares, of its last step, mostly a decade, and of the memory by its last step. A cost that does not
-grow by a tenth of a second is not judged.
+two, where a system can be asked for it on one processor: threads that wait take time of theirs.
+`build` is everything from reading to checks and facts; each kind of file and the meshing study of
+120 steps are what they take beyond it. Exponents are those of the time by least squares, of its
+last step, mostly a decade, and of the memory by its last step. A cost that does not grow by a tenth
+of a second is not judged.
 """
 SLOPE, LAST, SEEN = 1.1, 1.2, 0.1
 """Largest exponents over all and of the last step, and growth in s that is judged."""
@@ -145,6 +147,8 @@ def page(rows: list[Row], missing: int) -> str:
 def main() -> int:
     """Measure all series, or those whose names hold a word."""
     keep_freed_memory()  # as the command line does
+    if sys.platform == "linux":
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     words, rows, every = sys.argv[1:], [], growth_cases.all_series()
     for number, series in enumerate(every, start=1):
         if not words or any(word in series.name for word in words):

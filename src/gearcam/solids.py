@@ -133,7 +133,8 @@ def _(part: Part) -> Mesh:
     import manifold3d
 
     _demand_thick(part)
-    slabs = [_slab(manifold3d, layer, part.tolerance) for layer in part.layers]
+    fanned = not part.recesses  # their edges would lie in the few triangles that fans leave
+    slabs = [_slab(manifold3d, layer, part.tolerance, fanned=fanned) for layer in part.layers]
     made = slabs[0]
     if len(slabs) > 1:
         made = manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
@@ -188,11 +189,12 @@ def demand_volume(part: Part, volume: float, allowed: float) -> None:
         )
 
 
-def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
+def _slab(manifold3d: Any, layer: Layer, tolerance: float, *, fanned: bool = True) -> Manifold:
     """Return a layer: its edge pulled up along z, less its openings, which run clockwise."""
     holes = [opening.shape.points(tolerance)[::-1] for opening in layer.openings]
     loops = [np.ascontiguousarray(loop) for loop in (layer.edge.points(tolerance), *holes)]
-    if max(map(len, loops)) > _MANY and (faces := _faces(manifold3d, loops)) is not None:
+    many = fanned and max(map(len, loops)) > _MANY
+    if many and (faces := _faces(manifold3d, loops)) is not None:
         return _prism(manifold3d, loops, faces, layer)
     times = math.ldexp(1.0, _FILLED - math.frexp(layer.edge.reach)[1])
     section = manifold3d.CrossSection([times * loop for loop in loops])

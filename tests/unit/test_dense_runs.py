@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.numeric import sampling
 from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.dense import sags
 from gearcam.numeric.hermite import on_cubics
 from gearcam.numeric.sampling import Sampler
 from helpers_pairs import profile
@@ -89,6 +91,14 @@ def test_between_dense_points_are_cubics_where_the_curvature_jumps_too(before: f
     places = on_cubics(p, t, steps, np.tile(np.arange(1, 10) / 10, len(p) - 1))[0]
     off = np.where(places.real < 0, np.abs(places.imag), np.abs(np.abs(places - 1j) - 1))
     assert off.max() < 1e-3 * tolerance
+
+
+@pytest.mark.parametrize("tangent", [1.0, -1.0])
+def test_a_curve_that_runs_backwards_leaves_its_chords_no_farther(tangent: float) -> None:
+    """Undercut: halving its chords would make no sag smaller."""
+    at = np.exp(1j * np.linspace(0.0, 1.0, 9))
+    found = sags(at, 1j * tangent * at, np.full(9, 2))
+    np.testing.assert_allclose(found, 1.0 - math.cos(1.0 / 16.0), rtol=2e-3)
 
 
 def test_chords_that_measuring_asks_for_are_counted_too(monkeypatch: pytest.MonkeyPatch) -> None:

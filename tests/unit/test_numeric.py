@@ -12,7 +12,7 @@ from gearcam.numeric import jets
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
 from gearcam.numeric.newton import damped_newton
-from gearcam.numeric.piecewise import Piece, extremes, integrate, piecewise
+from gearcam.numeric.piecewise import Piece, extremes, extremes_among, integrate, piecewise
 from gearcam.numeric.quadrature import missed
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
@@ -100,6 +100,22 @@ def test_extremes_are_found_where_a_slope_is_rounded_to_zero(sharp: float) -> No
     _, values = extremes(step, [0.0, 2.0 * math.pi])
     assert values.min() == -1.0
     assert values.max() == 1.0
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_extremes_are_found_beside_a_knot_where_the_slope_is_zero(mirrored: bool) -> None:
+    """The first cell of a lift: up from rest and down again, steeply, before the next place."""
+    fast, sign = 500.0, -1.0 if mirrored else 1.0
+
+    def peak(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        t = 1.0 - x if mirrored else x
+        fall = np.exp(-fast * t)
+        return 3.0 - t * t * fall, sign * (fast * t * t - 2.0 * t) * fall
+
+    x = np.linspace(0.0, 1.0, 33)[None]
+    places, values = extremes_among(peak, x, *(found.reshape(x.shape) for found in peak(x)))
+    assert abs(places[values.argmin()] - mirrored) == pytest.approx(2.0 / fast, abs=1e-12)
+    assert values.min() == pytest.approx(3.0 - (2.0 / fast / math.e) ** 2, rel=1e-15)
 
 
 def test_extremes_at_knots_are_those_at_the_knots_themselves() -> None:

@@ -21,6 +21,9 @@ _SAFE = 3.0
 """Over the change by one halving. All further ones are a fifteenth more where steps are small, and
 once more as much on a step that bends in a small part of itself."""
 
+_BACK = 0.5
+"""Angle, rad, to the reverse of a chord below which both tangents tell that it is run backwards."""
+
 
 @dataclass(frozen=True, eq=False)
 class Dense(Brief):
@@ -181,4 +184,5 @@ def sags(points: Plane, tangents: Plane, rank: Ints) -> Array:
     before = np.abs(np.angle(chord * np.conj(tangents[:-1])))
     after = np.abs(np.angle(tangents[1:] * np.conj(chord)))
     bow: Array = np.maximum(before, np.where(rank[1:] == 0, 0.0, after))
-    return 0.25 * np.abs(chord) * bow
+    back = np.pi - np.minimum(before, after)  # undercut stretches run against their tangents
+    return 0.25 * np.abs(chord) * np.where(back < _BACK, back, bow)

@@ -344,14 +344,20 @@ def extremes_among(
 def _extremes_among(
     functions: Callable[[Array], Array], x: Array, values: Array, slopes: Array
 ) -> list[tuple[Array, Array]]:
-    which, piece, cell = np.nonzero(slopes[..., :-1] * slopes[..., 1:] < 0.0)
+    before, after = slopes[..., :-1], slopes[..., 1:]
+    # from a slope of 0 at a knot the way may lead up and come down steeply
+    still = (before == 0.0) != (after == 0.0)
+    hidden = still & (np.diff(values) * (before + after) < 0.0)
+    which, piece, cell = turns = np.nonzero((before * after < 0.0) | hidden)
+    before, after = before[turns], after[turns]
+    known = np.where(before == 0.0, -after, before), np.where(after == 0.0, -before, after)
     number = np.arange(which.size)
     roots = bracketed_root(
         lambda t: functions(t)[1, which, number],
         x[piece, cell],
         x[piece, cell + 1],
         _FLAT * float((x[:, -1] - x[:, 0]).min()),
-        (slopes[which, piece, cell], slopes[which, piece, cell + 1]),
+        known,
     )
     tops = functions(roots)[0, which, number] if roots.size else roots
     # a slope that is rounded to 0 changes no sign: where it begins and ends to be
