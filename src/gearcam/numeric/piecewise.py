@@ -352,11 +352,12 @@ def _extremes_among(
     before, after = before[turns], after[turns]
     known = np.where(before == 0.0, -after, before), np.where(after == 0.0, -before, after)
     number = np.arange(which.size)
+    width = x[:, -1] - x[:, 0]  # none is left between knots that are neighbours in rounding
     roots = bracketed_root(
         lambda t: functions(t)[1, which, number],
         x[piece, cell],
         x[piece, cell + 1],
-        _FLAT * float((x[:, -1] - x[:, 0]).min()),
+        _FLAT * float(width[width > 0.0].min(initial=np.inf)),
         known,
     )
     tops = functions(roots)[0, which, number] if roots.size else roots
