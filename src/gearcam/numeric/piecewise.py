@@ -346,8 +346,7 @@ def _extremes_among(
 ) -> list[tuple[Array, Array]]:
     before, after = slopes[..., :-1], slopes[..., 1:]
     # from a slope of 0 at a knot the way may lead up and come down steeply
-    still = (before == 0.0) != (after == 0.0)
-    hidden = still & (np.diff(values) * (before + after) < 0.0)
+    hidden = ((before == 0.0) != (after == 0.0)) & (np.diff(values) * (before + after) < 0.0)
     which, piece, cell = turns = np.nonzero((before * after < 0.0) | hidden)
     before, after = before[turns], after[turns]
     known = np.where(before == 0.0, -after, before), np.where(after == 0.0, -before, after)
