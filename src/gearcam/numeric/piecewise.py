@@ -344,9 +344,9 @@ def extremes_among(
 def _extremes_among(
     functions: Callable[[Array], Array], x: Array, values: Array, slopes: Array
 ) -> list[tuple[Array, Array]]:
-    before, after = slopes[..., :-1], slopes[..., 1:]
+    before, after, flat = slopes[..., :-1], slopes[..., 1:], slopes == 0.0
     # from a slope of 0 at a knot the way may lead up and come down steeply
-    hidden = ((before == 0.0) != (after == 0.0)) & (np.diff(values) * (before + after) < 0.0)
+    hidden = np.diff(flat) & (np.diff(values) * (before + after) < 0.0)
     which, piece, cell = turns = np.nonzero((before * after < 0.0) | hidden)
     before, after = before[turns], after[turns]
     known = np.where(before == 0.0, -after, before), np.where(after == 0.0, -before, after)
@@ -361,7 +361,6 @@ def _extremes_among(
     )
     tops = functions(roots)[0, which, number] if roots.size else roots
     # a slope that is rounded to 0 changes no sign: where it begins and ends to be
-    flat = slopes == 0.0
     edge = flat.copy()
     edge[..., 1:-1] &= ~(flat[..., :-2] & flat[..., 2:])
     edge[..., _ENDS] = True
