@@ -11,7 +11,9 @@ import sys
 import time
 import tracemalloc
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -19,18 +21,17 @@ import numpy as np
 import gearcam
 import growth_cases
 from gearcam.numeric.memory import keep_freed_memory
-from growth_cases import Series
 from measuring import ROOT, environment, show
 
 PAGE = ROOT / "docs" / "growth.md"
 HEAD = """# Growth
 
 Written by `make growth`: processor time and peak memory of one build, of short ones the better of
-two, where a system can be asked for it on one processor: threads that wait take time of theirs.
-`build` is everything from reading to checks and facts; each kind of file and the meshing study of
-120 steps are what they take beyond it. Exponents are those of the time by least squares, of its
-last step, mostly a decade, and of the memory by its last step. A cost that does not grow by a tenth
-of a second is not judged.
+two, each series in a process of its own, where a system can be asked for it on one processor:
+threads that wait take time of theirs. `build` is everything from reading to checks and facts; each
+kind of file and the meshing study of 120 steps are what they take beyond it. Exponents are those of
+the time by least squares, of its last step, mostly a decade, and of the memory by its last step. A
+cost that does not grow by a tenth of a second is not judged.
 """
 SLOPE, LAST, SEEN = 1.1, 1.2, 0.1
 """Largest exponents over all and of the last step, and growth in s that is judged."""
@@ -43,7 +44,7 @@ AGAIN = 2.0
 class Row:
     """What one thing costs over sizes: the memory of the last two."""
 
-    series: Series
+    name: str
     stage: str
     sizes: list[float]
     seconds: list[float]
@@ -72,7 +73,7 @@ class Row:
 
     def fits(self, names: tuple[str, str]) -> bool:
         """Whether it is what a reason is given for: words of the series, and a stage."""
-        return names[0] in self.series.name and names[1] == self.stage
+        return names[0] in self.name and names[1] == self.stage
 
     def line(self) -> str:
         """One row of the table."""
@@ -80,7 +81,7 @@ class Row:
         verdict = "" if self.passed else "given up" if self.given_up else "**fail**"
         low, high = (f"{size:g}" for size in (self.sizes[0], self.sizes[-1]))
         return (
-            f"| {self.series.name} | {self.stage} | {low} to {high} | {show(self.seconds[0])} "
+            f"| {self.name} | {self.stage} | {low} to {high} | {show(self.seconds[0])} "
             f"| {show(self.seconds[-1])} | {whole:.2f} | {last:.2f} "
             f"| {self.bytes[-1] / 2**20:.1f} MiB | {memory:.2f} | {verdict} |"
         )
@@ -105,8 +106,16 @@ def once(text: str, stages: dict[str, Callable[[Any], object]], traced: bool) ->
     return job, costs
 
 
-def measured(series: Series) -> list[Row]:
-    """The rows of a series."""
+def alone(number: int) -> list[Row]:
+    """The rows of a series, measured in a new process."""
+    with ProcessPoolExecutor(1, get_context("spawn")) as process:
+        return process.submit(measured, number).result()
+
+
+def measured(number: int) -> list[Row]:
+    """The rows of a series, measured here."""
+    keep_freed_memory()  # as the command line does
+    series = growth_cases.all_series()[number]
     sizes: list[float] = []
     seconds: list[dict[str, float]] = []
     peaks: list[dict[str, float]] = []
@@ -122,7 +131,7 @@ def measured(series: Series) -> list[Row]:
             peaks.append(once(text, series.stages, traced=True)[1])
         sizes.append(growth_cases.points(job) if series.by_points else size)
     return [
-        Row(series, name, sizes, [one[name] for one in seconds], [one[name] for one in peaks])
+        Row(series.name, name, sizes, [one[name] for one in seconds], [one[name] for one in peaks])
         for name in seconds[0]
     ]
 
@@ -140,23 +149,22 @@ def page(rows: list[Row], missing: int) -> str:
     lines += ["|---|---|---|---|---|---|---|---|---|---|", *(row.line() for row in rows), ""]
     for row in rows:
         if not row.passed and row.given_up:
-            lines.append(f"- {row.series.name}, {row.stage}: {row.given_up}")
+            lines.append(f"- {row.name}, {row.stage}: {row.given_up}")
     return "\n".join(lines) + "\n"
 
 
 def main() -> int:
     """Measure all series, or those whose names hold a word."""
-    keep_freed_memory()  # as the command line does
-    if sys.platform == "linux":
+    if sys.platform == "linux":  # processes it starts take it over, and load numpy only then
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     words, rows, every = sys.argv[1:], [], growth_cases.all_series()
-    for number, series in enumerate(every, start=1):
+    for number, series in enumerate(every):
         if not words or any(word in series.name for word in words):
-            found = measured(series)
+            found = alone(number)
             rows += found
             print("\n".join(row.line() for row in found), flush=True)
             if not words:
-                PAGE.write_text(page(rows, len(every) - number), encoding="utf-8")
+                PAGE.write_text(page(rows, len(every) - number - 1), encoding="utf-8")
     return 0 if all(row.passed or row.given_up for row in rows) else 1
 
 
