@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import platform
 import statistics
@@ -79,15 +80,21 @@ def measure(name: str, function: Callable[[], object], count: int, *, warm: bool
 
 
 def in_turns(functions: dict[str, Callable[[], object]], count: int) -> list[Timing]:
-    """Call functions `count` times, in turns: a busy moment hits them alike."""
+    """Call functions `count` times, in turns: a busy moment hits them alike.
+
+    Objects that were there before, most of them of other benchmarks, are not searched for garbage.
+    """
     samples: dict[str, list[float]] = {name: [] for name in functions}
     for function in functions.values():
         function()
+    gc.collect()
+    gc.freeze()
     for _ in range(count):
         for name, function in functions.items():
             start = time.perf_counter()
             function()
             samples[name].append(time.perf_counter() - start)
+    gc.unfreeze()
     return [Timing(name, tuple(values)) for name, values in samples.items()]
 
 

@@ -1,10 +1,13 @@
 """``python -m gearcam``, and the command: interrupted well even while it is loaded."""
 
+import os
 import sys
 
 
 def main() -> int:
     """Run the command line of this process and return its exit code."""
+    # No array here is worth the threads of linear algebra; those that wait take the others' time.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when numpy is loaded
     try:
         from gearcam.cli import main as run
 

@@ -74,7 +74,7 @@ class Mesh:
         x, y, z = (self.vertices - self.vertices.mean(axis=0)).T
         a, b, c = self.triangles.T
         twice = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
-        return float(np.dot(twice, z[a] + z[b] + z[c])) / 6
+        return float((twice * (z[a] + z[b] + z[c])).sum()) / 6
 
     def placed(self, angle: float, offset: tuple[float, float], height: float = 0.0) -> Mesh:
         """Return the mesh turned about z by `angle`, rad, and shifted.

@@ -7,7 +7,9 @@ reason beside it. The command `accuracy` is left out: it repeats, to measure.
 
 from __future__ import annotations
 
+import os
 import pkgutil
+import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -346,3 +348,18 @@ def test_a_page_shows_solids_of_fewer_vertices(monkeypatch: pytest.MonkeyPatch) 
     assert shown.keys() == result.meshes.keys()
     for name, mesh in shown.items():
         assert 2 * len(mesh.vertices) < len(result.meshes[name].vertices)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted where Linux lists them")
+@pytest.mark.parametrize(("asked", "threads"), [({}, 1), ({"OPENBLAS_NUM_THREADS": "2"}, 2)])
+def test_the_command_has_no_threads_for_linear_algebra(asked: dict[str, str], threads: int) -> None:
+    """But those that are asked for, and of these at most one for each processor."""
+    words = (
+        "import os, gearcam.__main__ as command; command.main(); import numpy;"
+        "print(len(os.listdir('/proc/self/task')))"
+    )
+    kept = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    done = subprocess.run(
+        [sys.executable, "-c", words, "laws"], env=kept | asked, capture_output=True, check=True
+    )
+    assert int(done.stdout.split()[-1]) == min(threads, len(os.sched_getaffinity(0)))

@@ -20,7 +20,7 @@ from gearcam.gears.spaces import join, select
 from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Run
 
 _BELOW = 1.0
@@ -128,7 +128,7 @@ def body_runs(
         If the ends meet: the wheel would turn by a full turn or more. If a ring has no metal for
         its end faces, or its outside is not round.
     """
-    points = toothed @ [1.0, 1j]
+    points = as_complex(toothed)
     frames = toothing.frames(toothing.track.angle(toothing.ends))
     depth = toothing.cutter.dedendum + _BELOW * toothing.pitch / math.pi
     inner = frames.p - depth * toothing.turn * frames.t

@@ -20,6 +20,7 @@ import shapely
 from gearcam.gears.rolling import Rolling
 from gearcam.meshing.half_teeth import HalfTeeth, as_polygons
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.bulges import as_complex
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -132,7 +133,7 @@ class Turning:
         half = np.stack([one[own] + self.driver.first, mate + self.driven.first])
         bounds = shapely.bounds(shared)
         corners, of = shapely.get_coordinates(shared, return_index=True)
-        seen = np.abs(corners @ [1.0, 1.0j] - offset[own][of])
+        seen = np.abs(as_complex(corners) - offset[own][of])
         starts = np.searchsorted(of, np.arange(len(shared)))
         return Overlaps(
             step=step[own],

@@ -187,4 +187,4 @@ def polygon_area(vertices: Array) -> float:
         By the shoelace formula about the first vertex.
     """
     x, y = (vertices - vertices[0]).T
-    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+    return 0.5 * float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
