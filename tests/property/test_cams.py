@@ -168,6 +168,12 @@ def test_many_cams_move_their_followers_or_are_refused(design: Given) -> None:
     demand_cam(design)
 
 
+def test_a_long_segment_takes_no_more_vertices_than_others() -> None:
+    """A ninth of its first chords are a little too long: halved, they would be too many."""
+    phases = [segment(310.558, 34.8, 25.64, swings=False), back("harmonic", 49.442)]
+    assert demand_cam(({"type": "point"}, {"prime_radius": 15.0}, phases))
+
+
 def test_gentle_cams_are_never_refused_or_trimmed() -> None:
     """Cycloidal rises of a fifth of the prime radius in quarters."""
     trimmed = []
