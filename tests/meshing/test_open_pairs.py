@@ -348,3 +348,12 @@ def test_teeth_choose_phases_of_every_turn_of_a_pinion() -> None:
         np.angle(np.exp(1j * (chosen - setup.turning.rolling.arc.angle(2.0 * math.pi))))
     )
     assert np.abs(off).max() < 20.0
+
+
+def test_no_two_vertices_of_a_half_tooth_are_a_rounding_apart() -> None:
+    """Turned, they crossed, and the overlap of what crosses itself was told as all of it."""
+    for gear in job(RackLaw(r1="1"), (27, 196), module=2.0).gears:
+        halves = half_teeth(gear.profile)
+        for polygon in halves.polygons:
+            corners = shapely.get_coordinates(polygon)
+            assert np.hypot(*np.diff(corners, axis=0).T).min() > 1e-9

@@ -23,6 +23,9 @@ from gearcam.numeric.arrays import Array, Ints, Plane
 _BELOW = 0.5
 """Depth of the half-teeth below the root, in dedendums: more than any overlap worth a name."""
 
+_SAME = 1e-12
+"""Share of the outline within which a middle is a vertex: two so near may cross when turned."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HalfTeeth:
@@ -188,8 +191,9 @@ def _middles(outline: Outline) -> tuple[Plane, Ints, Ints, bool]:
     ends = outline.sampler.at(np.where(lands < 0.0, lands + j[-1], lands).ravel())[0]
     middle = (way[chord] + np.abs(ends.reshape(lands.shape) - ring[chord])).mean(axis=1)
     middle = np.minimum(middle, way[-1])
-    low = np.searchsorted(way, middle, side="right") - 1
-    beside = middle - way[low]
+    grain = _SAME * way[-1]
+    low = np.searchsorted(way, middle + grain, side="right") - 1
+    beside = np.where(middle - way[low] > grain, middle - way[low], 0.0)
     high = low + (beside > 0.0)
     step = ring[high] - ring[low]
     middles = ring[low] + beside * step / np.maximum(np.abs(step), np.finfo(float).tiny)
