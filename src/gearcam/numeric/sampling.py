@@ -51,11 +51,8 @@ _UNEVEN = 0.05
 MARGIN = 0.97
 """Share of the tolerance that a measured error may take: between its places it may be larger."""
 
-_FEW = 0.09
-"""Share of chords that may be halved; with more of them the vertices are spread anew.
-
-With `_FILL` it makes a polygon of at most 1.15 times as many chords as the curvature asks for.
-"""
+_FEW = 0.12
+"""Share of chords that may be halved; with more of them the vertices are spread anew."""
 
 _GRAIN = 1e-3
 """Distance in tolerances below which two points of a dense run are one."""
