@@ -19,6 +19,7 @@ import shapely
 from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
 from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.bulges import as_complex
 
 _BELOW = 0.5
 """Depth of the half-teeth below the root, in dedendums: more than any overlap worth a name."""
@@ -254,8 +255,7 @@ def _inner(outline: Outline, count: int) -> Plane:
 
 def _counted(outline: Outline) -> Plane:
     """Vertices of what joins the ends of an open wheel, in the order of rising s."""
-    x, y = outline.points[len(outline.toothed) :].T
-    points: Plane = x + 1j * y
+    points = as_complex(outline.points[len(outline.toothed) :])
     return points if outline.toothing.wheel == 1 else points[::-1]
 
 
