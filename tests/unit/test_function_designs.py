@@ -147,7 +147,7 @@ def test_a_corner_is_refused_with_its_angle_and_a_remedy_that_works() -> None:
     def bent(phi1: Any) -> Any:
         return 1.0 + 0.1 * np.abs(np.sin(phi1 - 1.0))
 
-    words = r"r1 is not smooth \(phi1 = (57|237)\.29\d* deg\)"
+    words = r"r1 is not smooth \(phi1 = 57\.29\d* deg\)"
     with pytest.raises(InfeasibleError, match=words) as caught:
         _ = gc.build(pair(Formula(r1=bent))).law
     assert 'type "table"' in caught.value.nearest

@@ -350,7 +350,7 @@ def _pieces(ask: _Asked, places: Array, values: Array, allowed: float, scale: fl
         if missed.max() <= _MISS * scale:
             _demand_smooth(made, ask, allowed * scale)
             return made
-        worst = places[int(missed.argmax())]
+        worst = places[missed >= 0.5 * missed.max()][0]  # of places alike the first, always
     raise ask.not_smooth(float(worst))
 
 

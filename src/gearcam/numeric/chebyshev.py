@@ -195,8 +195,10 @@ def expand(
         if good.all():
             break
         if halving == halvings:
-            worst = int(np.argmax(np.where(good, 0.0, last)))
-            raise NotSmoothError(float(0.5 * (low + high)[worst]), finite=True)
+            # the first of several corners alike: which is worst is decided by rounding
+            rough = np.where(good, 0.0, last)
+            middles = (0.5 * (low + high))[rough >= 0.5 * rough.max()]
+            raise NotSmoothError(float(middles.min()), finite=True)
         low, high, before = low[~good], high[~good], np.tile(last[~good], 2)
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
