@@ -1,10 +1,8 @@
 """The command line.
 
-Every command ends in an exit code: 0 good (warnings included), 1 built but with findings at error
-level, 2 wrong by reading the file or refused by the disk, 3 found impossible by computing, 4 a
-fault of the program, 130 interrupted (143 by SIGTERM, 129 by SIGHUP). Several files are all tried;
-the largest code is returned. What was done goes to stdout, what went wrong to stderr; progress is
-drawn on a terminal only.
+Every command ends with one of `EXIT_CODES`. Given several files, a command works on all of them and
+returns the largest code. Results go to stdout, errors to stderr; a progress bar is drawn on a
+terminal only.
 """
 
 from __future__ import annotations
@@ -46,19 +44,20 @@ if TYPE_CHECKING:
     from gearcam.result import Progress, Result
     from gearcam.written import Written
 
-GOOD: Final = 0
-FINDINGS: Final = 1
-WRONG: Final = 2
-IMPOSSIBLE: Final = 3
-FAULT: Final = 4
-INTERRUPTED: Final = 130
+GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
-_ABOUT: Final = "Non-circular gears and cams from a description of the motion."
+EXIT_CODES: Final = {
+    GOOD: "success, possibly with warnings",
+    FINDINGS: "built, but a check found an error",
+    WRONG: "a mistake in the design file or the command, or a file that cannot be written",
+    IMPOSSIBLE: "the design cannot be made",
+    FAULT: "a bug in gearcam",
+    INTERRUPTED: "interrupted by Ctrl-C (143 by SIGTERM, 129 by SIGHUP)",
+}
+"""Meanings of the exit codes."""
+
+_ABOUT: Final = "Design cams and pairs of non-circular gears from a description of their motion."
 _FILES: Final = "design files (TOML)"
-_CODES: Final = (
-    "exit codes: 0 good, 1 findings at error level, 2 wrong by reading, 3 impossible, "
-    "4 a fault of the program, 130 interrupted (143 by SIGTERM, 129 by SIGHUP)"
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -67,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        Those of the process when left out.
+        Default: those of the process.
 
     Returns
     -------
@@ -79,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    """Run the command line and return its exit code, that of Ctrl-C for every interruption."""
+    """Run the command line and return its exit code; any interruption counts as Ctrl-C."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     if arguments is None and not (sys.warnoptions or "--debug" in words or os.environ.get(DEBUG)):
         quieten()
@@ -100,7 +99,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 
 def _dispatch(words: list[str]) -> None:
-    """Find the command of the first word and run it on the others."""
+    """Run the command named by the first word with the other words."""
     functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema, _fuzz)
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
@@ -118,11 +117,11 @@ def _dispatch(words: list[str]) -> None:
     top = argparse.ArgumentParser(
         prog="gearcam",
         description=_ABOUT,
-        epilog=_command_help(docs) + _CODES,
+        epilog=_help(docs),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    top.add_argument("--version", action="store_true", help="show the version")
-    top.add_argument("command", nargs="?", metavar="COMMAND", help="see below")
+    top.add_argument("--version", action="store_true", help="show the version and exit")
+    top.add_argument("command", nargs="?", metavar="COMMAND", help="one of the commands below")
     given = top.parse_args(words[:1])
     if given.version:
         from gearcam.version import __version__
@@ -136,7 +135,7 @@ def _dispatch(words: list[str]) -> None:
 
 
 def _commands_of_kinds() -> Iterator[Command]:
-    """Yield the commands that kinds of design add, and those of studies of any kind."""
+    """Yield the commands for one kind of design, then those of studies for any kind."""
     for room in rooms("commands"):
         yield from room.COMMANDS
     from gearcam.studies.commands import COMMANDS
@@ -147,7 +146,7 @@ def _commands_of_kinds() -> Iterator[Command]:
 def _parser(
     name: str, command: Callable[..., None], formats: Sequence[str]
 ) -> argparse.ArgumentParser:
-    """Return the parser of a command; its help is the function's docstring."""
+    """Return the argument parser of a command; its help text is the function's docstring."""
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
     if command in (_build, _check, _migrate):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
@@ -156,50 +155,50 @@ def _parser(
     if command in (_compare, _view, _fuzz):
         import_module(f"gearcam.{name}.command").arguments(parser)
     if command is _build:
-        words = f"write only these: {','.join(formats)}"
-        parser.add_argument("--only", action="append", metavar="KINDS", help=words)
+        words = f"write these files instead of output.files: {', '.join(formats)}"
+        parser.add_argument("--only", action="append", metavar="A,B,...", help=words)
     if command is _new:
-        words = f"the kind of design: {' or '.join(KINDS)}"
+        words = f"kind of design: {' or '.join(KINDS)}"
         parser.add_argument("kind", metavar="KIND", help=words)
-        parser.add_argument("file", nargs="?", metavar="FILE", help="printed when left out")
-        words = "printing, laser or wire: with backlash, clearance and kerf to start from"
+        parser.add_argument("file", nargs="?", metavar="FILE", help="default: stdout")
+        words = "preset backlash, clearance and kerf for printing, laser or wire"
         parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
     return parser
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-o", "--output", metavar="DIR", default="output", help="where to write")
+    words = "output folder (default: output)"
+    parser.add_argument("-o", "--output", metavar="DIR", default="output", help=words)
     parser.add_argument("--debug", action="store_true", help=f"show tracebacks (or set {DEBUG})")
 
 
-def _command_help(docs: Mapping[str, str]) -> str:
-    return "\n".join(["commands:", *(f"  {name:<10}{doc}" for name, doc in docs.items()), "\n"])
+def _help(docs: Mapping[str, str]) -> str:
+    commands = [f"  {name:<10}{doc}" for name, doc in docs.items()]
+    codes = [f"  {code:<10}{meaning}" for code, meaning in EXIT_CODES.items()]
+    more = "gearcam COMMAND --help explains the options of a command."
+    return "\n".join(["commands:", *commands, "", more, "", "exit codes:", *codes])
 
 
 def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -> None:
-    """Build designs into DIR/<name>/."""
+    """Build designs and write their files into DIR/NAME/."""
     kinds = _kinds(only)
-
-    def action(result: Result, progress: Progress | None) -> Written:
-        return result.write(output, files=kinds, progress=progress)
-
-    _each_result(files, "built", action, debug=debug)
+    _each_result(files, "built", lambda one, bar: one.write(output, kinds, bar), debug=debug)
 
 
 def _check(files: list[str], output: str, debug: bool) -> None:
-    """Check designs and write nothing but DIR/<name>/summary.json."""
+    """Check designs; write DIR/NAME/summary.json only."""
     _each_result(files, "checked", lambda result, _: result.check(output), debug=debug)
 
 
 def _view(file: str, port: int, no_browser: bool) -> None:
-    """Show a design's page in the browser, and follow the file as it is saved."""
+    """Show a design in the browser; update the page when the file is saved."""
     from gearcam.view.command import view
 
     _each([file], "shown", lambda one: view(one, port, browser=not no_browser) or GOOD)
 
 
 def _compare(files: list[str], debug: bool, **options: Any) -> None:
-    """Lay designs, or variants of one, side by side: facts, and a page DIR/compare.html."""
+    """Compare designs or variants of one design; write DIR/compare.html."""
     from gearcam.compare.command import compare
 
     def work(_: str) -> int:
@@ -209,13 +208,13 @@ def _compare(files: list[str], debug: bool, **options: Any) -> None:
 
 
 def _fuzz(debug: bool, **options: Any) -> None:
-    """Try random designs, in processes of their own; those at which it fails go into DIR."""
+    """Test gearcam with random designs; write those that reveal a bug into DIR."""
     fuzz = import_module("gearcam.fuzz.command").fuzz
     _each(["fuzz"], "tried", lambda _: GOOD if fuzz(**options) else FINDINGS, debug=debug)
 
 
 def _of_kind(command: Command, words: list[str]) -> None:
-    """Run a command that a kind of design adds."""
+    """Run a `command` with the words that follow its name."""
     parser = argparse.ArgumentParser(prog=f"gearcam {command.name}", description=command.doc)
     if command.many:
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
@@ -237,7 +236,7 @@ def _of_kind(command: Command, words: list[str]) -> None:
 
 
 def _laws() -> None:
-    """Show every law, of ratios and of lifts: parameters, continuity, source."""
+    """List transmission-ratio laws and motion laws with keys, continuity and source."""
     from gearcam.designs.listing import law_groups
 
     for heading, laws in law_groups():
@@ -245,14 +244,14 @@ def _laws() -> None:
 
 
 def _new(kind: str, file: str | None, process: str | None) -> None:
-    """Write a commented design file to start from; an existing file is never overwritten."""
+    """Create a commented design file to start from; never overwrites a file."""
     from gearcam.designs.template import template
     from gearcam.export.write import write_new
 
     if kind not in KINDS:
         _refuse([unknown_word(kind, "is not a kind of design", KINDS, "KIND")])
     if process is not None and process not in KINDS[kind].processes:
-        _refuse([unknown_word(process, "is not known here", KINDS[kind].processes, "--for")])
+        _refuse([unknown_word(process, "is not a process", KINDS[kind].processes, "--for")])
     text = template(kind, Path(file or "").stem, process or "")
     if file is None:
         say(text.rstrip("\n"))
@@ -283,7 +282,7 @@ def _migrate(files: list[str]) -> None:
 
 
 def _schema() -> None:
-    """Print the JSON schema of design files, for editors."""
+    """Print the JSON Schema of design files, for use in editors."""
     import json
 
     from gearcam.designs.schema import schema as made
@@ -292,12 +291,12 @@ def _schema() -> None:
 
 
 def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
-    """Return the kinds of files of ``--only``, or refuse."""
+    """Return the kinds of files listed by ``--only``; None without the option."""
     if only is None:
         return None
     kinds = [word.strip() for words in only for word in words.split(",") if word.strip()]
     if not kinds:
-        _refuse([Problem("nothing is listed", key="--only", allowed=", ".join(all_formats()))])
+        _refuse([Problem("the list is empty", key="--only", allowed=", ".join(all_formats()))])
     strange = [kind for kind in kinds if kind not in FORMATS and kind not in all_formats()]
     if strange:
         words = "is not a kind of file"
@@ -318,7 +317,7 @@ Adapt = Callable[[Design], Design]
 def _each_result(
     files: Sequence[str], done: str, action: Action, *, debug: bool, adapt: Adapt | None = None
 ) -> None:
-    """Do something with the result of every file, its design adapted where asked."""
+    """Run `action` on the result of every file, after `adapt` has changed its design."""
     names: dict[str, str] = {}
     _each(files, done, lambda file: _one(file, names, done, action, adapt), debug=debug)
 
@@ -331,7 +330,7 @@ def _each(
     good: str = "",
     debug: bool = False,
 ) -> None:
-    """Do some work with every file, and end with the largest code; `good` files are counted."""
+    """Run `work` on every file and exit with the largest code; `good` is the word for success."""
     codes = []
     for file in files:
         try:
@@ -355,7 +354,7 @@ def _each(
 
 
 def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Adapt | None) -> int:
-    """Do something with one file and say what came of it."""
+    """Run `action` on the result of one file, print the outcome and return the exit code."""
     start = time.perf_counter()
     design = load(file) if adapt is None else adapt(load(file))
     demand_new_name(design, file, names)
@@ -374,8 +373,9 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
     say(textwrap.indent("\n".join(all_lines(written)), "  "))
     if not written.complete:
-        found = written.summary["meshing"]
-        complain(f"{file}: interrupted: {found['steps_done']} of {found['steps']} steps are kept")
+        meshing = written.summary["meshing"]
+        done, steps = meshing["steps_done"], meshing["steps"]
+        complain(f"{file}: interrupted: {done} of {steps} steps were written")
         return INTERRUPTED
     errors = any(finding.severity == "error" for finding in written.findings)
     for line in remedy_lines(remedies(result)) if errors else ():
@@ -384,7 +384,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
 
 
 def _fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
-    """Say that the program is at fault; the traceback only where it is asked for."""
+    """Report a bug in gearcam; print the traceback only when debugging."""
     if debug or os.environ.get(DEBUG):
         import traceback
 

@@ -1,4 +1,4 @@
-"""What a kind of design adds to the command line, and what commands share."""
+"""Commands for one kind of design, and what all commands share."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ from gearcam.written import Written
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """A command on design files of one kind.
+    """A command that works on design files.
 
     Parameters
     ----------
     name : str
-        As it is typed.
+        Name on the command line.
     done : str
-        What has been done with a file then: ``meshed``.
+        Past participle for messages, such as ``meshed``.
     doc : str
-        What it does, and what it writes.
+        One line of help: what it does and which files it writes.
     arguments : callable
         ``arguments(parser)`` adds its options to a parser.
     adapt : callable
-        ``adapt(design, options)`` returns the design that it works on, or refuses another kind.
+        ``adapt(design, options)`` returns the design to work on; it raises `DesignError` for a
+        kind of design that the command does not support.
     run : callable
         ``run(result, output, options, progress)`` does the work and writes its files.
     many : bool
@@ -45,23 +46,23 @@ class Command:
 
 
 def demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:
-    """Refuse a second design that would be written over the first one of the same call.
+    """Refuse a design that would overwrite the files of another one in the same call.
 
     Parameters
     ----------
     design : Design
-        From a `file`.
+        The design read from `file`.
     file : str
-        Where it came from.
+        Its design file.
     names : dict of str to str
-        Files by the names of their designs; that of this one is added.
+        Design files by the names of their designs; this one is added.
 
     Raises
     ------
     DesignError
-        If another file's design has the name.
+        If the design of another file has the same name.
     """
     before = names.setdefault(design.name.casefold(), file)
     if before != file:
-        message = f'"{design.name}" is taken by {before} in this call'
+        message = f'the design of {before} has the same name, "{design.name}"'
         raise DesignError([Problem(message, file=file, key="name", value=design.name)])

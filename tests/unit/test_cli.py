@@ -246,7 +246,7 @@ def test_two_designs_of_one_name_do_not_overwrite_each_other(
     first = design("good")
     (desk / "copy.toml").write_text(GOOD.format(name="GOOD"))
     assert main(["build", first, "copy.toml"]) == 2
-    assert "taken by good.toml" in capsys.readouterr().err
+    assert 'name: the design of good.toml has the same name, "GOOD"' in capsys.readouterr().err
     assert main(["build", first, first]) == 0
 
 

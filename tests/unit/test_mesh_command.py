@@ -115,7 +115,7 @@ def test_a_close_mounting_ends_with_an_error(design: str) -> None:
         (["--from", "40"], "before it begins"),
         (["--teeth", "21"], "no tooth 21"),
         (["--teeth", "2,2"], "listed twice"),
-        (["--teeth", "two"], "no list of teeth"),
+        (["--teeth", "two"], "not a list of teeth"),
         (["--center", "-1"], "meshing.center_distance_mm"),
     ],
 )
@@ -173,7 +173,7 @@ def test_an_interruption_keeps_the_steps_done(
     monkeypatch.setattr(room, "BLOCK", 5)
     code, folder = run(design)
     assert code == 130
-    assert "5 of 12 steps are kept" in capsys.readouterr().err
+    assert "5 of 12 steps were written" in capsys.readouterr().err
     found = summary(folder)["meshing"]
     assert isinstance(found, dict)
     assert (found["complete"], found["steps_done"]) == (False, 5)

@@ -16,29 +16,29 @@ from gearcam.report.page import page
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what the command takes to a `parser`."""
+    """Add the arguments of the command to a `parser`."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML) of one kind")
-    words = "make each file with each of these values; several times, with each combination"
+    words = "compare these values of a key; when repeated, all combinations"
     words += f" (at most {MOST} variants)"
     given = {"dest": "settings", "metavar": "KEY=VALUE,...", "default": []}
     parser.add_argument("--set", action="append", help=words, **given)
-    words = "show all facts, by name; those that differ are marked"
+    words = "list all facts by name and mark those that differ"
     parser.add_argument("--all", dest="every", action="store_true", help=words)
 
 
 def compare(files: Sequence[str], settings: Sequence[str], output: str, *, every: bool) -> str:
-    """Say how variants differ, and write their page into a folder.
+    """Print how variants differ, and write a page that compares them.
 
     Parameters
     ----------
     files : sequence of str
         Design files of one kind.
     settings : sequence of str
-        As they are typed.
+        Settings as typed, such as ``pair.module_mm=2,3``.
     output : str
-        The folder.
+        The output folder.
     every : bool
-        Whether all facts are told.
+        Whether to print all facts, not only those that differ.
 
     Returns
     -------

@@ -17,25 +17,25 @@ from gearcam.fuzz.trial import tried
 from gearcam.numeric.arguments import whole
 
 QUICK: Final = 40
-"""Designs of a quick campaign."""
+"""Number of designs in a quick campaign."""
 
 _COUNT: Final = 10_000
-"""Designs of a campaign."""
+"""Number of designs in a campaign."""
 
 
 def arguments(parser: ArgumentParser) -> None:
-    """Add what the command takes to a `parser`."""
-    words = f"try {QUICK} designs only"
+    """Add the arguments of the command to a `parser`."""
+    words = f"try only {QUICK} designs"
     parser.add_argument("--quick", action="store_true", help=words)
-    words = f"how many designs are tried; {_COUNT} where left out"
+    words = f"number of designs (default: {_COUNT})"
     parser.add_argument("--count", type=int, metavar="N", help=words)
-    words = "which designs: others for another seed"
+    words = "seed of the random numbers (default: 1)"
     parser.add_argument("--seed", type=int, default=1, metavar="N", help=words)
-    words = "designs of this kind only; several times for several"
+    words = "kind of design; may be repeated (default: all)"
     parser.add_argument("--kind", action="append", metavar="KIND", help=words)
-    words = "only the design of this number, of each kind; several times for several"
+    words = "try only the design with this number, of each kind; may be repeated"
     parser.add_argument("--only", action="append", type=int, metavar="N", help=words)
-    words = "processes; as many as the machine has where left out"
+    words = "number of processes (default: one for each processor)"
     parser.add_argument(
         "--jobs", dest="processes", type=int, default=os.cpu_count() or 1, metavar="N", help=words
     )
@@ -51,34 +51,34 @@ def fuzz(
     only: list[int] | None,
     processes: int,
 ) -> bool:
-    """Try random designs, say what comes of them, and write those that fail into a folder.
+    """Try random designs, print statistics, and write those that reveal a bug into a folder.
 
     Parameters
     ----------
     output : str
         The folder.
     quick : bool
-        Whether a few do.
+        Whether to try `QUICK` designs only, if `count` is None.
     count : int or None
-        How many.
+        Number of designs.
     seed : int
-        Which.
+        Seed of the random numbers.
     kind : list of str or None
-        Kinds of design; all that can be drawn if None.
+        Kinds of design; None: all that have random designs.
     only : list of int or None
-        Numbers of single designs.
+        Numbers of the designs to try; None: all.
     processes : int
-        How many try designs at once.
+        Number of processes.
 
     Returns
     -------
     bool
-        Whether nothing failed and few were refused.
+        Whether no bug was found and few designs were refused.
 
     Raises
     ------
     DesignError
-        If a kind is not known, or a count is none.
+        If a kind is not known, or a number is less than 1.
     """
     known = drawn_kinds()
     strange = [one for one in kind or () if one not in known]
@@ -100,14 +100,14 @@ def fuzz(
                 for found in campaign.run(progress):
                     complain(f"{found.case.name}: {found.failure.kind}: {found.failure.words}")
             _save(campaign, Path(output))
-        finally:  # of a campaign that was interrupted, too
+        finally:  # also after an interruption
             for line in campaign.lines():
                 say(line)
     return campaign.good if only is None else not campaign.found
 
 
 def _save(campaign: Campaign, folder: Path) -> None:
-    """Write what has failed, the first of each kind of failure made small."""
+    """Write the designs that fail; shrink the first one of each kind of failure."""
     told: list[Catch] = []
     for found in campaign.found:
         if not any(found.failure.same(one.failure) for one in told):
@@ -117,11 +117,11 @@ def _save(campaign: Campaign, folder: Path) -> None:
 
 
 def _saved(found: Catch, folder: Path) -> Path:
-    """Write a failing design with its story before it, and return its file."""
+    """Write a failing design, headed by a comment on its failure, and return its path."""
     from gearcam.export.write import write_all
 
     first = next(iter(found.files))
-    words = visible(" ".join(found.failure.words.split()))  # a comment holds no other
+    words = visible(" ".join(found.failure.words.split()))  # no control characters in comments
     head = f"# {found.failure.kind}: {words}\n# {found.case.command}\n"
     contents = {
         name: ((head if name == first else "") + text).encode()

@@ -1,4 +1,4 @@
-"""The command ``accuracy``: error against run time of a design's stages."""
+"""The command ``accuracy``: error against run time of a design's computations."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from gearcam.written import Written
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    words = "only these stages: law,centrode,flank,outline,solid,contact,cam; those of its kind"
-    parser.add_argument("--stage", metavar="STAGES", help=words)
-    words = "how often each level is made, in turns; the median counts"
+    words = "stages to measure, of law,centrode,flank,outline,solid,contact,cam (default: all)"
+    parser.add_argument("--stage", metavar="A,B,...", help=words)
+    words = "number of runs; the median time is reported (default: 5)"
     parser.add_argument("--repeat", metavar="K", type=int, default=5, help=words)
 
 
@@ -45,8 +45,7 @@ COMMANDS: Final = (
     Command(
         name="accuracy",
         done="measured",
-        doc="Measure error against run time of a design's stages; writes DIR/<name>/accuracy.csv "
-        "and accuracy.svg.",
+        doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.svg.",
         arguments=_arguments,
         adapt=_adapt,
         run=_run,

@@ -26,9 +26,9 @@ _WORKERS: Final = range(2, 5)
 def arguments(parser: ArgumentParser) -> None:
     """Add the command's file and options to a `parser`."""
     parser.add_argument("file", metavar="FILE", help="design file (TOML)")
-    words = "port of the page; a free one where left out"
+    words = "port of the page (default: any free port)"
     parser.add_argument("--port", type=int, default=0, metavar="N", help=words)
-    words = "open no browser: the address is told"
+    words = "print the address without opening a browser"
     parser.add_argument("--no-browser", action="store_true", help=words)
 
 

@@ -1,4 +1,4 @@
-"""The command ``follow``: what motion a given profile makes."""
+"""The command ``follow``: the motion of a follower on a given cam profile."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from gearcam.written import Written
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    words = "the profile: DXF with one closed outline, or CSV with x_mm, y_mm"
+    words = "cam profile: DXF with one closed outline, or CSV with columns x_mm and y_mm"
     parser.add_argument("profile", metavar="PROFILE", help=words)
-    words = "which wall it is: 1 or 2 of conjugate cams, inner, outer, lower or upper of a groove"
+    words = "wall to follow: 1 or 2 (conjugate cams); inner, outer, lower or upper (groove)"
     parser.add_argument("--wall", metavar="KEY", help=words)
 
 
@@ -36,7 +36,7 @@ COMMANDS: Final = (
     Command(
         name="follow",
         done="followed",
-        doc="Put a cam's follower on a given profile; writes DIR/<name>/followed.csv.",
+        doc="Compute the lift on a given cam profile; write DIR/NAME/followed.csv.",
         arguments=_arguments,
         adapt=_adapt,
         run=_run,

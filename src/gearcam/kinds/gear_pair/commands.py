@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.design import GearPairDesign
 
 _OPTIONS: Final = {"center_distance_mm": "center"}
-"""Options that are not called as their keys are."""
+"""Names of options that differ from their keys."""
 
 
 def with_meshing(design: Design, given: Mapping[str, Any]) -> GearPairDesign:
-    """Return a design with other settings of its meshing study.
+    """Return a design with changed settings of its meshing study.
 
     Parameters
     ----------
     design : Design
         The design of a gear pair.
     given : mapping of str to value
-        Keys of the table ``[meshing]`` and values, in the units of a file.
+        New values by keys of the table ``[meshing]``, in the units of a design file.
 
     Returns
     -------
@@ -38,7 +38,7 @@ def with_meshing(design: Design, given: Mapping[str, Any]) -> GearPairDesign:
     Raises
     ------
     DesignError
-        If nothing meshes in such a design, or a value is not what the file may hold.
+        If the design is not a gear pair, or a value is not allowed.
     """
     from gearcam.kinds.gear_pair.design import NAME
 
@@ -54,7 +54,7 @@ def _table() -> Table:
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the settings of a study: they stand before those of the file's table [meshing]."""
+    """Add an option for each key of the table [meshing], which it overrides."""
     for key, entry in _table().entries.items():
         unit = entry.param.quantity.unit.upper()
         parser.add_argument(
@@ -70,7 +70,7 @@ def _numbers(text: str) -> list[int]:
     try:
         return [int(word) for word in text.split(",")]
     except ValueError:
-        raise argparse.ArgumentTypeError(f'"{text}" is no list of teeth such as 1,27') from None
+        raise argparse.ArgumentTypeError(f'"{text}" is not a list of teeth such as 1,27') from None
 
 
 def _adapt(design: Design, options: Mapping[str, Any]) -> Design:
@@ -88,8 +88,7 @@ COMMANDS: Final = (
     Command(
         name="mesh",
         done="meshed",
-        doc="Turn the pair step by step: contact, interference, backlash; writes "
-        "DIR/<name>/meshing.csv.",
+        doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
         arguments=_arguments,
         adapt=_adapt,
         run=_run,
