@@ -2,11 +2,11 @@
 # make test    every test that is not slow (installs both extras, STEP files and charts, 440 MB, and
 #              on Debian, as root, the browser chromium)
 # make lint    style, types, import contracts
-# make slow    the slow tests    make bench   measure, and write docs/performance.md
-# make needs   what each output computes and imports, into docs/performance.md
+# make slow    the slow tests    make bench   measure, and write benchmarks/results/performance.md
+# make needs   what each output computes and imports, into benchmarks/results/performance.md
 # make peers   compare flanks with those of another package
-# make growth   how time and memory grow with the size of designs; write docs/growth.md
-# make accuracy  compare methods, error against run time, and write docs/accuracy.md
+# make growth   how time and memory grow with the size of designs; write benchmarks/results/growth.md
+# make accuracy  compare methods, error against run time, and write benchmarks/results/accuracy.md
 # make compare BASE=COMMIT [N=50] [SEED=1] [MORE=...]   what both make of N random designs of each
 #              kind and of the gallery; MORE goes to tools/compare.py, which tells of its options
 # make matrix  the tests with every supported Python found, and with the lowest and the newest versions

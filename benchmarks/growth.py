@@ -1,4 +1,4 @@
-"""Measure how time and memory grow with what a design may have much of; write docs/growth.md.
+"""Measure how time and memory grow with the size of designs; write benchmarks/results/growth.md.
 
 Words as arguments choose the series whose names hold one of them; then nothing is written.
 """
@@ -23,7 +23,7 @@ import growth_cases
 from gearcam.numeric.memory import keep_freed_memory
 from measuring import ROOT, environment, show
 
-PAGE = ROOT / "docs" / "growth.md"
+PAGE = ROOT / "benchmarks" / "results" / "growth.md"
 HEAD = """# Growth
 
 Written by `make growth`: processor time and peak memory of one build, of short ones the better of

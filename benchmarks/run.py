@@ -1,4 +1,4 @@
-"""Measure everything and write docs/performance.md. Nothing there is written by hand."""
+"""Measure everything and write benchmarks/results/performance.md, which holds no number by hand."""
 
 from __future__ import annotations
 

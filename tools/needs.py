@@ -1,7 +1,7 @@
 """What each output computes and imports: found in processes of their own, shown in a table.
 
-The table stands in docs/performance.md; this tool writes it, and `make bench` with all the rest. A
-test holds it against what is found. An *output* is a kind of file or a command, asked of one small
+This tool writes the table of benchmarks/results/performance.md, and `make bench` the whole page. A
+test compares it with what is found. An *output* is a kind of file or a command, asked of one small
 design of each kind.
 """
 
@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Final
 
 ROOT: Final = Path(__file__).resolve().parents[1]
-PAGE: Final = ROOT / "docs" / "performance.md"
+PAGE: Final = ROOT / "benchmarks" / "results" / "performance.md"
 BEGIN: Final = "<!-- what each output needs: written by tools/needs.py -->"
 END: Final = "<!-- end of what each output needs -->"
 

@@ -1,4 +1,7 @@
-"""Compare methods and write the tables and figures of docs/accuracy.md. No number is by hand."""
+"""Compare methods and write the tables and figures of benchmarks/results/accuracy.md.
+
+No number is by hand.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +26,8 @@ from gearcam.studies.svg import log_charts
 from measuring import ROOT, environment
 from methods import Found, climb
 
-PAGE = ROOT / "docs" / "accuracy.md"
-FIGURES = ROOT / "docs" / "accuracy"
+PAGE = ROOT / "benchmarks" / "results" / "accuracy.md"
+FIGURES = ROOT / "benchmarks" / "results" / "accuracy"
 BEGIN, END = "<!-- written by make accuracy -->", "<!-- end of what make accuracy writes -->"
 COMMANDED = ("ellipse", "plate_cam_offset_roller")
 """Profiles of which the command's own figures are shown."""

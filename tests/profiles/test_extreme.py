@@ -22,7 +22,7 @@ CASES = {path.stem: must_of(path.read_text()) for path in sorted(EXTREME.glob("*
 BUILT = [name for name, must in CASES.items() if must.ending == "built"]
 NEAREST = [name for name, must in CASES.items() if must.value]
 
-PAGE = EXTREME.parents[1] / "docs" / "accuracy.md"
+PAGE = EXTREME.parents[1] / "benchmarks" / "results" / "accuracy.md"
 
 PHASES = (0.0, 0.29, 0.57, 0.83)
 """Shares of the driver's way at which wheels are laid over each other."""

@@ -1,4 +1,4 @@
-"""The table of what each output computes and imports, in docs/performance.md, is true."""
+"""What each output computes and imports is as benchmarks/results/performance.md says."""
 
 from __future__ import annotations
 
