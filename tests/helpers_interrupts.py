@@ -54,18 +54,6 @@ prime_radius_mm = 40
 [output]
 files = ["csv"]
 """
-OLD = """\
-kind = "gear-pair"
-name = "old"
-[law]
-type = "ellipse"
-eccentricity = 0.2
-[pair]
-module_mm = 2
-teeth = [22, 22]
-[helix]
-steps = 2
-"""
 
 BUILD = ("build", "pair.toml")
 MESH = ("mesh", "pair.toml")
@@ -103,8 +91,6 @@ CASES: dict[str, tuple[tuple[str, ...], str, int, str]] = {
     "follow, writing": (FOLLOW, WRITE, 1, BEFORE),
     "accuracy": (ACCURACY, "gearcam.studies.accuracy._first_round", 1, BEFORE),
     "accuracy, writing": (ACCURACY, WRITE, 2, BEFORE),
-    "migrate": (("migrate", "old.toml"), "gearcam.designs.migrate.spans_of", 1, BEFORE),
-    "migrate, writing": (("migrate", "old.toml"), WRITE, 1, AFTER),
     "new": (("new", "cam", "new.toml"), "gearcam.designs.template.template", 1, BEFORE),
     "new, writing": (("new", "cam", "new.toml"), "pathlib.Path.open", 1, AFTER),
     "laws": (("laws",), "gearcam.cli.law_lines", 2, BEFORE),
@@ -160,7 +146,6 @@ def prepare() -> None:
     Path("pair.toml").write_text(pair.format(eccentricity=0.2, files='["csv"]'))
     refused = pair.replace("= 8", "= 90").replace('"pair"', '"refused"')
     Path("refused.toml").write_text(refused.format(eccentricity=0.2, files='["csv"]'))
-    Path("old.toml").write_text(OLD)
     # what loads libraries does so here, not where calls are counted
     Path("warm").mkdir()
     for words in (BUILD, COMPARE, MESH, FOLLOW, ACCURACY):

@@ -100,7 +100,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Run the command named by the first word with the other words."""
-    functions = (_build, _check, _compare, _view, _laws, _new, _migrate, _schema, _fuzz)
+    functions = (_build, _check, _compare, _view, _laws, _new, _schema, _fuzz)
     own = {function.__name__.lstrip("_"): function for function in functions}
     word = words[0] if words else ""
     if word in own:
@@ -148,7 +148,7 @@ def _parser(
 ) -> argparse.ArgumentParser:
     """Return the argument parser of a command; its help text is the function's docstring."""
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
-    if command in (_build, _check, _migrate):
+    if command in (_build, _check):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
     if command in (_build, _check, _compare, _fuzz):
         _add_common(parser)
@@ -266,21 +266,6 @@ def _new(kind: str, file: str | None, process: str | None) -> None:
     say(f"{file}: written; build it with: gearcam build {shlex.quote(file)}")
 
 
-def _migrate(files: list[str]) -> None:
-    """Rewrite design files with keys that are no longer known; comments stay."""
-    from gearcam.designs.migrate import migrate
-    from gearcam.export.write import rewrite
-
-    def one(file: str) -> int:
-        content, changes = migrate(file)
-        if changes:
-            rewrite(file, content)
-        say("\n  ".join([f"{file}: {'migrated' if changes else 'nothing to change'}", *changes]))
-        return GOOD
-
-    _each(files, "migrated", one, good="up to date")
-
-
 def _schema() -> None:
     """Print the JSON Schema of design files, for use in editors."""
     import json
@@ -323,14 +308,9 @@ def _each_result(
 
 
 def _each(
-    files: Sequence[str],
-    done: str,
-    work: Callable[[str], int],
-    *,
-    good: str = "",
-    debug: bool = False,
+    files: Sequence[str], done: str, work: Callable[[str], int], *, debug: bool = False
 ) -> None:
-    """Run `work` on every file and exit with the largest code; `good` is the word for success."""
+    """Run `work` on every file and exit with the largest code."""
     codes = []
     for file in files:
         try:
@@ -349,7 +329,7 @@ def _each(
             codes.append(_fault(error, file=file, debug=debug))
     if len(files) > 1:
         count = sum(code in (GOOD, FINDINGS) for code in codes)
-        say(f"{len(files)} files: {count} {good or done}, {len(files) - count} refused")
+        say(f"{len(files)} files: {count} {done}, {len(files) - count} refused")
     raise SystemExit(max(codes, default=GOOD))
 
 

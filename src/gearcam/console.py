@@ -12,7 +12,7 @@ import re
 import sys
 import textwrap
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
@@ -73,20 +73,9 @@ def written_lines(written: Written) -> Iterator[str]:
         yield f"  {name:<{width}}  {_size(folder / name):>9}"
     for name in written.removed:
         yield f"  {name:<{width}}  removed: this build does not write it"
-    yield from _stale_lines(written.summary.get("stale", {}))
-
-
-def _stale_lines(stale: Mapping[str, str | None]) -> Iterator[str]:
-    """Yield what is in the folder and does not belong to the design as it is."""
-    known = [name for name, made in stale.items() if made is not None]
-    unknown = [name for name in stale if name not in known]
-    way = "build again: that makes them anew or removes them"
-    if known:
-        told = f"{', '.join(known)}: made from another state of the design; {way}"
-        yield wrapped(f"stale: {told}", first="")
-    if unknown:
-        told = f"{', '.join(unknown)}: written by an earlier gearcam, from a design not recorded"
-        yield wrapped(f"stale: {told}; {way}", first="")
+    if stale := ", ".join(written.summary.get("stale", ())):
+        words = "made from another state of the design; build again to renew or remove them"
+        yield wrapped(f"outdated: {stale}: {words}", first="")
 
 
 def _size(path: Path) -> str:

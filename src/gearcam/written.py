@@ -138,7 +138,7 @@ def put(
     made = result.design_hash
     summary: dict[str, Any] = {}
 
-    def complete(before: Mapping[str, str | None]) -> dict[str, bytes]:
+    def complete(before: Mapping[str, str]) -> dict[str, bytes]:
         hashes = {**(before if keep else {}), **dict.fromkeys(contents, made)}
         stale = {name: old for name, old in hashes.items() if old != made}
         about = {"files": {name: made for name in hashes if name not in stale}}

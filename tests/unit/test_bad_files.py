@@ -29,7 +29,6 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "check": ("check", "FILE"),
     "compare": ("compare", "good.toml", "FILE"),
     "view": ("view", "--no-browser", "FILE"),
-    "migrate": ("migrate", "FILE"),
     "mesh": ("mesh", "FILE"),
     "accuracy": ("accuracy", "FILE"),
     "follow": ("follow", "FILE", "profile.csv"),

@@ -27,7 +27,6 @@ NEW = {
     # what has changed where a command was not stopped before it was done
     "build": {f"output/pair/{name}" for name in (*OUTLINES, "pair.svg", "summary.json")},
     "mesh": {"output/pair/meshing.csv", "output/pair/summary.json"},
-    "migrate": {"old.toml"},
     "new": {"new.toml"},
 }
 
@@ -70,7 +69,7 @@ def test_the_stages_are_not_reached_by_chance() -> None:
     commands = {words[0] for words, *_ in CASES.values()}
     assert commands == {
         *("build", "check", "mesh", "compare", "follow", "accuracy"),
-        *("migrate", "new", "laws", "schema"),
+        *("new", "laws", "schema"),
     }
     assert {words[0] for words, *_, left in CASES.values() if left == BEFORE} == commands
 

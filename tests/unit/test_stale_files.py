@@ -205,16 +205,16 @@ def test_a_check_names_the_files_of_another_state(
 ) -> None:
     desk = Desk(tmp_path, PAIR)
     built = desk.run("build", "--only", "csv")
-    assert "stale" not in capsys.readouterr().out
+    assert "outdated" not in capsys.readouterr().out
     desk.edit("[22, 22]", "[24, 24]")
     checked = desk.run("check")
     assert (checked["files"], checked["stale"]) == ({}, built["files"])
     told = " ".join(capsys.readouterr().out.split())
     names = ", ".join(built["files"])
-    assert f"stale: {names}: made from another state of the design; build again" in told
+    assert f"outdated: {names}: made from another state of the design; build again" in told
     desk.edit("[24, 24]", "[22, 22]")
     assert desk.run("check")["files"] == built["files"]
-    assert "stale" not in capsys.readouterr().out
+    assert "outdated" not in capsys.readouterr().out
 
 
 def test_a_study_is_new_and_the_build_stale_and_later_the_study_too(tmp_path: Path) -> None:
@@ -251,23 +251,3 @@ def test_a_file_that_was_deleted_is_not_listed(tmp_path: Path) -> None:
     desk.run("build")
     (desk.folder / "pair.svg").unlink()
     assert set(desk.run("check")["files"]) == OUTLINES
-
-
-def test_files_of_the_first_layout_are_stale_until_they_are_built(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    desk = Desk(tmp_path, PAIR)
-    desk.run("build")
-    old = {"format": 1, "files": ["pair.svg", *sorted(OUTLINES)]}
-    (desk.folder / "summary.json").write_text(json.dumps(old), encoding="utf-8")
-    (desk.folder / "mine.txt").write_text("keep", encoding="utf-8")
-    capsys.readouterr()
-    checked = desk.run("check")
-    assert (checked["files"], checked["stale"]) == ({}, dict.fromkeys(old["files"]))
-    told = " ".join(capsys.readouterr().out.split())
-    assert "stale: pair.svg, centrodes.csv" in told
-    assert "by an earlier gearcam, from a design not recorded; build again" in told
-    built = desk.run("build", "--only", "csv")
-    assert "stale" not in built
-    assert set(built["files"]) == OUTLINES
-    assert (desk.folder / "mine.txt").exists()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from gearcam.errors import WriteError
-from gearcam.export.write import is_plain, previous_files, write_all
+from gearcam.export.write import is_plain, previous_files, rewrite, write_all
 
 
 def summary(*names: object) -> bytes:
@@ -64,7 +64,7 @@ STRANGE = {
     "no text": b"\xff\xfe",
     "deep": b"[" * 100_000,
     "elsewhere": summary(*ELSEWHERE),
-    "names elsewhere": json.dumps({"format": 1, "files": ELSEWHERE}).encode(),
+    "names alone": json.dumps({"format": 3, "files": ["mine.txt"]}).encode(),
     "name too long": summary("a" * 5000),
 }
 
@@ -248,12 +248,15 @@ def test_previous_files_are_those_that_are_there(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(b"")
     (tmp_path / "folder").mkdir()
     (tmp_path / "summary.json").write_text(json.dumps(listed), encoding="utf-8")
-    assert previous_files(tmp_path) == {"a.dxf": "1", "b.dxf": "2", "c.dxf": None}
+    assert previous_files(tmp_path) == {"a.dxf": "1", "b.dxf": "2"}
     assert previous_files(tmp_path / "none") == {}
 
 
-def test_names_of_the_first_layout_are_known_without_a_design(tmp_path: Path) -> None:
-    first = {"format": 1, "files": ["a.dxf", "gone.dxf", "a.dxf", "summary.json"]}
-    (tmp_path / "summary.json").write_text(json.dumps(first), encoding="utf-8")
-    (tmp_path / "a.dxf").write_bytes(b"")
-    assert previous_files(tmp_path) == {"a.dxf": None}
+def test_of_a_link_the_file_is_rewritten_with_its_permissions(tmp_path: Path) -> None:
+    file, link = tmp_path / "pair.toml", tmp_path / "link.toml"
+    file.write_bytes(b"old")
+    file.chmod(0o640)
+    link.symlink_to(file)
+    rewrite(link, b"new")
+    assert link.is_symlink()
+    assert (file.read_bytes(), file.stat().st_mode & 0o777) == (b"new", 0o640)

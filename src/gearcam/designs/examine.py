@@ -24,7 +24,6 @@ from gearcam.designs.faults import (
 )
 from gearcam.designs.kind import KINDS, DesignKind, Examined, own_faults
 from gearcam.designs.lines import Path
-from gearcam.designs.retired import without_retired
 from gearcam.designs.validate import faults_of
 
 _NAME = re.compile(r"\w[\w.-]*")
@@ -64,8 +63,6 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     if later is not None:
         found.faults.append(later)
         return found
-    retired, document = without_retired(document)
-    found.faults += [one.fault for one in retired]
     found.faults += _kind_faults(document)
     found.faults += _top_faults(document, kind)
     _examine_name(document, stem, found)

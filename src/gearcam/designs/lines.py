@@ -11,7 +11,6 @@ import contextlib
 import re
 from bisect import bisect_right
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 Path = tuple[str | int, ...]
 
@@ -28,38 +27,8 @@ _ESCAPE = re.compile(r'\\(u[0-9A-Fa-f]{4}|U[0-9A-Fa-f]{8}|[btnfr"\\])')
 _ESCAPED = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "\\": "\\"}
 
 
-@dataclass(frozen=True)
-class Span:
-    """Where ``key = value`` stands: places in the text.
-
-    Parameters
-    ----------
-    start, name : int
-        Where the key begins, and the last name of a dotted one.
-    value, end : int
-        Where the value begins and ends.
-    """
-
-    start: int
-    name: int
-    value: int
-    end: int
-
-
-@dataclass(frozen=True)
-class Spans:
-    """Where everything stands: ``key = value`` in `pairs`, the ends of ``[table]`` in `heads`.
-
-    Where the items of lists begin and end is in `items`.
-    """
-
-    pairs: dict[Path, Span] = field(default_factory=dict)
-    items: dict[Path, tuple[int, int]] = field(default_factory=dict)
-    heads: dict[Path, int] = field(default_factory=dict)
-
-
-def spans_of(text: str) -> Spans:
-    """Return where keys, values and heads of tables stand in a valid TOML `text`."""
+def spans_of(text: str) -> dict[Path, tuple[int, int]]:
+    """Return where each value and each list item begins and ends in a valid TOML `text`."""
     walk = _Walk(text)
     walk.document()
     return walk.spans
@@ -113,8 +82,8 @@ class _Walk:
         self.at = 0
         self.lines: dict[Path, int] = {(): 1}
         self.last_item: dict[Path, int] = {}
-        self.spans = Spans()
-        self.name = self.end = 0
+        self.spans: dict[Path, tuple[int, int]] = {}
+        self.end = 0
         self.starts = [0, *(match.end() for match in re.finditer("\n", text))]
 
     def document(self) -> None:
@@ -166,7 +135,6 @@ class _Walk:
             path = self.enter(path)
             self.mark(path, start)
         self.take("]]" if many else "]")
-        self.spans.heads[path] = self.end
         return path
 
     def enter(self, path: Path) -> Path:
@@ -180,16 +148,14 @@ class _Walk:
         for name in self.key():
             path = (*path, name)
             self.mark(path, start, explicit=False)
-        name = self.name
         self.take("=")
         value = self.at
         self.value(path)
-        self.spans.pairs[path] = Span(start, name, value, self.end)
+        self.spans[path] = (value, self.end)
 
     def key(self) -> list[str]:
         names: list[str] = []
         while not names or self.take("."):
-            self.name = self.at
             match = _STRING.match(self.text, self.at)
             if match:
                 names.append(_unquoted(match.group()))
@@ -208,7 +174,7 @@ class _Walk:
                 item, start = (*path, index), self.at
                 self.mark(item, start)
                 self.value(item)
-                self.spans.items[item] = (start, self.end)
+                self.spans[item] = (start, self.end)
                 self.take(",")
                 index += 1
                 self.more()

@@ -40,7 +40,7 @@ SUMMARY: Final = "summary.json"
 _LARGEST: Final = 10_000_000
 """Size of a summary, bytes: a thousand times that of one."""
 
-Make = Callable[[Mapping[str, "str | None"]], Mapping[str, bytes]]
+Make = Callable[[Mapping[str, str]], Mapping[str, bytes]]
 """Returns contents by name, given the `previous_files` of the folder."""
 
 
@@ -115,7 +115,7 @@ def is_plain(name: str) -> bool:
     return bool(name) and not name.startswith(".") and not set(name) & set("/\\:\0")
 
 
-def previous_files(folder: str | os.PathLike[str]) -> dict[str, str | None]:
+def previous_files(folder: str | os.PathLike[str]) -> dict[str, str]:
     """Return the files that the summary in a folder lists, current and stale, if they are there.
 
     Parameters
@@ -125,33 +125,25 @@ def previous_files(folder: str | os.PathLike[str]) -> dict[str, str | None]:
 
     Returns
     -------
-    dict of str to str or None
-        By plain name the hash of the design that a file was made from, None where the summary does
-        not tell it; without the summary itself. Empty where there is no summary that can be read,
-        or it is not one of gearcam's.
+    dict of str to str
+        By plain name the hash of the design that a file was made from; without the summary itself.
+        Empty where there is no summary that can be read, or it is not one of gearcam's.
     """
     place = Path(folder)
     try:
         content = json.loads(read(place / SUMMARY, _LARGEST))
     except (OSError, ValueError, RecursionError):
         return {}
-    found: dict[str, str | None] = {}
+    found: dict[str, Any] = {}
     own = isinstance(content, dict) and isinstance(content.get("format"), int)
     for key in ("files", "stale") if own else ():
-        found |= _listed(content.get(key))
+        listed = content.get(key)
+        found |= listed if isinstance(listed, dict) else {}
     return {
         name: made
         for name, made in found.items()
-        if is_plain(name) and name != SUMMARY and _is_there(place / name)
+        if isinstance(made, str) and is_plain(name) and name != SUMMARY and _is_there(place / name)
     }
-
-
-def _listed(entries: Any) -> dict[str, str | None]:
-    """Return names with hashes; the first layout listed names only."""
-    if isinstance(entries, list):
-        return {name: None for name in entries if isinstance(name, str)}
-    known = entries.items() if isinstance(entries, dict) else ()
-    return {name: made for name, made in known if made is None or isinstance(made, str)}
 
 
 def _is_there(place: Path) -> bool:

@@ -9,7 +9,7 @@ from typing import Any, Final
 from gearcam.designs.design import path_of
 from gearcam.designs.faults import dotted
 from gearcam.designs.kind import KINDS
-from gearcam.designs.lines import Path, Spans, spans_of
+from gearcam.designs.lines import Path, spans_of
 from gearcam.designs.reader import document_in
 from gearcam.designs.table import Key
 
@@ -172,17 +172,10 @@ def replaced(text: str, values: Values) -> str:
         If a key does not stand in it.
     """
     spans = spans_of(text)
-    places = [(*_place(spans, path_of(key)), value) for key, value in values.items()]
+    places = [(*spans[path_of(key)], value) for key, value in values.items()]
     for start, end, value in sorted(places, reverse=True):
         text = text[:start] + _written(value, text[start:end]) + text[end:]
     return text
-
-
-def _place(spans: Spans, path: Path) -> tuple[int, int]:
-    if path in spans.items:
-        return spans.items[path]
-    span = spans.pairs[path]
-    return span.value, span.end
 
 
 def _written(value: float, before: str) -> str:
