@@ -1,6 +1,6 @@
-"""What the command line says: tables that line up, sizes, progress on a terminal.
+"""Output of the command line: aligned tables, file sizes, error messages, a progress bar.
 
-Results go to stdout, what went wrong to stderr; piped output is plain text.
+Results go to stdout, errors to stderr; output into a pipe or file is plain text.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
     from gearcam.written import Written
 
 DEBUG: Final = "GEARCAM_DEBUG"
-"""The variable that asks for tracebacks."""
+"""Environment variable that turns tracebacks on."""
 
 _WIDTH: Final = 96
 
 _STEERING: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-"""Characters that are no text: of control, but for the end of a line, and of direction."""
+"""Control characters other than tab and newline, and marks that change the text direction."""
 
 
 def law_lines(law: Listed) -> Iterator[str]:
-    """Yield what is told of a `law`: its name, its meaning, a line of facts, its keys."""
+    """Yield the lines of a `law`: name, description, its line in a design file, keys."""
     yield f"{law.name}\n{wrapped(law.doc)}\n    {law.line}"
     width = 2 + max(len(key) for key, _ in law.rows)
     for key, words in law.rows:
@@ -46,7 +46,7 @@ def law_lines(law: Listed) -> Iterator[str]:
 
 
 def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
-    """Lay out findings as a table, each with its message below."""
+    """Yield findings as an aligned table, each with its message below."""
     if not findings:
         yield "findings: none"
         return
@@ -58,23 +58,23 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
 
 
 def all_lines(written: Written) -> Iterator[str]:
-    """Yield all that is said of what was `written`: sizes, study, findings, files."""
+    """Yield facts, findings and files of what was `written`."""
     yield from written.facts.lines()
     yield from finding_lines(written.findings)
     yield from written_lines(written)
 
 
 def written_lines(written: Written) -> Iterator[str]:
-    """Yield the files that were written, with their sizes, and those that were removed."""
+    """Yield the files written, with their sizes, and those removed or outdated."""
     folder = written.directory
     yield f"written to {folder}"
     width = max(map(len, (*written.files, *written.removed)), default=0)
     for name in written.files:
         yield f"  {name:<{width}}  {_size(folder / name):>9}"
     for name in written.removed:
-        yield f"  {name:<{width}}  removed: this build does not write it"
+        yield f"  {name:<{width}}  removed: no longer part of this build"
     if stale := ", ".join(written.summary.get("stale", ())):
-        words = "made from another state of the design; build again to renew or remove them"
+        words = "made from another version of the design; build again to renew or remove them"
         yield wrapped(f"outdated: {stale}: {words}", first="")
 
 
@@ -86,16 +86,17 @@ def _size(path: Path) -> str:
 
 
 def fault_text(error: Exception, file: str) -> str:
-    """Return that the program is at fault, not the design in `file`, with the `error`."""
+    """Return the message for a bug: an unexpected `error` while working on `file`."""
     place = f"{file}: " if file else ""
+    what = f"{type(error).__name__}: {error}"
     return (
-        f"{place}this is a fault of gearcam, not of your design: {type(error).__name__}: {error}\n"
-        f"  please report it with the design file; {DEBUG}=1 or --debug shows where it happened"
+        f"{place}this is a bug in gearcam, not a mistake in your design: {what}\n"
+        f"  please report it with the design file; --debug or {DEBUG}=1 prints a traceback"
     )
 
 
 def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> str:
-    """Return why nothing was `done` with a `file` in words: the `error`, with every problem."""
+    """Return the message for a refused `file`: the `error` with all its problems."""
     if isinstance(error, InfeasibleError):
         return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
     count = len(error.problems)
@@ -106,7 +107,7 @@ def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> 
 
 
 def infeasible_text(error: InfeasibleError) -> str:
-    """Return why a design cannot be made, with its numbers and the way out, indented."""
+    """Return why a design cannot be made, with value and limit, indented."""
     lines = [f"{error.what}, at {error.where}" if error.where else error.what]
     numbers = (("value", error.value), ("limit", error.limit))
     shown = [
@@ -118,7 +119,7 @@ def infeasible_text(error: InfeasibleError) -> str:
 
 
 def remedy_lines(found: Remedies) -> Iterator[str]:
-    """Yield what a search for remedies found, and how far it came."""
+    """Yield the remedies that a search has found, and whether it was complete."""
     if found.found:
         yield "built without errors with one of these:"
     for remedy in found.found:
@@ -133,7 +134,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
 
 
 def wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:
-    """Return `text` folded to the width of a page, `first` and `rest` before its lines."""
+    """Return `text` wrapped to the page width, its lines indented by `first` and `rest`."""
     return textwrap.fill(
         text,
         _WIDTH,
@@ -146,7 +147,7 @@ def wrapped(text: str, *, first: str = "    ", rest: str = "    ") -> str:
 
 @contextlib.contextmanager
 def progress_bar(file: str) -> Iterator[Callable[[str, int, int], None] | None]:
-    """Draw a bar while long work runs, on a terminal; elsewhere there is nothing to call."""
+    """Draw a progress bar on a terminal; yield its callback, or None elsewhere."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -166,7 +167,7 @@ def progress_bar(file: str) -> Iterator[Callable[[str, int, int], None] | None]:
 
 @contextlib.contextmanager
 def streams() -> Iterator[None]:
-    """Have streams that take any text: closed ones forget it, poor terminals get escapes."""
+    """Make stdout and stderr accept any text: discard it if closed, escape what they lack."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
@@ -174,11 +175,11 @@ def streams() -> Iterator[None]:
             getattr(sys, name).reconfigure(errors="backslashreplace")
     yield
     for stream in (sys.stdout, sys.stderr):
-        _write("", stream, end="")  # what others, such as argparse, have left
+        _write("", stream, end="")  # flush what argparse and others have written
 
 
 def quieten() -> None:
-    """Keep back what libraries warn programmers of; errors are told all the same."""
+    """Hide the warnings that libraries address to programmers; errors are still reported."""
     warnings.simplefilter("ignore")
     logging.getLogger().addHandler(logging.NullHandler())
 
@@ -194,16 +195,16 @@ def complain(text: str) -> None:
 
 
 def visible(text: str) -> str:
-    """Return a `text` with escapes for what steers a terminal, or turns the order of letters."""
+    """Return `text` with control characters and marks of text direction escaped."""
     return _STEERING.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
 def _write(text: str, stream: TextIO, end: str = "\n") -> None:
-    """Print; a reader that has gone (such as ``head``) is no reason to stop building."""
+    """Print; a closed pipe (such as one to ``head``) does not stop a build."""
     try:
         print(visible(text), file=stream, end=end, flush=True)
     except OSError as error:
-        # what is still buffered goes nowhere, and the flush at the end finds nothing broken
+        # discard the buffer, so that the flush at exit does not fail again
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         if not isinstance(error, BrokenPipeError) and stream is sys.stdout:
             raise WriteError(f"cannot write to the standard output: {error.strerror}") from error

@@ -1,12 +1,13 @@
-"""What goes wrong, in words a machinist understands.
+"""Errors that gearcam raises on purpose, with messages that a machinist understands.
 
-Three kinds of refusal, each from a common base and from the builtin that fits:
+All derive from `GearcamError` and from the matching builtin:
 
-* `DesignError`: the design file (or the call) is wrong by reading it. It carries every problem of
-  the file at once, each with its place.
-* `InfeasibleError`: the design reads well, but computing shows that it cannot be made. It carries
-  the number that fails, the limit, and the ways in which it may be lifted.
-* `WriteError`: the disk refuses.
+* `DesignError`: the design file or the call contains mistakes. It lists every problem of the file
+  at once, each with its place.
+* `InfeasibleError`: the design is valid, but computation shows that it cannot be made. It holds the
+  value, the limit it violates, and changes that may help.
+* `MissingExtraError`: an optional library is not installed.
+* `WriteError`: a file cannot be written.
 """
 
 from __future__ import annotations
@@ -35,24 +36,24 @@ class GearcamError(Exception):
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong in a design file.
+    """One mistake in a design file.
 
     Parameters
     ----------
     message : str
-        What is wrong, without the place.
+        What is wrong, without its place.
     file : str
-        The design file, empty for a design made in Python.
+        The design file; empty for a design made in Python.
     line : int or None
-        Line number in the file, counted from 1.
+        Line number in the file, from 1.
     key : str
         Dotted key path, such as ``pair.module_mm``.
     value : object
-        The offending value, as written.
+        The rejected value, as written.
     allowed : str
-        What is allowed there.
+        The values that are allowed.
     hint : str
-        The nearest key, or the nearest feasible value.
+        A suggestion: the nearest key or value.
     """
 
     message: str
@@ -73,7 +74,7 @@ class Problem:
 
 
 class DesignError(GearcamError, ValueError):
-    """The design is wrong by reading it.
+    """The design contains mistakes.
 
     Parameters
     ----------
@@ -99,21 +100,20 @@ class DesignError(GearcamError, ValueError):
 
 
 ABOVE = 1.01
-"""What a nearest value is told times its limit: told in three digits, it is not below."""
+"""Factor on a lower limit for the value suggested: rounded to three digits it stays above."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Way:
-    """A change of a design that may lift a refusal; nobody knows before it is built.
+    """A change of a design that may remove an error; building it shows whether it does.
 
     Parameters
     ----------
     near : mapping of str to value
-        The smallest change that may do: values by dotted keys of the design file, in its units;
-        empty for what the design has.
+        The smallest change that may help: values by dotted keys of the design file, in its units;
+        empty: the values that the design has.
     far : mapping of str to value
-        The same as far as the change can go, with the keys of `near`, if that is not one change
-        only.
+        The largest change, with the same keys; empty if `near` is the only one.
     """
 
     near: Mapping[str, object] = field(default_factory=dict)
@@ -121,25 +121,25 @@ class Way:
 
 
 class InfeasibleError(GearcamError, ValueError):
-    """The design reads well but cannot be made.
+    """The design is valid but cannot be made.
 
     Parameters
     ----------
     what : str
-        What cannot be, as a sentence without its full stop.
+        The reason, as a sentence without its full stop.
     where : str
         The place: an angle, a tooth, a wheel.
     value, limit : float or None
-        The number that fails and the limit it fails against, in `unit`.
+        The value and the limit that it violates, in `unit`.
     unit : str
         Unit of both.
     nearest : str
-        What else is to be known: what the numbers are, or the rule. No promise: what was built is
-        found by `gearcam.advice`.
+        What the numbers mean, or the rule. Not a tested remedy: `gearcam.remedies` finds those.
     ways : sequence of Way
-        Changes of the design that may lift the refusal.
+        Changes of the design that may help.
     more_teeth : float
-        How many times more teeth may lift it, or a smaller swing of the ratio; 0 where they cannot.
+        Factor on the number of teeth that may help, as may a smaller range of the ratio; 0 if
+        neither can.
 
     Examples
     --------
@@ -181,14 +181,14 @@ class InfeasibleError(GearcamError, ValueError):
 
 
 class MissingExtraError(GearcamError, ImportError):
-    """A library that only some need is not installed.
+    """An optional library is not installed.
 
     Parameters
     ----------
     what : str
-        What needs it.
+        What needs it, in the plural.
     extra : str
-        The extra of the package that brings it.
+        The extra of the package that installs it.
 
     Examples
     --------
@@ -206,7 +206,7 @@ class MissingExtraError(GearcamError, ImportError):
 
 
 class WriteError(GearcamError, OSError):
-    """A file or folder could not be written.
+    """A file or folder cannot be written.
 
     Examples
     --------

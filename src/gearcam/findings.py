@@ -1,8 +1,8 @@
 """Findings, and the registry of checks.
 
-A *check* looks at one aspect of a built design and yields *findings*: poor but buildable. What
-cannot be built raises instead. Checks live beside what they check and register themselves with
-`check`; their limits are the keys of the design file's ``[limits]`` table. Severities: ``note``
+A *check* examines one aspect of a built design and yields *findings*. A design that cannot be built
+at all raises an error instead. Checks are defined next to the code they examine and registered with
+`check`; their limits are the keys of the table ``[limits]`` of a design file. Severities: ``note``
 (good to know), ``warning`` (look before you cut), ``error`` (do not cut).
 """
 
@@ -23,7 +23,7 @@ Severity = Literal["note", "warning", "error"]
 
 @dataclass(frozen=True, kw_only=True)
 class Finding(Brief):
-    """One thing a person should know about a built design.
+    """The result of a check that the user should know.
 
     Parameters
     ----------
@@ -34,12 +34,12 @@ class Finding(Brief):
     message : str
         One or two plain sentences.
     value, limit : float or None
-        The number found and the limit it is held against, in `unit`; rounding noise against the
-        limit is 0.
+        The value found and its limit, in `unit`; a value that is rounding noise relative to the
+        limit becomes 0.
     unit : str
         Unit of both.
     where : str
-        Wheel, tooth, angle.
+        The place: wheel, tooth, angle.
 
     Examples
     --------
@@ -63,19 +63,19 @@ class Finding(Brief):
 
     @property
     def told(self) -> str:
-        """The number found with its unit, in words."""
+        """The value with its unit, as text."""
         return with_unit(self.value, self.unit)
 
     @property
     def held(self) -> str:
-        """The limit in words: what was found is on its wrong side."""
+        """The limit that the value violates, as text: ``at most 30 deg``."""
         if self.value is None or self.limit is None:
             return ""
         words = "at most" if self.value > self.limit else "at least"
         return f"{words} {with_unit(self.limit, self.unit)}"
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the finding for JSON: what does not exist is left out."""
+        """Return the finding as a dict for JSON, without empty entries."""
         fields = ("code", "severity", "message", "value", "limit", "unit", "where")
         return {
             name: getattr(self, name) for name in fields if getattr(self, name) not in (None, "")
@@ -83,16 +83,16 @@ class Finding(Brief):
 
 
 class Remark(NamedTuple):
-    """What a check yields: a finding without what its registration says of all of them.
+    """What a check yields: a finding without the fields given when the check is registered.
 
     Parameters
     ----------
     message, where, value
-        As of a `Finding`.
+        As in a `Finding`.
     severity, unit : str
-        Where they are not those of the check.
+        If they differ from those of the check.
     limit : float
-        In `unit`, where it is not that of the check; infinite where there is none.
+        In `unit`, if it differs from that of the check; infinite: no limit.
     """
 
     message: str
@@ -104,10 +104,10 @@ class Remark(NamedTuple):
 
 
 Look = Callable[[Any, float], Iterable[Remark]]
-"""What looks at a subject, given the limit in inner units (nan where there is none)."""
+"""The function of a check: ``look(subject, limit)``, the limit in mm or rad, nan without one."""
 
 Run = Callable[[Any, float], Iterator[Finding]]
-"""The same with findings made of the remarks."""
+"""The same, yielding findings."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,11 +119,11 @@ class Check:
     code : str
         Its name in findings.
     kind : str
-        The kind of subject that it looks at.
+        The kind of subject that it examines.
     limit : tuple of (str, Param, float) or None
-        Name in ``[limits]``, quantity with range, and default in inner units.
+        Name in ``[limits]``, quantity with its range, and default in internal units (mm, rad).
     run : callable
-        ``run(subject, limit)`` yields findings; `limit` in inner units, or nan where there is none.
+        ``run(subject, limit)`` yields findings; `limit` in internal units, nan without one.
     """
 
     code: str
@@ -133,7 +133,7 @@ class Check:
 
 
 ROUNDING: Final = 1e-9
-"""Share of a limit that is rounding: what a finding names, typed in as printed, keeps the limit."""
+"""Relative tolerance of limits: a value typed in as a finding prints it keeps the limit."""
 
 CHECKS: Final[dict[tuple[str, str], Check]] = {}
 """The checks by kind and code."""
@@ -152,16 +152,16 @@ def check(
     Parameters
     ----------
     code, kind, limit
-        As of a `Check`.
+        As in a `Check`.
     severity : {"note", "warning", "error"}
-        Of findings that do not say another.
+        Default severity of its findings.
     unit : str
-        Of values that do not say another; that of the limit if left out.
+        Default unit of its values; if empty, that of the limit.
 
     Raises
     ------
     ValueError
-        If a kind has the code already.
+        If the code is already registered for a kind.
     """
     quantity = limit[1].quantity if limit else NUMBER
     unit = unit or quantity.unit
@@ -198,14 +198,14 @@ def limit_of(kind: str, code: str, limits: Mapping[str, float]) -> float:
     Parameters
     ----------
     kind, code : str
-        Which check.
+        Kind of subject and code of the check.
     limits : mapping of str to float
-        Limits that the design sets, by name, inner units.
+        Limits set by the design, by name, in internal units.
 
     Returns
     -------
     float
-        The design's or the default one, in inner units; nan where the check has none.
+        The limit set by the design, else the default, in internal units; nan without a limit.
     """
     known = CHECKS[kind, code].limit
     return float("nan") if known is None else limits.get(known[0], known[2])
@@ -217,11 +217,11 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
     Parameters
     ----------
     kind : str
-        Such as ``gear-pair``: which checks.
+        Kind of subject, such as ``gear-pair``.
     subject : object
-        What the checks look at.
+        What the checks examine.
     limits : mapping of str to float
-        Limits that the design sets, by name, inner units; the others keep their defaults.
+        Limits set by the design, by name, in internal units; others keep their defaults.
 
     Returns
     -------

@@ -1,8 +1,8 @@
-"""Results: what comes of a design, stage by stage, on demand, and the writing of its files.
+"""Results: everything computed from a design, stage by stage and on demand, and its files.
 
-A result computes nothing until it is asked for, and each stage is timed once. It knows neither
-readers nor files: what facts and files are made from it the folder of its kind says (see
-`gearcam.designs.kind`). Nothing is imported that the asked-for files do not need.
+A result computes a value when it is first used, and times each stage. Which facts, charts and files
+it has is defined in the folder of its kind of design (see `gearcam.designs.kind`). Only the modules
+that the requested files need are imported.
 """
 
 from __future__ import annotations
@@ -36,26 +36,26 @@ if TYPE_CHECKING:
     from gearcam.solids import Mesh
 
 FORMAT: Final = 3
-"""Version of the summary's layout."""
+"""Version of the layout of ``summary.json``."""
 
 PICTURE: Final = "svg"
-"""The kind of file that is a picture."""
+"""The kind of file that shows the design as a picture."""
 REPORT: Final = "report"
-"""The kind of file that tells of the others and is made last."""
+"""The kind of file that describes the others and is written last."""
 
 Progress = Callable[[str, int, int], None]
-"""Called with a stage's name, the stages done and their number."""
+"""Called with the name of the next stage, the number of stages done and their total."""
 
 
 class Result(Displayed):
-    """What comes of a design, computed on demand.
+    """The result of a design, computed on demand.
 
     Parameters
     ----------
     design : Design
-        What is asked for.
+        The design to build.
     tolerances : Tolerances
-        Inner accuracy.
+        Accuracy of the internal computations.
 
     Examples
     --------
@@ -65,19 +65,19 @@ class Result(Displayed):
     """
 
     stages: ClassVar[Mapping[str, str]]
-    """The attributes that a build computes before its files, by what they are called."""
+    """Attributes that a build computes before its files, by the names of the stages."""
     before_output: ClassVar[Sequence[str]] = ()
-    """Those of them that the table ``[output]`` of a design does not change."""
+    """The stages that do not depend on the table ``[output]`` of a design."""
 
     def __init__(self, design: Any, tolerances: Tolerances = DEFAULT) -> None:
         self.design = design
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
-        self.sizes: dict[str, int] = {}  # bytes of the files of a build so far
-        self.sought: dict[float, Any] = {}  # remedies, by the patience of the search
+        self.sizes: dict[str, int] = {}  # bytes of the files built so far
+        self.sought: dict[float, Any] = {}  # remedies found, by the patience of the search
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.design, self.tolerances)  # computed again where it is read
+        return type(self), (self.design, self.tolerances)  # the copy computes anew
 
     def __repr__(self) -> str:
         done = ", ".join(self.timings) or "nothing"
@@ -85,7 +85,7 @@ class Result(Displayed):
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time what is done within, under a `name`."""
+        """Add the time spent inside the context to the stage called `name`."""
         start = time.perf_counter()
         yield
         self.timings[name] = self.timings.get(name, 0.0) + time.perf_counter() - start
@@ -93,18 +93,19 @@ class Result(Displayed):
     @cached_property
     @abstractmethod
     def findings(self) -> tuple[Finding, ...]:
-        """What the checks found: errors first."""
+        """The findings of all checks, errors first."""
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """What is made, as parts with all that is ordered; none where a kind has none."""
+        """The parts to be made, with bores, hubs and openings; empty for kinds without parts."""
         return ()
 
     @cached_property
     def solids(self) -> dict[str, Trimesh]:
-        """The parts as closed meshes of trimesh by name, mm, each in its own frame.
+        """The parts as closed `trimesh.Trimesh` objects by name, mm, each in its own frame.
 
-        From z = 0 to the width, hubs beyond; what cannot be made raises `InfeasibleError`.
+        They extend from z = 0 to the width, hubs beyond it. Raises `InfeasibleError` if they cannot
+        be made.
         """
         from gearcam.export.mesh import trimeshes
 
@@ -112,13 +113,13 @@ class Result(Displayed):
 
     @cached_property
     def meshes(self) -> dict[str, Mesh]:
-        """The parts as closed meshes of plain arrays by name, mm: what files are made from."""
+        """The parts as closed meshes of plain arrays by name, mm, as used for files."""
         from gearcam.solids import solid
 
         return {part.name: solid(part) for part in self.parts}
 
     def picture(self) -> str:
-        """Return the picture of the file kind ``svg``, or a refusal; none without it."""
+        """Return the picture of the file kind ``svg``, or why there is none, as SVG text."""
         if PICTURE not in KINDS[self.design.kind].formats:
             return ""
         try:
@@ -143,26 +144,27 @@ class Result(Displayed):
 
     @cached_property
     def design_hash(self) -> str:
-        """The hash of the design, its CSV files as they were first read."""
+        """The hash of the design, with the contents of its CSV files as first read."""
         return hash_of(self.design)
 
     @cached_property
     def facts(self) -> Facts:
-        """What is known of the result, under the names that docs/conventions.md explains."""
+        """All computed quantities by dotted names (see docs/conventions.md)."""
         return self.facts_with({})
 
     def facts_with(self, measured: Mapping[str, Any]) -> Facts:
-        """Return the facts with what was `measured` on files or by studies, by group."""
+        """Return the facts, extended by values `measured` on files or in studies, by group."""
         made = KINDS[self.design.kind].room("facts").facts(self, measured)
-        columns = sys.modules.get("gearcam.laws.columns")  # not loaded where no design read a file
+        columns = sys.modules.get("gearcam.laws.columns")  # loaded only if a design has read a file
         tables = columns.tables_in(self.design) if columns else ()
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         return made.with_group("tables", [{"note": one} for one in notes if one.value])
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what ``summary.json`` holds, but for the files: facts, findings, design, versions.
+        """Return the content of ``summary.json`` without the list of files.
 
-        Plain values, in the units of their names. What cannot be made raises `InfeasibleError`.
+        Facts, findings, design and versions as plain values, in the units of their names. Raises
+        `InfeasibleError` if the design cannot be made.
         """
         return self.document(self.facts, self.findings)
 
@@ -174,14 +176,14 @@ class Result(Displayed):
         Parameters
         ----------
         facts, findings
-            What is known, and what checks found.
+            As of a result or a study.
         files : mapping, optional
-            What it says of files.
+            Entries about files.
 
         Returns
         -------
         dict
-            As JSON holds it.
+            Plain values for JSON.
         """
         return tree(
             {
@@ -204,9 +206,9 @@ class Result(Displayed):
         Parameters
         ----------
         kind : str
-            One that ``output.files`` may list.
+            A kind of file that ``output.files`` can list.
         measured : dict, optional
-            What is measured on them is written down here.
+            Receives the values measured on the files.
 
         Returns
         -------
@@ -218,7 +220,7 @@ class Result(Displayed):
         DesignError
             If designs of this kind have no such files.
         InfeasibleError
-            If they cannot be made.
+            If the design cannot be made.
         """
         demand_formats(self.design, (kind,))
         makers = KINDS[self.design.kind].room("files").FILES
@@ -226,7 +228,7 @@ class Result(Displayed):
 
     @property
     def charts(self) -> tuple[str, ...]:
-        """The names of the charts of designs of this kind."""
+        """The names of the charts that `chart` and `plot` accept."""
         return tuple(KINDS[self.design.kind].room("charts").CHARTS)
 
     def chart(self, name: str) -> Chart:
@@ -246,7 +248,7 @@ class Result(Displayed):
         DesignError
             If there is no such chart.
         InfeasibleError
-            If what it tells of cannot be made.
+            If the design cannot be made.
         """
         make = KINDS[self.design.kind].room("charts").CHARTS[one_of("name", name, self.charts)]
         return make(self)
@@ -259,7 +261,7 @@ class Result(Displayed):
         name : str
             One of `charts`.
         ax : Axes, optional
-            Where; a new figure where left out.
+            Axes to draw into; a new figure by default.
 
         Returns
         -------
@@ -275,9 +277,9 @@ class Result(Displayed):
         return self.chart(name).draw(ax)
 
     def check(self, directory: str | Path = "output") -> Written:
-        """Run the checks and write the summary only; files of an earlier build stay.
+        """Run the checks and write the summary only; the files of an earlier build are kept.
 
-        They stay listed, under ``stale`` if they were made from another state of the design.
+        The summary lists those made from another version of the design under ``stale``.
 
         Parameters
         ----------
@@ -297,30 +299,30 @@ class Result(Displayed):
         files: Sequence[str] | None = None,
         progress: Progress | None = None,
     ) -> Written:
-        """Write the files of the design into ``directory/<name>/``, all or none.
+        """Write the files of the design into ``directory/NAME/``, all or none.
 
         Parameters
         ----------
         directory : path
             Parent folder.
         files : str or sequence of str, optional
-            Kinds of files, one or more, instead of those the design lists.
+            Kinds of files instead of those that the design lists.
         progress : callable, optional
-            As `Progress` says.
+            ``progress(stage, done, total)`` is called before each stage.
 
         Returns
         -------
         Written
-            With the files written and the stale ones removed.
+            With the files written, and those of the previous build that were removed.
 
         Raises
         ------
         DesignError
             If designs of this kind have no such files.
         InfeasibleError
-            If the design cannot be made; nothing is written or removed then.
+            If the design cannot be made; then nothing is written or removed.
         WriteError
-            If the disk refuses.
+            If a file cannot be written.
         """
         kinds = sorted(demand_formats(self.design, files), key=lambda kind: kind == REPORT)
         steps = [*self.stages, *kinds, "writing"]
@@ -349,18 +351,18 @@ class Result(Displayed):
         measured: Mapping[str, Any],
         findings: Sequence[Finding] | None = None,
     ) -> Written:
-        """Write some files beside those of an earlier build, which stay.
+        """Write files and keep those of an earlier build.
 
         Parameters
         ----------
         contents : mapping of str to bytes
-            By name.
+            The files by name.
         directory : path
             Parent folder.
         measured : mapping
-            What the summary says of them.
+            Values measured on them, for the summary.
         findings : sequence of Finding, optional
-            Those of the checks where left out.
+            Default: those of the checks.
 
         Returns
         -------

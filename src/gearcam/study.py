@@ -1,4 +1,4 @@
-"""Studies: what is found out about a result beyond its design, as data that may be written."""
+"""Studies: further computations on a result, such as meshing, as data that can be written."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from gearcam.written import Written
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Study(Displayed):
-    """What a study of a result has found.
+    """The outcome of a study of a result.
 
     Parameters
     ----------
     result : Result
-        What was studied.
+        The result studied.
     file : str
-        The file that the table is written to.
+        Name of the CSV file for the table.
     table : mapping of str to (n,) array
-        Its columns, as `gearcam.export.table.table_bytes` takes them.
+        Columns by name, with the unit at the end of the name.
     measured : mapping
-        What the facts are told from, by the name of their group.
+        Results of the study by groups of facts.
     findings : tuple of Finding
-        Those of the design that hold in the study, and its own: errors first.
+        Findings of the study, and those of the design that apply to it; errors first.
     complete : bool
-        Whether nothing was interrupted.
+        False if the study was interrupted.
 
     Examples
     --------
@@ -61,24 +61,24 @@ class Study(Displayed):
 
     @cached_property
     def columns(self) -> Columns:
-        """Its table, with the columns of its file; what does not exist is not-a-number."""
+        """The table with the columns of the CSV file; missing values are NaN."""
         return Columns(self.table)
 
     @cached_property
     def facts(self) -> Facts:
-        """What is known of the result with what was found (see docs/conventions.md)."""
+        """The facts of the result and of the study (see docs/conventions.md)."""
         return self.result.facts_with(self.measured)
 
     def picture(self) -> str:
-        """Return nothing: a study is told in numbers."""
+        """Return an empty text: a study has no picture."""
         return ""
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what `summary.json` tells of it, but for files (see `Result.to_dict`)."""
+        """Return the content of ``summary.json`` without files (see `Result.to_dict`)."""
         return self.result.document(self.facts, self.findings)
 
     def write(self, directory: str | Path = "output") -> Written:
-        """Write its file beside those of a build, which stay.
+        """Write its CSV file and the summary; the files of a build are kept.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class Study(Displayed):
         Raises
         ------
         WriteError
-            If the disk refuses.
+            If a file cannot be written.
         """
         from gearcam.export.table import table_bytes
 

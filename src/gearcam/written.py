@@ -1,4 +1,4 @@
-"""What a command has written, and what may be."""
+"""Writing the files of a result, and the record of what was written."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Written(Brief):
-    """What a command has written.
+    """The files that a command has written.
 
     Parameters
     ----------
     directory : Path
-        The folder.
+        The folder of the design.
     files : tuple of str
         The files written, in order.
     removed : tuple of str
-        Files of the previous build that this one does not write.
+        Files of the previous build that are no longer produced.
     summary : dict
         The content of ``summary.json``.
     facts : Facts
-        What the summary is told from.
+        The facts in the summary.
     findings : tuple of Finding
-        What the checks found.
+        The findings in the summary.
     complete : bool
-        Whether nothing was interrupted.
+        False if a study was interrupted.
     """
 
     directory: Path
@@ -53,14 +53,14 @@ class Written(Brief):
 
 
 def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the kinds of files that are wanted; refuse those that such a design does not have.
+    """Return the requested kinds of files, if designs of this kind have them.
 
     Parameters
     ----------
     design : Design
         Of any kind.
     kinds : str, sequence of str or None
-        Kinds of files that are wanted, one or more; those that the design lists if None.
+        The requested kinds of files; None: those that the design lists.
 
     Returns
     -------
@@ -69,14 +69,14 @@ def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ..
     Raises
     ------
     DesignError
-        With those that there are.
+        If a kind of file is not available; the message lists those that are.
     """
     known = KINDS[design.kind].formats
     asked = design.output.files if kinds is None else kinds
     wanted = (asked,) if isinstance(asked, str) else tuple(asked)
     problems = [
         Problem(
-            f"{kind} is no file of designs of kind {design.kind}",
+            f"designs of kind {design.kind} have no {kind} files",
             file=design.source,
             key="output.files",
             value=kind,
@@ -91,7 +91,7 @@ def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ..
 
 
 def versions() -> dict[str, str]:
-    """Return versions of what made the numbers: the program, Python, libraries loaded so far."""
+    """Return the versions of gearcam, Python and the numerical libraries loaded so far."""
     found = {"gearcam": __version__, "python": platform.python_version()}
     for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
         module = sys.modules.get(name)
@@ -109,22 +109,22 @@ def put(
     *,
     keep: bool = False,
 ) -> Written:
-    """Write files with the summary of all that will be there, all or none.
+    """Write files and the summary, all or none.
 
     Parameters
     ----------
     result : Result
-        What they are of.
+        The result that they belong to.
     directory : path
         Parent folder.
     contents : mapping of str to bytes
         The files by name.
     measured : mapping
-        What the summary says of files.
+        Values measured on the files, for the summary.
     findings : sequence of Finding
-        What checks found.
+        For the summary.
     keep : bool
-        Whether other files of an earlier build stay.
+        Whether to keep the other files of an earlier build.
 
     Returns
     -------

@@ -215,7 +215,7 @@ def test_a_fault_of_the_program_hides_its_traceback_until_asked(
     file = design("fault")
     assert main(["build", file]) == 4
     err = capsys.readouterr().err
-    assert "fault of gearcam" in err
+    assert "bug in gearcam" in err
     assert "ZeroDivisionError" in err
     assert "report" in err
     assert "Traceback" not in err

@@ -19,5 +19,5 @@ def test_the_extra_is_named(
     assert main(["build", str(PROFILE), "--only", "step", "-o", str(tmp_path / "out")]) == WRONG
     told = capsys.readouterr().err
     assert 'pip install "gearcam[step]"' in told
-    assert "fault of gearcam" not in told
+    assert "bug in gearcam" not in told
     assert not (tmp_path / "out").exists()

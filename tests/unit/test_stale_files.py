@@ -211,7 +211,7 @@ def test_a_check_names_the_files_of_another_state(
     assert (checked["files"], checked["stale"]) == ({}, built["files"])
     told = " ".join(capsys.readouterr().out.split())
     names = ", ".join(built["files"])
-    assert f"outdated: {names}: made from another state of the design; build again" in told
+    assert f"outdated: {names}: made from another version of the design; build again" in told
     desk.edit("[24, 24]", "[22, 22]")
     assert desk.run("check")["files"] == built["files"]
     assert "outdated" not in capsys.readouterr().out

@@ -76,7 +76,7 @@ def test_a_fault_of_the_program_is_told(view: Shown, monkeypatch: pytest.MonkeyP
         raise RuntimeError("in a cog")
 
     monkeypatch.setattr(work, "document", broken)
-    assert "this is a fault of gearcam" in view.refresh().error
+    assert "this is a bug in gearcam" in view.refresh().error
 
 
 def test_a_draft_comes_before_the_whole_and_leaves_charts_as_they_are(
