@@ -1,0 +1,80 @@
+"""What the pages in docs/ show of commands and of Python is what the program prints now."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from arch import rules
+from gearcam.cli import main
+
+PAGES = sorted((rules.ROOT / "docs").glob("*.md"))
+FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+SHOWN = [page for page in PAGES if "\n```console\n" in page.read_text("utf-8")]
+
+
+def like(shown: str, printed: str) -> bool:
+    """Whether a text is as shown; a line of dots stands for any lines, times may differ."""
+    wanted = ["%DOTS%" if line.strip() == "..." else line for line in shown.splitlines()]
+    pattern = re.escape("\n".join(line.rstrip() for line in wanted))
+    pattern = re.sub(r"\d+\\\.\d+\\ s\b", r"[\\d.]+ s", pattern)
+    pattern = pattern.replace(re.escape("%DOTS%"), r"(?:.*\n?)*?.*")
+    text = "\n".join(line.rstrip() for line in printed.splitlines())
+    return re.fullmatch(pattern, text) is not None
+
+
+def commands(block: str) -> list[tuple[str, str]]:
+    """Commands of a console block, each with the output shown below it."""
+    pieces = re.split(r"^\$ ", block, flags=re.MULTILINE)
+    assert not pieces[0]
+    return [(line, shown) for line, _, shown in (piece.partition("\n") for piece in pieces[1:])]
+
+
+def run_page(text: str, capsys: pytest.CaptureFixture[str]) -> list[tuple[str, str, str]]:
+    """Run a page's commands in order: each with what the page shows and what was printed.
+
+    A TOML block that begins with ``# NAME.toml`` is the file of that name from there on.
+    """
+    answers = []
+    for language, block in FENCE.findall(text):
+        name = re.match(r"# (\S+\.toml)\n", block)
+        if language == "toml" and name:
+            Path(name[1]).write_text(block, "utf-8")
+        if language == "console":
+            for line, shown in commands(block):
+                program, *arguments = shlex.split(line)
+                assert program == "gearcam", line
+                capsys.readouterr()
+                main(arguments)
+                answers.append((line, shown, "".join(capsys.readouterr())))
+    return answers
+
+
+@pytest.mark.parametrize("page", SHOWN, ids=lambda page: page.name)
+def test_commands_print_what_is_shown(
+    page: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "profiles").symlink_to(rules.ROOT / "profiles")
+    monkeypatch.chdir(tmp_path)
+    answers = run_page(page.read_text("utf-8"), capsys)
+    assert answers
+    for line, shown, printed in answers:
+        assert like(shown, printed), f"{line}\n{printed}"
+
+
+def test_another_answer_is_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = "```console\n$ gearcam new gear-pair x.toml\nx.toml: written; ...\n```\n"
+    ((_, shown, printed),) = run_page(text, capsys)
+    assert printed.startswith("x.toml: ")
+    assert not like(shown, printed)
+    assert like("a\n...\nbuilt in 0.2 s\n", "a\nb\nc\nbuilt in 1.31 s\n")
+    assert not like("a\n...\nbuilt in 0.2 mm\n", "a\nb\nc\nbuilt in 1.31 mm\n")
