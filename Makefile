@@ -79,7 +79,7 @@ lock: $(VENV)/.lock
 clean:
 	rm -rf $(VENV) .matrix .pytest_cache .ruff_cache .hypothesis .import_linter_cache build dist
 	find src tests benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +
-	find output -mindepth 1 ! -name .gitkeep -delete
+	[ ! -d output ] || find output -mindepth 1 ! -name .gitkeep -delete
 
 # The stamps: a second call finds them fresh and needs neither pip nor network.
 # The candidates are run, not only looked up: a name on the path may be a shim for nothing.

@@ -62,11 +62,9 @@ def archives(tmp_path_factory: pytest.TempPathFactory) -> Archives:
 
 
 def beside_code() -> set[str]:
-    """Files of the package that are no Python: templates, scripts, styles, licences."""
-    every = (
-        path for path in SOURCE.rglob("*") if path.is_file() and "__pycache__" not in str(path)
-    )
-    return {str(path.relative_to(SOURCE.parent)) for path in every if path.suffix != ".py"}
+    """Files of the package other than Python: templates, scripts, styles, licences."""
+    every = {path for path in SOURCE.rglob("*") if path.suffix not in ("", ".py", ".pyc")}
+    return {str(path.relative_to(SOURCE.parent)) for path in every | {*SOURCE.rglob("LICENSE")}}
 
 
 def test_both_hold_every_file_of_the_package(archives: Archives) -> None:
@@ -88,17 +86,14 @@ def test_both_hold_the_licences(archives: Archives) -> None:
 
 
 def test_the_sdist_holds_what_its_makefile_needs(archives: Archives) -> None:
-    needed = {"Makefile", "pyproject.toml", "requirements.lock", "README.md", "CITATION.cff"}
-    assert (
-        needed | {"CONTRIBUTING.md", "tools/lock.py", f"profiles/{DEMO.name}"} < archives.in_sdist
-    )
+    needed = ("Makefile", "pyproject.toml", "requirements.lock", "README.md", "tools/lock.py")
+    cited = ("CITATION.cff", "CONTRIBUTING.md", f"profiles/{DEMO.name}")
+    assert {*needed, *cited} < archives.in_sdist
 
 
 def test_no_output_and_no_environment_is_packed(archives: Archives) -> None:
-    assert [
-        name for name in archives.in_sdist | archives.in_wheel if name.startswith(KEPT_OUT)
-    ] == []
-    assert not [name for name in archives.in_wheel if "__pycache__" in name]
+    packed = archives.in_sdist | archives.in_wheel
+    assert [name for name in packed if name.startswith(KEPT_OUT) or "__pycache__" in name] == []
 
 
 def test_the_demo_runs_from_the_wheel_far_from_the_checkout(
