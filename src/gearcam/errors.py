@@ -181,7 +181,7 @@ class InfeasibleError(GearcamError, ValueError):
 
 
 class MissingExtraError(GearcamError, ImportError):
-    """An optional library is not installed.
+    """A library that only some outputs need is not installed.
 
     Parameters
     ----------
@@ -189,20 +189,23 @@ class MissingExtraError(GearcamError, ImportError):
         What needs it, in the plural.
     extra : str
         The extra of the package that installs it.
+    packages : str
+        What pip installs instead, where no extra does.
 
     Examples
     --------
     >>> import gearcam as gc
     >>> print(gc.MissingExtraError("charts", "plot"))
-    charts need the optional extra: pip install "gearcam[plot]"
+    charts need a library that is not installed: pip install "gearcam[plot]"
     """
 
-    def __init__(self, what: str, extra: str) -> None:
-        self.what, self.extra = what, extra
-        super().__init__(f'{what} need the optional extra: pip install "gearcam[{extra}]"')
+    def __init__(self, what: str, extra: str = "", packages: str = "") -> None:
+        self.what, self.extra, self.packages = what, extra, packages
+        wanted = packages or f'"gearcam[{extra}]"'
+        super().__init__(f"{what} need a library that is not installed: pip install {wanted}")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.what, self.extra)
+        return type(self), (self.what, self.extra, self.packages)
 
 
 class WriteError(GearcamError, OSError):

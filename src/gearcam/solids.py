@@ -13,14 +13,15 @@ Depends on parts; manifold3d only inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, singledispatch
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import GearcamError, InfeasibleError
+from gearcam.errors import GearcamError, InfeasibleError, MissingExtraError
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
@@ -47,6 +48,10 @@ _MANY: Final = 4000
 
 _THINNEST: Final = 1e-6
 """Least height of a layer in reaches of its part: single precision takes places to 6e-8 of it."""
+
+
+LIBRARIES: Final = '"manifold3d>=3.5,<3.6" "trimesh>=5,<6" networkx lxml'
+"""What solids need beyond the rest of the package, as pip takes it."""
 
 
 class SolidError(GearcamError, RuntimeError):
@@ -104,6 +109,15 @@ class Mesh:
         return bool((np.diff(there) > 0).all() and (there == back).all())
 
 
+@contextmanager
+def libraries() -> Iterator[None]:
+    """Refuse solids where a library is missing that is imported within; also a decorator."""
+    try:
+        yield
+    except ImportError as error:
+        raise MissingExtraError("solids", packages=LIBRARIES) from error
+
+
 @singledispatch
 def solid(body: Body) -> Mesh:
     """Make the mesh of a body; each kind of body registers how.
@@ -120,6 +134,8 @@ def solid(body: Body) -> Mesh:
 
     Raises
     ------
+    MissingExtraError
+        If manifold3d is not installed.
     SolidError
         If the solid comes out empty or open, or lost a part of its volume.
     TypeError
@@ -129,6 +145,7 @@ def solid(body: Body) -> Mesh:
 
 
 @solid.register
+@libraries()
 def _(part: Part) -> Mesh:
     import manifold3d
 

@@ -342,7 +342,7 @@ def test_a_missing_library_is_named_and_no_parts_are_refused(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "OCP", None)
-    message = r'^STEP files need the optional extra: pip install "gearcam\[step\]"$'
+    message = r'^STEP files need a library that is not installed: pip install "gearcam\[step\]"$'
     with pytest.raises(MissingExtraError, match=message) as caught:
         written(plate(square_contour(40.0)))
     assert isinstance(caught.value, GearcamError)

@@ -114,6 +114,7 @@ ERRORS = (
         ways=[Way(near={"pair.x": 0.1})], more_teeth=1.5,
     ),
     MissingExtraError("STEP files", "step"),
+    MissingExtraError("solids", packages="one two"),
     WriteError(28, "no space left", "a.dxf"),
 )  # fmt: skip
 

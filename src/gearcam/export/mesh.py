@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.solids import Mesh, SolidError
+from gearcam.solids import Mesh, SolidError, libraries
 
 if TYPE_CHECKING:
     from trimesh import Scene, Trimesh
@@ -71,6 +71,7 @@ def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     return label.ljust(HEADER_LENGTH, b"\0") + count + triangles.tobytes()
 
 
+@libraries()
 def threemf_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     """Return a 3MF in millimetres; each body is an object of its name (see `stl_bytes`)."""
     from trimesh.exchange.threemf import export_3MF
@@ -78,6 +79,7 @@ def threemf_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     return _repeatable(export_3MF(_scene(bodies, single=False)), name)
 
 
+@libraries()
 def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     """Return a GLB in millimetres; each body is a node and mesh of its name (see `stl_bytes`)."""
     from trimesh.exchange.gltf import export_glb
@@ -87,6 +89,7 @@ def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     return bytes(export_glb(scene, include_normals=False))
 
 
+@libraries()
 def view_page(bodies: Mapping[str, Mesh]) -> str:
     """Return a page in which closed bodies are turned and zoomed: trimesh's own (see `stl_bytes`).
 
@@ -101,6 +104,7 @@ def view_page(bodies: Mapping[str, Mesh]) -> str:
     return scene_to_html(scene)
 
 
+@libraries()
 def trimeshes(bodies: Mapping[str, Mesh]) -> dict[str, Trimesh]:
     """Return closed bodies as meshes of trimesh, mm, by name (see `stl_bytes`)."""
     from trimesh import Trimesh
