@@ -22,9 +22,9 @@ from gearcam.commands import demand_new_name
 from gearcam.console import (
     DEBUG,
     all_lines,
+    catalogue_lines,
     complain,
     fault_text,
-    law_lines,
     progress_bar,
     quieten,
     refusal_text,
@@ -237,10 +237,10 @@ def _of_kind(command: Command, words: list[str]) -> None:
 
 def _laws() -> None:
     """List transmission-ratio laws and motion laws with keys, continuity and source."""
-    from gearcam.designs.listing import law_groups
+    from gearcam.designs.listing import law_groups, sources_of
 
-    for heading, laws in law_groups():
-        say("\n".join([f"{heading}\n", *(line for law in laws for line in law_lines(law))]))
+    groups = list(law_groups())
+    say("\n".join(catalogue_lines(groups, sources_of(groups))))
 
 
 def _new(kind: str, file: str | None, process: str | None) -> None:

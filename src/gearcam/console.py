@@ -12,7 +12,7 @@ import re
 import sys
 import textwrap
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
@@ -36,7 +36,20 @@ _STEERING: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u
 """Control characters other than tab and newline, and marks that change the text direction."""
 
 
-def law_lines(law: Listed) -> Iterator[str]:
+def catalogue_lines(
+    groups: Sequence[tuple[str, Sequence[Listed]]], sources: Mapping[str, str]
+) -> Iterator[str]:
+    """Yield the `groups` of laws, each below its heading, then the `sources` that they cite."""
+    for heading, laws in groups:
+        yield f"{heading}\n"
+        for law in laws:
+            yield from _law_lines(law)
+    yield "Sources\n"
+    for name, text in sources.items():
+        yield f"{name}\n{wrapped(text)}"
+
+
+def _law_lines(law: Listed) -> Iterator[str]:
     """Yield the lines of a `law`: name, description, its line in a design file, keys."""
     yield f"{law.name}\n{wrapped(law.doc)}\n    {law.line}"
     width = 2 + max(len(key) for key, _ in law.rows)

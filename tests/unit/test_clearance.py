@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import shapely
 
+import gearcam as gc
 from gearcam.errors import InfeasibleError
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.contour import Contour
@@ -112,3 +113,16 @@ def test_timing_marks_keep_their_gap_from_the_root_as_made() -> None:
     marks = [GearPairResult(design).parts[0].marks[0] for design in (plain, clear)]
     (before, _), (after, _) = (mark.center for mark in marks)
     assert before - after == pytest.approx(0.1, abs=1e-9)
+
+
+def test_backlash_says_how_much_of_it_clearance_makes() -> None:
+    """A wheel's clearance moves both flanks, by clearance/cos(alpha) along the pitch line."""
+    changes = {"pair.backlash_mm": 0.1, "blank.clearance_mm": [0.07, 0.03]}
+    plain = gc.build(profile("ellipse").design.with_({"pair.backlash_mm": 0.1}))
+    made = gc.build(profile("ellipse").design.with_(changes))
+    more = 2 * (0.07 + 0.03) / math.cos(math.radians(20))
+    assert made.facts["mesh.backlash_mm"] == pytest.approx(0.1 + more, abs=1e-12)
+    told = made.facts.quantity("mesh.backlash_mm")
+    assert told.text == f"{0.1 + more:.6g} mm"
+    assert told.place == f"backlash_mm 0.1 + {more:.6g} from clearance_mm"
+    assert plain.facts.quantity("mesh.backlash_mm").place == ""

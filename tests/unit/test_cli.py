@@ -19,8 +19,6 @@ from gearcam.errors import InfeasibleError, WriteError
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.laws.ratio.base import LAWS
-from gearcam.laws.rises.base import RISES
 
 GOOD = """\
 kind = "gear-pair"
@@ -325,23 +323,6 @@ def test_new_knows_every_kind_and_what_was_meant(capsys: pytest.CaptureFixture[s
         assert load(f"{kind}.toml").kind == kind
     assert main(["new", "gearpair"]) == 2
     assert "did you mean gear-pair?" in capsys.readouterr().err
-
-
-def test_laws_shows_every_law_with_keys_continuity_and_source(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    assert main(["laws"]) == 0
-    out = capsys.readouterr().out
-    flat = " ".join(out.split())
-    for name, law in LAWS.items():
-        assert f'law.type = "{name}"' in out
-        assert " ".join(law.continuity.split()) in flat
-        assert " ".join(law.source.split()) in flat
-    assert "knots_deg" in out
-    assert "from 0 to below 1" in flat
-    for name, rise in RISES.items():
-        assert f'    law = "{name}"\n' in out.partition("Laws of cams")[2]
-        assert " ".join(rise.source.split()) in flat
 
 
 def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS
 from gearcam.designs.table import Table
+from gearcam.laws.sources import SOURCES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,6 +36,12 @@ def law_groups() -> Iterator[tuple[str, list[Listed]]]:
     """Yield the laws of each kind of design below a heading."""
     for kind in filter(lambda kind: kind.main, KINDS.values()):
         yield kind.room("describe").laws()
+
+
+def sources_of(groups: Iterable[tuple[str, list[Listed]]]) -> dict[str, str]:
+    """Return the texts that the laws of all `groups` cite, by the authors named in citations."""
+    cited = [dict(law.rows)["source"] for _, laws in groups for law in laws]
+    return {name: text for name, text in SOURCES.items() if any(name in one for one in cited)}
 
 
 def listed(entry: Any, line: str, known: Table) -> Listed:

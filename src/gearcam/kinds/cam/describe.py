@@ -132,4 +132,4 @@ def _phase(given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
 def laws() -> tuple[str, list[Listed]]:
     """Return the laws below a heading."""
     found = [listed(entry, f'law = "{name}"', rise_table(name)) for name, entry in RISES.items()]
-    return "Laws of cams: rises and returns, in the tables [[motion]]", found
+    return "Motion laws of cams: rises and returns, in the tables [[motion]]", found

@@ -47,5 +47,5 @@ def lines() -> Iterator[str]:
 def laws() -> tuple[str, list[Listed]]:
     """Return the laws below a heading."""
     found = [listed(entry, f'law.type = "{name}"', law_table(name)) for name, entry in LAWS.items()]
-    head = "Laws of gear pairs: the ratio, in the table [law]; each but rack may drive a ring"
+    head = "Laws of gear pairs: the ratio, in the table [law]; all but rack work with a ring too"
     return head, found

@@ -142,7 +142,9 @@ def _mesh(result: GearPairResult) -> Tree:
         ),
         "rim_min_mm": _rim(subject, limit_of(KIND, "thin-rim", limits) * module),
         "tip_pass_margin_mm": _tip_pass(result),
-        "backlash_mm": Fact(max(subject.backlash, 0.0), "backlash as made", shown=True),
+        "backlash_mm": Fact(
+            max(subject.backlash, 0.0), "backlash of the wheels", place=_parted(result), shown=True
+        ),
         "acceleration_max": Fact(
             abs(float(values[worst])),
             "largest acceleration d(i21)/dphi1",
@@ -152,6 +154,15 @@ def _mesh(result: GearPairResult) -> Tree:
             shown=True,
         ),
     }
+
+
+def _parted(result: GearPairResult) -> str:
+    """Return in words what the backlash is made of, if clearance adds to what is asked for."""
+    if not any(result.design.blank.wheel(number).clearance for number in (1, 2)):
+        return ""
+    given = result.design.pair.backlash
+    more = result.subject.backlash - given
+    return f"backlash_mm {shown(given)} + {shown(more)} from clearance_mm"
 
 
 def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tuple[str, Fact]]:

@@ -35,7 +35,7 @@ class EccentricCircle:
     """
 
     eccentricity: float = param(
-        NUMBER, ge=0, lt=1, doc="distance of the shaft from the middle, in radii"
+        NUMBER, ge=0, lt=1, doc="distance of shaft and centre over the radius"
     )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -60,7 +60,7 @@ class EccentricCircle:
 class Limacon:
     """Pascal's limacon, ``r1 = 1 + e*cos(phi1)``: a circle rolled around by its equal."""
 
-    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="swing of the radius over its mean")
+    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="amplitude of the radius over its mean")
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -78,7 +78,7 @@ class Limacon:
 class Lobed:
     """``r1 = 1 + e*cos(n1*phi1)`` with n1 lobes."""
 
-    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="swing of the radius over its mean")
+    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="amplitude of the radius over its mean")
     lobes: tuple[int, int] | None = param(COUNT, default=None, ge=1, le=100, doc=LOBES)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -181,29 +181,29 @@ LAWS.register(
     LawEntry(
         name="eccentric-circle",
         example=EccentricCircle(eccentricity=0.3),
-        doc="a circle with its shaft off its middle, far side at phi1 = 0",
+        doc="a circle turning about a point beside its centre; largest radius at phi1 = 0",
         continuity="analytic",
-        source="classical; circle in polar form, centre distance by closure",
+        source="Litvin, Fuentes, chapter 12; centre distance by closure",
     ),
     LawEntry(
         name="limacon",
         example=Limacon(eccentricity=0.4),
-        doc="limacon r1 = 1 + e*cos(phi1), far side at phi1 = 0",
+        doc="Pascal's limacon r1 = 1 + e*cos(phi1); largest radius at phi1 = 0",
         continuity="analytic",
-        source="classical; Pascal's limacon, closure in closed form",
+        source="classical; centre distance in closed form",
     ),
     LawEntry(
         name="lobed",
         example=Lobed(eccentricity=0.2),
         doc="r1 = 1 + e*cos(n1*phi1): wheels with any numbers of lobes",
         continuity="analytic",
-        source="classical; closure in closed form",
+        source="classical; centre distance in closed form",
     ),
     LawEntry(
         name="log-spiral",
         example=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
         doc="logarithmic spirals on an open pair, from one ratio to another",
         continuity="analytic",
-        source="003 fig. 1.9; classical",
+        source="Niculescu, fig. 1.9",
     ),
 )

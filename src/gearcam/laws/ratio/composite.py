@@ -156,7 +156,7 @@ class Fourier(Brief):
     cosines: Row = param(
         NUMBER, default=(), doc="a_1, a_2, ...: shares of the mean ratio, or degrees of phi2"
     )
-    sines: Row = param(NUMBER, default=(), doc="b_1, b_2, ..., likewise")
+    sines: Row = param(NUMBER, default=(), doc="b_1, b_2, ...: in the same units")
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -202,22 +202,22 @@ LAWS.register(
         ),
         doc="constant ratios over given angles, joined by smooth transitions; closed or open",
         continuity="C2 for quintic transitions, else C1",
-        source="003 section 1.1.3, fig. 1.6",
+        source="Niculescu, section 1.1.3, fig. 1.6",
     ),
     LawEntry(
         name="three-phase-polynomial",
         example=ThreePhasePolynomial(
             knots=(0.0, math.radians(160), 1.5 * math.pi, 2 * math.pi), lowest=0.4
         ),
-        doc="a cubic down, then two parabolas up; the highest ratio follows from closure",
+        doc="a cubic down, then two parabolas up; closure gives the highest ratio",
         continuity="C1 at the knots",
-        source="003 section 2.2.2.4, eq. (2.25), Table 2.6",
+        source="Niculescu, section 2.2.2.4, eq. (2.25), Table 2.6",
     ),
     LawEntry(
         name="fourier",
         example=Fourier(cosines=(0.2, 0.1), sines=(0.05,)),
-        doc="harmonics of the ratio or of phi2 over a lobe",
+        doc="Fourier series of the ratio or of phi2 over a lobe",
         continuity="analytic",
-        source="003 figs. 1.11, 1.17 (centrodes by Fourier series)",
+        source="Niculescu, figs. 1.11, 1.17 (centrodes by Fourier series)",
     ),
 )

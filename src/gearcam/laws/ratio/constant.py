@@ -28,6 +28,6 @@ LAWS.register(
         example=Constant(),
         doc="constant ratio z1/z2: circular wheels",
         continuity="analytic",
-        source="definition",
+        source="by definition",
     )
 )

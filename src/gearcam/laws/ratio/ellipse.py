@@ -62,8 +62,8 @@ LAWS.register(
     LawEntry(
         name="ellipse",
         example=Ellipse(eccentricity=0.5),
-        doc="ellipses about their foci, or of more lobes, phi1 = 0 at the driver's near vertex",
+        doc="ellipses about a focus, or wheels of more lobes; phi1 = 0 at the nearest point",
         continuity="analytic",
-        source="classical; polar equation of the ellipse about its focus, closure in closed form",
+        source="Litvin, Fuentes, chapter 12; centre distance in closed form",
     )
 )

@@ -248,15 +248,15 @@ LAWS.register(
     LawEntry(
         name="formula",
         example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
-        doc="one formula in phi1: phi2 (closes by itself), ratio (scaled), or r1 (any scale)",
+        doc="a formula in phi1 of phi2, of the ratio (scaled to close) or of r1 (at any scale)",
         continuity="analytic where the formula is",
-        source="003 Table 1.1, the three hypotheses",
+        source="Niculescu, Table 1.1, the three hypotheses",
     ),
     LawEntry(
         name="rack",
         example=RackLaw(r1="1 + 0.2*cos(phi1)"),
-        doc="a wheel that drives a rack, by its centrode or by the rack's travel",
+        doc="a wheel that drives a rack, given by its centrode or by the rack's travel",
         continuity="analytic where the formula is",
-        source="003 fig. 1.8; rolling on a translated body",
+        source="Niculescu, fig. 1.8",
     ),
 )

@@ -28,7 +28,9 @@ class Phases(Brief):
     one knot may be left open, so that the driven wheel turns by its travel.
     """
 
-    shape: str = param(TEXT, default="cosine", choices=tuple(ARCS), doc="arc between the knots")
+    shape: str = param(
+        TEXT, default="cosine", choices=tuple(ARCS), doc="shape of the arcs between the knots"
+    )
     knots: RowOfSome = param(
         ANGLE,
         ge=0,
@@ -303,7 +305,6 @@ LAWS.register(
         example=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
         doc="ratios at knots, joined by arcs with zero slope at each knot; closed or open",
         continuity="C1 at the knots; C2 for quintic arcs",
-        source="003 sections 2.2.2.1 to 2.2.2.3, eqs. (2.1), (2.13), (2.17), (2.22); 3.2.2, eqs. "
-        "(3.1), (3.12), (3.14), (3.26)",
+        source="Niculescu, sections 2.2.2.1 to 2.2.2.3 and 3.2.2",
     )
 )

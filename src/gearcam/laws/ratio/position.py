@@ -140,8 +140,8 @@ LAWS.register(
         example=MotionLaw(
             y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
         ),
-        doc="the driven element's position y(x), or that of a slide moved by its crank",
+        doc="position y(x) of the driven element, or of a slide that the driven crank moves",
         continuity="analytic where y or the slide is",
-        source="003 Table 1.1, second hypothesis; section 1.4.1",
+        source="Niculescu, Table 1.1, second hypothesis; section 1.4.1",
     )
 )

@@ -179,15 +179,15 @@ LAWS.register(
     LawEntry(
         name="bspline",
         example=BSplineLaw(radii=(2.0, 2.0, 2.0, 2.0)),
-        doc="a closed cubic B-spline of the driver's radius, by control values",
+        doc="the driver's radius as a closed cubic B-spline of control values",
         continuity="C2",
-        source="003 section 1.2; uniform cubic B-splines",
+        source="Niculescu, section 1.2; de Boor",
     ),
     LawEntry(
         name="rounded-polygon",
         example=RoundedPolygon(corners=4, corner_radius=1 / 6),
-        doc="a regular polygon with rounded corners, phi1 = 0 at the middle of a side",
+        doc="a regular polygon with rounded corners; phi1 = 0 at the middle of a side",
         continuity="C1: the curvature jumps from sides to corners",
-        source="003 fig. 1.7 (square wheels); closure solved for the side's distance",
+        source="Niculescu, fig. 1.7 (square wheels)",
     ),
 )

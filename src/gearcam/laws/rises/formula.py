@@ -88,8 +88,8 @@ RISES.register(
     LawEntry(
         name="formula",
         example=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),
-        doc="any smooth formula of S in x: a law of your own",
-        continuity="smooth inside; at the ends what the formula gives",
-        source="000 section 3.3.2, eqs. (3.3), (3.4)",
+        doc="any smooth formula of S in x",
+        continuity="smooth inside; at the ends as the formula is",
+        source="Duca, Buium, Paraoaru, section 3.3.2, eqs. (3.3), (3.4)",
     )
 )

@@ -220,17 +220,17 @@ RISES.register(
     LawEntry(
         name="b-spline",
         example=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),
-        doc="a curve pulled by control values: shape a motion by hand, each value near its place",
+        doc="a motion shaped by control values, each of which acts near its own place",
         continuity="C2 to C4 inside (degree - 1); at the ends by the number of zeros and ones",
-        source="C. de Boor, A Practical Guide to Splines",
+        source="de Boor",
     ),
     LawEntry(
         name="table",
         example=TableRise(
             x=(0.0, 0.1, 0.3, 0.35, 0.7, 1.0), y=(0.0, 0.00856, 0.16308, 0.235169, 0.83692, 1.0)
         ),
-        doc="measured or computed points, joined with the least jerk; repeats a motion that exists",
+        doc="measured or computed points joined with the least jerk: copies an existing motion",
         continuity="C4 inside; C2 between dwells, where the jerk jumps at both ends",
-        source="C. de Boor, A Practical Guide to Splines; the conditions derived from least jerk",
+        source="de Boor; end conditions from the least jerk",
     ),
 )

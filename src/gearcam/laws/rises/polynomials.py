@@ -76,14 +76,14 @@ class Polynomial(_TwoEnded):
         default=(0.0, 0.0),
         ge=-1e6,
         le=1e6,
-        doc="S', S'', S''', ... at the start, as many as are asked for",
+        doc="S', S'', S''', ... at the start, as many as needed",
     )
     end: Row = param(
         NUMBER,
         default=(0.0, 0.0),
         ge=-1e6,
         le=1e6,
-        doc="S', S'', S''', ... at the end, as many as are asked for",
+        doc="S', S'', S''', ... at the end, as many as needed",
     )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
@@ -139,44 +139,43 @@ RISES.register(
     LawEntry(
         name="2-3",
         example=Polynomial23(),
-        doc="the simplest smooth start and stop; slow to medium speeds",
+        doc="the simplest polynomial without a jump of velocity: low to medium speeds",
         continuity="C1: the acceleration jumps at both ends",
-        source="000 section 3.3.3.2, fig. 3.16",
+        source="Duca, Buium, Paraoaru, section 3.3.3.2, fig. 3.16",
     ),
     LawEntry(
         name="3-4-5",
         example=Polynomial345(),
         doc="the usual choice between dwells: no jump of acceleration, low peaks, easy to cut",
         continuity="C2: the jerk jumps at both ends",
-        source="000 section 3.3.3.2, fig. 3.17",
+        source="Duca, Buium, Paraoaru, section 3.3.3.2, fig. 3.17",
     ),
     LawEntry(
         name="4-5-6-7",
         example=Polynomial4567(),
-        doc="no jump of jerk either: least vibration at high speeds, for a higher acceleration",
+        doc="no jump of jerk either: least vibration at high speeds, but higher peak acceleration",
         continuity="C3: smooth up to the jerk",
-        source="000 section 3.3.3.2, fig. 3.18 (its peak of 7.52 is 7.513)",
+        source="Duca, Buium, Paraoaru, section 3.3.3.2, fig. 3.18 (peak corrected to 7.513)",
     ),
     LawEntry(
         name="5-6-7-8-9",
         example=Polynomial56789(),
-        doc="smoother still at both ends, for slender fast followers; highest peaks of its kind",
+        doc="smoothest at both ends: fast slender followers; highest peaks of these polynomials",
         continuity="at least C3: smooth beyond the jerk",
-        source="000 section 3.3.3.2, carried on to k = 4",
+        source="Duca, Buium, Paraoaru, section 3.3.3.2, continued to k = 4",
     ),
     LawEntry(
         name="3-4-5-6",
         example=Polynomial3456(),
-        doc="rise and return without a dwell at the top: the return of the same law must follow",
-        continuity="C2 with its return (the jerk jumps at the bottom); against a dwell above only "
-        "C1",
-        source="000 section 3.3.3.2, fig. 3.19",
+        doc="rise and return without a dwell at the top; a return of the same law must follow",
+        continuity="C2 if its return follows (the jerk jumps at the bottom); C1 before a dwell",
+        source="Duca, Buium, Paraoaru, section 3.3.3.2, fig. 3.19",
     ),
     LawEntry(
         name="polynomial",
         example=Polynomial(start=(), end=()),
-        doc="speed, acceleration and more given at both ends; the polynomial of least degree",
-        continuity="smooth inside; at the ends what is asked for",
-        source="000 section 3.3.3.2; two-point Hermite interpolation",
+        doc="the polynomial of lowest degree with given velocity, acceleration, ... at both ends",
+        continuity="smooth inside; at the ends as given",
+        source="Duca, Buium, Paraoaru, section 3.3.3.2; two-point Hermite interpolation",
     ),
 )

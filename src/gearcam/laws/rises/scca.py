@@ -5,7 +5,7 @@ peak Ca over c/2, and falls to zero as a quarter of a cosine over d/2; the secon
 one, turned. Velocities and lifts at the ends of the sectors are sums of positive terms, and Ca
 makes the lift at the middle one half.
 
-Source: R. L. Norton, Cam Design and Manufacturing Handbook, the SCCA family of double-dwell
+Source: R. L. Norton, the SCCA family of double-dwell
 functions; Neklutin for the modified trapezoid.
 """
 
@@ -28,8 +28,10 @@ from gearcam.quantities import NUMBER, param
 class Scca(ClosedForm):
     """Sine, constant, cosine acceleration, by the widths of its sectors."""
 
-    b: float = param(NUMBER, ge=0, le=1, doc="width of the sine sectors, both together")
-    c: float = param(NUMBER, ge=0, le=1, doc="width of constant acceleration, both together")
+    b: float = param(NUMBER, ge=0, le=1, doc="total width of the two sine sectors")
+    c: float = param(
+        NUMBER, ge=0, le=1, doc="total width of the two sectors of constant acceleration"
+    )
     d: float = param(NUMBER, ge=0, le=1, doc="width of the cosine sector in the middle")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
@@ -103,22 +105,22 @@ RISES.register(
     LawEntry(
         name="scca",
         example=Scca(b=0.2, c=0.5, d=0.3),
-        doc="one family from harmonic to cycloidal: trade peak speed, acceleration and jerk",
-        continuity="C2 where b and d are above zero, else C1: the acceleration jumps",
-        source="Norton, Cam Design and Manufacturing Handbook, SCCA family",
+        doc="the family from harmonic to cycloidal: trades peak velocity, acceleration and jerk",
+        continuity="C2 if b and d are above zero, else C1: the acceleration jumps",
+        source="Norton, SCCA family of double-dwell functions",
     ),
     LawEntry(
         name="modified-trapezoid",
         example=ModifiedTrapezoid(),
         doc="low peak acceleration without a jump: high speeds with stiff followers",
         continuity="C2: the jerk jumps at both ends",
-        source="Neklutin; Norton, Cam Design and Manufacturing Handbook",
+        source="Neklutin; Norton",
     ),
     LawEntry(
         name="modified-sine",
         example=ModifiedSine(),
-        doc="low peak speed and gentle torque: heavy loads, indexing tables, soft drives",
+        doc="low peak velocity and smooth torque: heavy loads, indexing tables, elastic drives",
         continuity="C2: the jerk jumps at both ends",
-        source="Norton, Cam Design and Manufacturing Handbook",
+        source="Norton",
     ),
 )

@@ -31,7 +31,7 @@ class ConstantAcceleration(ClosedForm):
         default=0.5,
         ge=NARROWEST,
         le=1.0 - NARROWEST,
-        doc="part of the angle in which the follower accelerates",
+        doc="share of the angle with acceleration",
     )
 
     def function(self) -> Piecewise:
@@ -73,7 +73,7 @@ class TrapezoidalVelocity(ClosedForm):
     """Constant velocity ``1/(1 - q)`` between two sectors of constant acceleration, q wide each."""
 
     q: float = param(
-        NUMBER, default=0.125, ge=NARROWEST, le=0.5, doc="part of the angle to reach full speed"
+        NUMBER, default=0.125, ge=NARROWEST, le=0.5, doc="share of the angle to full velocity"
     )
 
     def function(self) -> Piecewise:
@@ -89,7 +89,7 @@ class SineTrapezoidalVelocity(ClosedForm):
     """Constant velocity ``1/(1 - q)`` between two sectors of a half sine of acceleration."""
 
     q: float = param(
-        NUMBER, default=0.125, ge=NARROWEST, le=0.5, doc="part of the angle to reach full speed"
+        NUMBER, default=0.125, ge=NARROWEST, le=0.5, doc="share of the angle to full velocity"
     )
 
     def function(self) -> Piecewise:
@@ -112,7 +112,7 @@ class TrapezoidalAcceleration(ClosedForm):
         default=0.125,
         ge=NARROWEST,
         le=0.25,
-        doc="part of the angle in which the acceleration builds up",
+        doc="share of the angle to full acceleration",
     )
 
     def function(self) -> Piecewise:
@@ -138,50 +138,50 @@ RISES.register(
     LawEntry(
         name="constant-velocity",
         example=ConstantVelocity(),
-        doc="even speed, with a blow at both ends; only for very slow cams and feed motions",
+        doc="constant velocity that starts and stops abruptly: only for very slow cams and feeds",
         continuity="C0: the velocity jumps at both ends",
-        source="000 section 3.3.3.1, fig. 3.12",
+        source="Duca, Buium, Paraoaru, section 3.3.3.1, fig. 3.12",
     ),
     LawEntry(
         name="constant-acceleration",
         example=ConstantAcceleration(),
-        doc="least peak acceleration, but it jumps: slow to medium speeds",
+        doc="lowest peak acceleration of all, but it jumps: low to medium speeds",
         continuity="C1: the acceleration jumps at both ends and at q",
-        source="000 section 3.3.3.1, fig. 3.13",
+        source="Duca, Buium, Paraoaru, section 3.3.3.1, fig. 3.13",
     ),
     LawEntry(
         name="harmonic",
         example=Harmonic(),
-        doc="smooth for rise-return over the full turn without dwells; else slow to medium speeds",
+        doc="smooth for one rise and return a turn without dwells; else low to medium speeds",
         continuity="C1: the acceleration jumps at both ends",
-        source="000 section 3.3.3.1, fig. 3.14",
+        source="Duca, Buium, Paraoaru, section 3.3.3.1, fig. 3.14",
     ),
     LawEntry(
         name="cycloidal",
         example=Cycloidal(),
-        doc="no jump of acceleration between dwells: high speeds, if it is cut exactly",
+        doc="no jump of acceleration between dwells: high speeds, if the cam is cut accurately",
         continuity="C2: the jerk jumps at both ends",
-        source="000 section 3.3.3.1, fig. 3.15 (its S''' is to read 4*pi^2*cos)",
+        source="Duca, Buium, Paraoaru, section 3.3.3.1, fig. 3.15 (S''' corrected to 4*pi^2*cos)",
     ),
     LawEntry(
         name="trapezoidal-velocity",
         example=TrapezoidalVelocity(),
-        doc="even speed over most of the way without a blow: feeds and winding, slow to medium",
-        continuity="C1: the acceleration jumps at both ends and where the speed becomes even",
-        source="000 section 3.3.3.3, fig. 3.20",
+        doc="constant velocity over most of the lift without a jump of velocity: feeds and winding",
+        continuity="C1: the acceleration jumps at both ends of each ramp of the velocity",
+        source="Duca, Buium, Paraoaru, section 3.3.3.3, fig. 3.20",
     ),
     LawEntry(
         name="sine-trapezoidal-velocity",
         example=SineTrapezoidalVelocity(),
-        doc="even speed over most of the way, smooth to start and stop: faster cams, cut with care",
-        continuity="C2: the jerk jumps at both ends and where the speed becomes even",
-        source="000 section 3.3.3.3, fig. 3.21 (S' of its third sector is to read with a plus)",
+        doc="constant velocity over most of the lift, smooth start and stop: faster feeds",
+        continuity="C2: the jerk jumps at both ends of each ramp of the velocity",
+        source="Duca, Buium, Paraoaru, section 3.3.3.3, fig. 3.21 (sign of S' corrected)",
     ),
     LawEntry(
         name="trapezoidal-acceleration",
         example=TrapezoidalAcceleration(),
-        doc="low peak acceleration without a jump: all speeds, easier to cut than cycloidal",
+        doc="low peak acceleration without a jump: any speed, less demanding to cut than cycloidal",
         continuity="C2: the jerk jumps at the ends of the sectors",
-        source="000 section 3.3.3.3, fig. 3.22; Neklutin",
+        source="Duca, Buium, Paraoaru, section 3.3.3.3, fig. 3.22; Neklutin",
     ),
 )
