@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
-from gearcam.designs.faults import TOLD
+from gearcam.designs.slips import MOST_LISTED
 from gearcam.errors import DesignError, InfeasibleError, WriteError
 from gearcam.facts import lined_up
 from gearcam.numerals import size_of, with_unit
@@ -113,8 +113,8 @@ def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> 
     if isinstance(error, InfeasibleError):
         return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
     count = len(error.problems)
-    lines = [str(problem) for problem in error.problems[:TOLD]]
-    lines += [f"and {count - TOLD} more"] if count > TOLD else []
+    lines = [str(problem) for problem in error.problems[:MOST_LISTED]]
+    lines += [f"and {count - MOST_LISTED} more"] if count > MOST_LISTED else []
     told = textwrap.indent("\n".join(lines), "  ")
     return f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}\n{told}"
 

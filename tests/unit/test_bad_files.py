@@ -15,7 +15,7 @@ import pytest
 import gearcam
 from gearcam.cli import main
 from gearcam.designs import reader
-from gearcam.designs.faults import TOLD
+from gearcam.designs.slips import MOST_LISTED
 from gearcam.errors import DesignError
 from gearcam.laws import columns
 from gearcam.reading import UnreadableError, read
@@ -187,11 +187,11 @@ def test_what_is_no_design(desk: Path, case: str, capsys: pytest.CaptureFixture[
 @pytest.mark.parametrize("at", ["[law]\n", "module_mm"])
 def test_what_was_meant_is_sought_for_no_more_keys_than_are_told(at: str) -> None:
     """A search takes longer than all else that is done with an unknown key."""
-    keys = "".join(f"teeth{k} = 1\n" for k in range(TOLD + 5))
+    keys = "".join(f"teeth{k} = 1\n" for k in range(MOST_LISTED + 5))
     with pytest.raises(DesignError) as caught:
         reader.loads(GOOD.replace(at, keys + at))
     hints = [bool(one.hint) for one in caught.value.problems]
-    assert hints == [True] * TOLD + [False] * 5
+    assert hints == [True] * MOST_LISTED + [False] * 5
 
 
 @pytest.mark.parametrize("sign", [1, -1])

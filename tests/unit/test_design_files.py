@@ -153,7 +153,12 @@ def test_a_problem_carries_file_line_key_value_rule_and_hint() -> None:
     ("old", "new", "key", "hint"),
     [
         ("knots_deg", "knots", "law.knots", "knots_deg"),
-        ("knots_deg", "knots_rad", "law.knots_rad", "knots_deg? (angles are given in deg"),
+        (
+            "knots_deg",
+            "knots_rad",
+            "law.knots_rad",
+            "knots_deg? (angles are in deg: 1 rad =",
+        ),
         ("knots_deg", "knot_deg", "law.knot_deg", "knots_deg?"),
         (
             "center_distance_mm",
@@ -174,7 +179,12 @@ def test_a_problem_carries_file_line_key_value_rule_and_hint() -> None:
         ("ratios =", "eccentricity = 1\nratios =", "law.eccentricity", 'type "ellipse" or'),
         ("ratios =", "teeth = 1\nratios =", "law.teeth", "belongs under [pair]"),
         ("[law]", "center_distance_mm = 180\n[law]", "center_distance_mm", "under [pair]"),
-        ("[law]", "modul = 1\n[law]", "modul", "module_mm? (lengths are given in mm"),
+        (
+            "[law]",
+            "modul = 1\n[law]",
+            "modul",
+            "module_mm? (lengths are in mm, and",
+        ),
         ('"gear-pair"', '"gear pair"', "kind", "gear-pair"),
         ("= 180", '= "180"', "pair.center_distance_mm", "without quotes"),
         ("[output]", "[rack]\ndedendum_mm = 1\n[output]", "rack.dedendum_mm", "mean dedendum?"),
@@ -247,7 +257,9 @@ def test_what_a_law_finds_wrong_gets_its_place(old: str, new: str, key: str, wor
 def test_a_unit_where_none_belongs_is_noticed_even_on_a_short_key() -> None:
     law = GOOD[GOOD.index("type") : GOOD.index("[pair]")]
     found = problems(GOOD.replace(law, 'type = "formula"\nr1_mm = "1"\n\n'))
-    assert {problem.key: problem.hint for problem in found}["law.r1_mm"] == "did you mean r1?"
+    assert {problem.key: problem.hint for problem in found}["law.r1_mm"] == (
+        "did you mean r1? (it has no unit)"
+    )
 
 
 def test_a_formula_that_cannot_be_read_tells_the_column() -> None:

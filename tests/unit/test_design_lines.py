@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gearcam.designs import load, loads
-from gearcam.designs.faults import nearest
 from gearcam.designs.lines import line_at, lines_of
+from gearcam.designs.slips import nearest
 from gearcam.errors import DesignError, Problem
 
 GOOD = """\

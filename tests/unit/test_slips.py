@@ -24,10 +24,10 @@ files = ["csv"]
 SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "British": (PAIR, "center_", "centre_", "pair.centre_distance_mm", "mean center_distance_mm?"),
     "other unit": (PAIR, "center_distance_mm", "center_distance_cm", "pair.center_distance_cm",
-                   "mean center_distance_mm? (lengths are given in mm"),
+                   "mean center_distance_mm? (lengths are in mm: 1 cm = 10 mm)"),
     "no unit": (PAIR, "knots_deg", "knots", "law.knots", "mean knots_deg? (angles"),
     "of the rack": (PAIR, "[pair]", "[pair]\npressure_angle = 25", "pair.pressure_angle",
-                    "and the key says so) (under [rack])"),
+                    "and their keys end in _deg) (under [rack])"),
     "of a cam": (PAIR, "[pair]", "[pair]\nroller_radius_mm = 6", "pair.roller_radius_mm",
                  'belongs to kind = "cam"'),
     "comma": (PAIR, "[0, 160,", "[0 160,", "", "column 16: a comma is missing here"),
@@ -59,6 +59,72 @@ def test_a_slip_is_told_with_what_was_meant(name: str) -> None:
     assert [problem.key or "" for problem in found if problem.message != "is missing"] == [key]
     (slip,) = (problem for problem in found if problem.message != "is missing")
     assert words in f"{slip.message} {slip.allowed} {slip.hint}"
+
+
+MISTAKES = [
+    # table, key as a first user may write it, the keys that are offered
+    (PAIR, "blank", "bore_mm", "bore_diameter_mm"),
+    (PAIR, "blank", "bore", "bore_diameter_mm"),
+    (PAIR, "blank", "bore_dia_mm", "bore_diameter_mm"),
+    (PAIR, "blank", "bore_diameter_in", "bore_diameter_mm"),
+    (PAIR, "blank", "bore_size_mm", "bore_diameter_mm"),
+    (PAIR, "blank", "hub_mm", "hub_diameter_mm"),
+    (PAIR, "blank", "hub_dia", "hub_diameter_mm"),
+    (PAIR, "blank", "keyway_mm", "keyway_width_mm"),
+    (PAIR, "blank", "bolt_mm", "bolt_diameter_mm"),
+    (PAIR, "blank", "number_of_bolts", "bolts"),
+    (PAIR, "blank", "bolt_circle_diameter_mm", "bolt_circle_mm"),
+    (PAIR, "blank", "density", "density_kg_m3"),
+    (PAIR, "blank", "clearence_mm", "clearance_mm"),
+    (PAIR, "pair", "teeth_count", "teeth"),
+    (PAIR, "pair", "number_of_teeth", "teeth"),
+    (PAIR, "pair", "tooth", "teeth"),
+    (PAIR, "pair", "centre_distance_mm", "center_distance_mm"),
+    (PAIR, "pair", "centre_distance", "center_distance_mm"),
+    (PAIR, "pair", "distance_mm", "center_distance_mm"),
+    (PAIR, "pair", "centerdistance_mm", "center_distance_mm"),
+    (PAIR, "pair", "center_distance_in", "center_distance_mm"),
+    (PAIR, "pair", "width_mm", "face_width_mm"),
+    (PAIR, "pair", "module", "module_mm"),
+    (PAIR, "rack", "pressure_angle_rad", "pressure_angle_deg"),
+    (PAIR, "rack", "angle_deg", "pressure_angle_deg"),
+    (PAIR, "rack", "addendum_mm", "addendum"),
+    (PAIR, "law", "knot_deg", "knots_deg"),
+    (PAIR, "law", "knots_rad", "knots_deg"),
+    (PAIR, "law", "ratio", "ratios"),
+    (PAIR, "output", "tolerance_mm", "chord_tolerance_mm"),
+    (PAIR, "output", "kerf", "kerf_mm"),
+    (PAIR, "output", "kerf_width_mm", "kerf_mm"),
+    (PAIR, "output", "file", "files"),
+    (CAM, "cam", "radius_mm", "prime_radius_mm or base_radius_mm"),
+    (CAM, "cam", "base_diameter_mm", "base_radius_mm"),
+    (CAM, "cam", "base_circle_radius_mm", "base_radius_mm"),
+    (CAM, "cam", "prime_radius_in", "prime_radius_mm"),
+    (CAM, "cam", "thick_mm", "thickness_mm"),
+    (CAM, "follower", "roller_mm", "roller_radius_mm"),
+    (CAM, "follower", "roller_diameter_mm", "roller_radius_mm"),
+    (CAM, "follower", "radius_mm", "roller_radius_mm or dome_radius_mm"),
+    (CAM, "follower", "arm_length_mm", "arm_mm"),
+    (CAM, "follower", "ofset_mm", "offset_mm"),
+    (CAM, "blank", "bore_mm", "bore_diameter_mm"),
+    (CAM, "blank", "bore_rad", "bore_diameter_mm"),
+]
+
+
+@pytest.mark.parametrize(("text", "title", "key", "meant"), MISTAKES)
+def test_a_likely_mistake_is_answered_with_the_key_that_was_meant(
+    text: str, title: str, key: str, meant: str
+) -> None:
+    head = f"[{title}]"
+    text = text.replace(head, f"{head}\n{key} = 1") if head in text else f"{text}{head}\n{key} = 1"
+    (hint,) = (one.hint for one in problems(text) if one.key == f"{title}.{key}")
+    assert hint.startswith(f"did you mean {meant}?")
+
+
+def test_a_key_of_another_unit_is_answered_with_the_factor() -> None:
+    text = PAIR.replace("center_distance_mm", "center_distance_in")
+    (problem,) = problems(text)
+    assert problem.hint == ("did you mean center_distance_mm? (lengths are in mm: 1 in = 25.4 mm)")
 
 
 @pytest.mark.parametrize("name", ["British", "other unit", "no unit"])

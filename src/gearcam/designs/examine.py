@@ -14,16 +14,13 @@ from typing import Any, Final
 from gearcam.designs.faults import (
     TOO_DEEP,
     Fault,
-    did_you_mean,
-    hinted,
     is_deep,
-    key_hint,
-    nearest,
     quoted,
     show,
 )
 from gearcam.designs.kind import KINDS, DesignKind, Examined, own_faults
 from gearcam.designs.lines import Path
+from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
 from gearcam.designs.validate import faults_of
 
 _NAME = re.compile(r"\w[\w.-]*")
@@ -97,7 +94,7 @@ def home_of(kind: DesignKind, key: str) -> str:
 
 def _elsewhere(kind: DesignKind, key: str) -> str:
     """Return where a key that its table does not know may belong, in any kind of design."""
-    return home_of(kind, key) or _near_home(kind, key) or _other_home(key)
+    return home_of(kind, key) or _near_home(kind, key, SURE) or _other_home(key)
 
 
 def _other_home(key: str) -> str:
@@ -109,9 +106,9 @@ def _other_home(key: str) -> str:
     return f"this key belongs to kind = {quoted(owners)}" if owners else ""
 
 
-def _near_home(kind: DesignKind, key: str) -> str:
+def _near_home(kind: DesignKind, key: str, least: float) -> str:
     for title in kind.tables:
-        hint = key_hint(key, kind.table(title).entries)
+        hint = key_hint(key, kind.table(title).entries, least)
         if hint:
             return f"{hint} (under [{title}])"
     return ""
@@ -138,7 +135,7 @@ def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault
 
 def _top_hint(kind: DesignKind, key: str) -> str:
     hint = home_of(kind, key) or _other_kind(key)
-    return hint or key_hint(key, kind.titles) or _near_home(kind, key)
+    return hint or key_hint(key, kind.titles) or _near_home(kind, key, STRONG)
 
 
 def _holds_tables(value: Any) -> bool:

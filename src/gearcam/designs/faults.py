@@ -5,38 +5,29 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
-from itertools import islice
 from typing import Any, Final
 
 from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
+from gearcam.designs.slips import did_you_mean
 from gearcam.designs.table import Key
 from gearcam.errors import Problem
 from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, LENGTH
 
 MISSING: Final = object()
 """Value of a fault where nothing was found."""
 
-_SUFFIX = re.compile(r"_(deg|rad|mm|cm|m|in|inch|rpm|um)$")
 _MEASURE = re.compile(r"[+-]?\d[\d.]*\s*([^\W\d_]+|°)")
 """A number with a unit."""
 
 _KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 _SHOWN: Final = 60
 
-TOLD: Final = 100
-"""Problems of a file that people are told of at once."""
-
 TOO_DEEP: Final = "lists or tables are nested too deep"
 DEEPEST: Final = 50
 """Lists and tables within each other; designs need five."""
-
-_SURE: Final = 0.75
-"""Likeness of words (twice the letters that they share over the letters of both) from which the
-first letter may be wrong too, which it rarely is in a slip."""
 
 
 @dataclass(frozen=True)
@@ -111,95 +102,10 @@ def show(value: Any) -> str:
     return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """Return the known word that was probably meant, or nothing."""
-    import difflib
-
-    by_lower = {name.lower(): name for name in known}
-    meant = word.lower()
-    close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=_SURE)
-    close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
-    return by_lower[close[0]] if close else ""
-
-
-def did_you_mean(word: Any, known: Iterable[str]) -> str:
-    """Return the question with the nearest known word, or nothing."""
-    near = nearest(word, known) if isinstance(word, str) else ""
-    return f"did you mean {near}?" if near else ""
-
-
 def unknown_word(word: str, what: str, known: Collection[str], key: str = "") -> Problem:
     """Return the problem of a `word` that is none of those `known`, told as `what`, of a `key`."""
     allowed, hint = ", ".join(known), did_you_mean(word, known)
     return Problem(f"{show(word)} {what}", key=key, allowed=allowed, hint=hint)
-
-
-def meant_by(key: str, known: Mapping[str, Key]) -> list[Key]:
-    """Return the keys that were probably meant by one that is not `known`.
-
-    Parameters
-    ----------
-    key : str
-        As written.
-    known : mapping of str to Key
-        The keys of its table.
-
-    Returns
-    -------
-    list of Key
-        With its name and another unit, those of which it is the end, or the nearest; or none.
-    """
-    named: dict[str, list[Key]] = {}
-    for entry in known.values():
-        for word in {entry.key, entry.name}:
-            named.setdefault(word, []).append(entry)
-    stem = _SUFFIX.sub("", key)
-    rounds = ("diameter", "radius") if "diameter" in key else ("radius", "diameter")
-    for word in (stem, key.replace(*rounds)):
-        if word in named:
-            return named[word]
-    ends = [entry for entry in known.values() if entry.key.endswith(f"_{key}")]
-    return ends if len(ends) == 2 else named.get(nearest(key, named), [])
-
-
-def key_hint(key: str, known: Mapping[str, Key] | Iterable[str]) -> str:
-    """Return the hint for an unknown key: its unit's suffix, or the nearest key.
-
-    Parameters
-    ----------
-    key : str
-        As written.
-    known : mapping of str to Key, or iterable of str
-        The keys of its table.
-    """
-    if not isinstance(known, Mapping):
-        return did_you_mean(key, known)
-    meant = meant_by(key, known)
-    if not meant:
-        return ""
-    told = " or ".join(entry.key for entry in meant)
-    return f"did you mean {told}?" + (_unit_words(key, meant[0]) if len(meant) == 1 else "")
-
-
-def misspelt(raw: Mapping[str, Any], known: Mapping[str, Key]) -> frozenset[str]:
-    """Return the keys that those of a table `raw` which are not `known` probably mean."""
-    unknown = islice((key for key in raw if key not in known), TOLD)
-    return frozenset(entry.key for key in unknown for entry in meant_by(key, known))
-
-
-def hinted(unknown: Iterable[str], hint: Callable[[str], str]) -> Iterator[tuple[str, str]]:
-    """Yield `unknown` keys, each with its `hint` as far as it is told: a search takes a while."""
-    for number, key in enumerate(unknown):
-        yield key, hint(key) if number < TOLD else ""
-
-
-def _unit_words(key: str, entry: Key) -> str:
-    if entry.param.quantity in (ANGLE, LENGTH) and not key.endswith(entry.param.quantity.suffix):
-        what = "angles" if entry.param.quantity is ANGLE else "lengths"
-        return f" ({what} are given in {entry.param.quantity.unit}, and the key says so)"
-    if "diameter" in key and "radius" in entry.key:
-        return " (half the diameter)"
-    return " (twice the radius)" if "radius" in key and "diameter" in entry.key else ""
 
 
 def description(entry: Key) -> str:

@@ -6,18 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from gearcam.designs.faults import (
-    Fault,
-    allowed,
-    hinted,
-    is_of,
-    key_hint,
-    misspelt,
-    show,
-    value_fault,
-)
+from gearcam.designs.faults import Fault, allowed, is_of, show, value_fault
 from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
+from gearcam.designs.slips import STRONG, hinted, key_hint, misspelt
 from gearcam.designs.table import Key, Table
 
 
@@ -66,7 +58,11 @@ def faults_of(
         elif name in missing and name not in meant:
             yield Fault((*at, name), "is missing", allowed=allowed(key))
     unknown = (name for name in raw if name not in table.entries)
-    for name, hint in hinted(unknown, lambda name: key_hint(name, told) or home(name)):
+
+    def hint_of(name: str) -> str:
+        return key_hint(name, told, STRONG) or home(name) or key_hint(name, told)
+
+    for name, hint in hinted(unknown, hint_of):
         message = f"unknown key (its value is {show(raw[name])})"
         yield Fault((*at, name), message, raw[name], known, hint)
 

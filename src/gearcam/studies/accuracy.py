@@ -18,8 +18,9 @@ import numpy as np
 
 from gearcam.charts import Chart, Line
 from gearcam.designs.design import Design
-from gearcam.designs.faults import did_you_mean, show
+from gearcam.designs.faults import show
 from gearcam.designs.kind import KINDS, find_room
+from gearcam.designs.slips import did_you_mean
 from gearcam.display import Brief
 from gearcam.errors import DesignError, GearcamError, Problem
 from gearcam.facts import Facts, lined_up

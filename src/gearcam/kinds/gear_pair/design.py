@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
-from gearcam.designs.faults import Fault, misspelt, quoted, show
+from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, DesignKind, Examined, made_of
 from gearcam.designs.outputs import FORMATS, OutputSpec, output_faults, pose_param
+from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec

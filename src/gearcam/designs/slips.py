@@ -1,0 +1,215 @@
+"""Misspelt words and keys of a design file: what was probably meant.
+
+Keys are compared word by word in one spelling, the first word counting twice: ``bore_mm`` is nearer
+to ``bore_diameter_mm`` than to ``bore_flat_mm``, though it shares more letters with the latter.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import lru_cache
+from itertools import islice
+from typing import Any, Final
+
+from gearcam.designs.table import Key
+from gearcam.numerals import shown
+from gearcam.quantities import ANGLE, LENGTH
+
+MOST_LISTED: Final = 100
+"""Problems of a file that are listed at once."""
+
+STRONG: Final = 0.75
+"""Likeness from which a key was meant rather than the same one of another table, and from which a
+word may begin with another letter, as it rarely does in a slip."""
+
+SURE: Final = 0.9
+"""Likeness from which a key of another table was meant, if its own table has none as likely."""
+
+_WEAK: Final = 0.55
+_LEAST_WORD: Final = 0.8
+"""Likeness from which a key, and one of its words, may have been meant at all."""
+
+_ABBREVIATED: Final = 0.95
+"""Likeness of a word to its beginning, and of a radius to a diameter."""
+
+_OTHER_UNIT: Final = 0.15
+"""What a unit of another quantity takes off the likeness."""
+
+_LONGEST: Final = 100
+"""Letters of a key; nothing is meant by a longer one."""
+
+_EQUAL: Final = 1e-9
+_MOST: Final = 4
+"""Keys that are offered in place of one."""
+
+_UNITS: Final = {
+    "mm": ("mm", 1.0), "cm": ("mm", 10.0), "m": ("mm", 1000.0), "um": ("mm", 0.001),
+    "in": ("mm", 25.4), "inch": ("mm", 25.4), "inches": ("mm", 25.4),
+    "deg": ("deg", 1.0), "degrees": ("deg", 1.0),
+    "rad": ("deg", 57.29578), "radians": ("deg", 57.29578),
+}  # fmt: skip
+"""Endings of keys: the unit of files that they stand for, and how much of it one is."""
+
+_ENDING: Final = re.compile(f"(.+?)(?:_({'|'.join(_UNITS)})(?:_per_rad2?)?)?", re.DOTALL)
+
+_SPELLINGS: Final = {
+    "centre": "center", "tooth": "teeth", "dia": "diameter", "diam": "diameter", "radii": "radius",
+    "colour": "color",
+}  # fmt: skip
+_FILLERS: Final = frozenset({"number", "num", "no", "n", "of", "the", "size", "value"})
+_SIZES: Final = frozenset({"diameter", "radius", "width", "distance"})
+"""Words that are left out, or added, more easily than others."""
+
+
+@lru_cache(maxsize=4096)
+def _letters(word: str, other: str) -> float:
+    """Return twice the letters that two words share over the letters of both."""
+    return difflib.SequenceMatcher(None, word, other).ratio()
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known word that was probably meant, or nothing."""
+    by_lower = {name.lower(): name for name in known}
+    meant = word.lower()
+    close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=STRONG)
+    close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
+    return by_lower[close[0]] if close else ""
+
+
+def did_you_mean(word: Any, known: Iterable[str]) -> str:
+    """Return the question with the nearest known word, or nothing."""
+    near = nearest(word, known) if isinstance(word, str) else ""
+    return f"did you mean {near}?" if near else ""
+
+
+def meant_by(key: str, known: Mapping[str, Key], least: float = _WEAK) -> list[Key]:
+    """Return the keys that were probably meant by one that is not `known`.
+
+    Parameters
+    ----------
+    key : str
+        As written.
+    known : mapping of str to Key
+        The keys of its table.
+    least : float
+        Likeness from which a key counts, 0 to 1.
+
+    Returns
+    -------
+    list of Key
+        The likeliest; several if they are equally likely, none if no key is likely enough.
+    """
+    near = known.items() if len(key) <= _LONGEST else ()
+    scores = {name: _likeness(key, entry) for name, entry in near}
+    best = max(scores.values(), default=0.0)
+    likely = [known[name] for name, score in scores.items() if score > best - _EQUAL]
+    return likely[:_MOST] if best >= least else []
+
+
+def _likeness(key: str, entry: Key) -> float:
+    """Return how likely a written `key` means an entry, 0 to 1."""
+    stem, unit = _split(key)
+    quantity = entry.param.quantity
+    names = {entry.key.removesuffix(quantity.suffix), entry.name}
+    score = max(_words_likeness(_words(stem), _words(name)) for name in names)
+    other = unit and not quantity.unit.startswith(_UNITS[unit][0])
+    return score - _OTHER_UNIT if other else score
+
+
+def _split(key: str) -> tuple[str, str]:
+    """Return a key without its unit, and its unit or nothing."""
+    match = _ENDING.fullmatch(key)
+    return (match[1], match[2] or "") if match else (key, "")
+
+
+def _words(name: str) -> list[str]:
+    """Return the words of a key in one spelling, without those that say nothing."""
+    words = [word for word in name.lower().split("_") if word]
+    words = [_SPELLINGS.get(word, word) for word in words]
+    return [word for word in words if word not in _FILLERS] or words
+
+
+def _words_likeness(written: list[str], known: list[str]) -> float:
+    left, extra = _weighed(known), []
+    gained = total = 0.0
+    for word, weight in _weighed(written):
+        near = max(left, key=lambda one, word=word: _alike(word, one[0]), default=("", 0.0))
+        alike = _alike(word, near[0])
+        if alike:
+            left.remove(near)
+            gained += alike * (weight + near[1])
+            total += weight + near[1]
+        else:
+            extra.append((word, weight))
+    easily = () if left and extra else _SIZES
+    total += sum(0.5 * weight if word in easily else weight for word, weight in left + extra)
+    letters = _letters("".join(written), "".join(known))
+    if gained and letters < 1.0:
+        return gained / total
+    close = letters >= STRONG or (letters >= _WEAK and written[0][:1] == known[0][:1])
+    return letters if close else 0.0
+
+
+def _weighed(words: list[str]) -> list[tuple[str, float]]:
+    return [(word, 1.0 if number else 2.0) for number, word in enumerate(words)]
+
+
+def _alike(word: str, other: str) -> float:
+    """Return the likeness of two words of keys, 0 where they are different ones."""
+    if word == other:
+        return 1.0
+    if {word, other} == {"radius", "diameter"} or (len(word) > 2 and other.startswith(word)):
+        return _ABBREVIATED
+    letters = _letters(word, other)
+    return letters if letters >= _LEAST_WORD else 0.0
+
+
+def key_hint(key: str, known: Mapping[str, Key] | Iterable[str], least: float = _WEAK) -> str:
+    """Return the hint for an unknown key: the nearest keys, and what their unit is.
+
+    Parameters
+    ----------
+    key : str
+        As written.
+    known : mapping of str to Key, or iterable of str
+        The keys of its table.
+    least : float
+        As of `meant_by`.
+    """
+    if not isinstance(known, Mapping):
+        return did_you_mean(key, known)
+    meant = meant_by(key, known, least)
+    if not meant:
+        return ""
+    *most, last = [entry.key for entry in meant]
+    offered = f"{', '.join(most)} or {last}" if most else last
+    return f"did you mean {offered}?" + (_unit_words(key, meant[0]) if len(meant) == 1 else "")
+
+
+def _unit_words(key: str, entry: Key) -> str:
+    quantity, unit = entry.param.quantity, _split(key)[1]
+    if unit and not quantity.suffix:
+        return " (it has no unit)"
+    if quantity in (ANGLE, LENGTH) and not key.endswith(quantity.suffix):
+        what = "angles" if quantity is ANGLE else "lengths"
+        basis, factor = _UNITS.get(unit, ("", 1.0))
+        if basis == quantity.unit and factor != 1.0:
+            return f" ({what} are in {basis}: 1 {unit} = {shown(factor, 8)} {basis})"
+        return f" ({what} are in {quantity.unit}, and their keys end in {quantity.suffix})"
+    if "diameter" in key and "radius" in entry.key:
+        return " (half the diameter)"
+    return " (twice the radius)" if "radius" in key and "diameter" in entry.key else ""
+
+
+def misspelt(raw: Mapping[str, Any], known: Mapping[str, Key]) -> frozenset[str]:
+    """Return the known keys that unknown ones of a table `raw` probably mean."""
+    unknown = islice((key for key in raw if key not in known), MOST_LISTED)
+    return frozenset(entry.key for key in unknown for entry in meant_by(key, known))
+
+
+def hinted(unknown: Iterable[str], hint: Callable[[str], str]) -> Iterator[tuple[str, str]]:
+    """Yield `unknown` keys, each with its `hint`; the search takes a while, so not for all."""
+    for number, key in enumerate(unknown):
+        yield key, hint(key) if number < MOST_LISTED else ""
