@@ -1,13 +1,13 @@
-"""gearcam: from a description of a motion to a cam, or a pair of non-circular gears, to be cut.
+"""gearcam: cams and pairs of non-circular gears from a description of their motion.
 
     design = gearcam.load("profiles/nail_machine_two_phase.toml")
     result = gearcam.build(design)
     result.pair.module, result.findings, result.gear1.outline
     result.write("output", files=["dxf"])
-    gearcam.remedies(result).found  # where it is refused or has errors: what would work
+    gearcam.remedies(result).found  # changes that make a failing design work
 
-Importing the package loads nothing else: what is asked for brings in what it needs. Classes of
-designs and of their parts are attributes too; ``dir(gearcam)`` tells of all.
+Importing the package is fast: modules are loaded when they are needed. Classes of designs and of
+their parts are attributes too; ``dir(gearcam)`` lists all names.
 """
 
 from __future__ import annotations
@@ -68,11 +68,11 @@ _HOMES = {
     "laws": "gearcam.laws",
     "rises": "gearcam.laws.rises",
 }
-"""Modules of names that are brought in when they are asked for; those of kinds are found."""
+"""Modules of names that are imported on demand; kinds of design add theirs."""
 
 
 def _brought(name: str) -> Any:
-    """Return what is brought in when it is asked for: classes of designs, laws, errors."""
+    """Return a class, function or module of the package by name, imported on demand."""
     from importlib import import_module
 
     if name in _HOMES:
@@ -81,10 +81,10 @@ def _brought(name: str) -> Any:
     made = _of_kinds() if name[:1].isupper() else {}
     if name in made:
         return made[name]
-    raise AttributeError(f"gearcam has no {name}; dir(gearcam) tells of all")
+    raise AttributeError(f"gearcam has no {name}; dir(gearcam) lists all names")
 
 
-if not TYPE_CHECKING:  # type checkers know the names, and find misspelt ones
+if not TYPE_CHECKING:  # so that type checkers report misspelt names
     __getattr__ = _brought
 
 
@@ -111,12 +111,12 @@ def load(path: str | os.PathLike[str]) -> Design:
     Returns
     -------
     Design
-        What is asked for, in mm and rad, of the file's kind.
+        The design, in mm and rad; its class depends on ``kind`` in the file.
 
     Raises
     ------
     DesignError
-        With every problem of the file at once.
+        With all mistakes in the file at once.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def loads(text: str) -> Design:
     Parameters
     ----------
     text : str
-        TOML; a key ``name`` is needed. CSV files are looked for in the current folder.
+        TOML with a key ``name``. Paths of CSV files are relative to the current folder.
 
     Returns
     -------
@@ -148,7 +148,7 @@ def loads(text: str) -> Design:
     Raises
     ------
     DesignError
-        With every problem of the text at once, each with its line.
+        With all mistakes in the text at once, each with its line.
 
     Examples
     --------
@@ -164,12 +164,12 @@ def loads(text: str) -> Design:
 
 
 def design(document: Mapping[str, Any]) -> Design:
-    """Make a design of nested dictionaries that hold what a design file would.
+    """Return a design from nested dictionaries with the content of a design file.
 
     Parameters
     ----------
     document : mapping
-        With the keys and the units of a file: ``kind`` and ``name`` among them.
+        Keys and values as in a design file, in its units, including ``kind`` and ``name``.
 
     Returns
     -------
@@ -179,7 +179,7 @@ def design(document: Mapping[str, Any]) -> Design:
     Raises
     ------
     DesignError
-        With every problem at once, each with its key.
+        With all mistakes at once, each with its key.
 
     Examples
     --------
@@ -194,29 +194,29 @@ def design(document: Mapping[str, Any]) -> Design:
     from gearcam.designs import design as made
     from gearcam.numeric.arguments import instance
 
-    return made(instance("document", document, Mapping, "a mapping, as of a design file"))
+    return made(instance("document", document, Mapping, "a mapping of the keys of a design file"))
 
 
 def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
-    """Return the result of a design; nothing is computed until it is asked for.
+    """Return the result of a design, which computes values when they are first used.
 
     Parameters
     ----------
     design : Design
-        What is asked for.
+        From `load`, `loads` or `design`.
     tolerances : Tolerances, optional
-        Inner accuracy.
+        Accuracy of the internal computations.
 
     Returns
     -------
     Result
-        Of the design's kind: its attributes compute what they name and raise `InfeasibleError` for
-        what cannot be made.
+        Its class depends on the kind of design. Its attributes raise `InfeasibleError` if what they
+        describe cannot be made.
 
     Raises
     ------
     DesignError
-        If it is no design.
+        If the argument is not a design.
 
     Examples
     --------
@@ -228,7 +228,7 @@ def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
     from gearcam.designs import KINDS, Design
     from gearcam.numeric.arguments import instance
 
-    kind = instance("design", design, Design, "a design, as load returns it").kind
+    kind = instance("design", design, Design, "a design, as returned by load").kind
     given = () if tolerances is None else (tolerances,)
     return KINDS[kind].room("build").build(design, *given)
 
@@ -236,27 +236,27 @@ def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
 def remedies(
     result: Result, refusal: InfeasibleError | None = None, *, patience: float = 6.0
 ) -> Remedies:
-    """Search for changes with which a refused design, or one with errors, can be made.
+    """Search for changes that make a refused design, or one with errors, work.
 
     Parameters
     ----------
     result : Result
         From `build`.
     refusal : InfeasibleError, optional
-        How it was refused; found by building where left out.
+        The error with which it was refused; found by building it by default.
     patience : float, s
-        Time after which no other design is tried on a usual machine; designs are counted, ten a
-        second, so that the answer is the same everywhere.
+        Time of the search on a usual machine, at ten designs a second. Designs are counted, not
+        time, so that the answer is the same everywhere.
 
     Returns
     -------
     Remedies
-        Each was built: nothing is refused, what was an error is gone, and no other has come.
+        Each was built without refusal and without findings of severity ``error``.
 
     Raises
     ------
     DesignError
-        If it is no result.
+        If the argument is not a result.
 
     Examples
     --------
@@ -270,5 +270,5 @@ def remedies(
     from gearcam.numeric.arguments import instance
     from gearcam.result import Result
 
-    instance("result", result, Result, "a result, as build returns it")
+    instance("result", result, Result, "a result, as returned by build")
     return search(result, refusal, patience=patience)

@@ -1,9 +1,8 @@
-"""Charts: what is drawn over an angle, as data, and their drawing.
+"""Charts as data, and their drawing with matplotlib.
 
-A *chart* has one horizontal axis, *lines* over it, the *limits* that they are held against, and
-*marked places* on the axis, such as the knots of a law. The folder of a kind makes its charts from
-the arrays of a result (see `gearcam.designs.kind`); nothing here knows what they tell of. Drawing
-needs matplotlib, which the extra ``plot`` brings.
+A *chart* has one horizontal axis, *lines* over it, *limits* for their values, and *marked places*
+on the axis, such as the knots of a law. The folder of each kind of design defines its charts (see
+`gearcam.designs.kind`). Drawing needs matplotlib, which the extra ``plot`` installs.
 """
 
 from __future__ import annotations
@@ -22,24 +21,24 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FAR: Final = 1.5
-"""How far outside the lines a limit may be drawn, in their range: beyond, it would flatten them."""
+"""Largest distance of a limit drawn from the lines, relative to their range."""
 
 _MARGIN: Final = 0.06
-"""Share of the range that is left free above and below, and beside dots."""
+"""Margin above and below the lines, and beside dots, relative to the range."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Line:
-    """Values over the horizontal axis.
+    """A line of a chart.
 
     Parameters
     ----------
     label : str
-        What they are.
+        Name in the legend.
     x, y : (n,) arrays
-        In the units of the chart's axes; not-a-number breaks the line.
+        Coordinates in the units of the axes; NaN interrupts the line.
     dots : bool
-        Whether they are single values that nothing joins.
+        Whether to draw single points instead of a line.
     """
 
     label: str
@@ -50,12 +49,12 @@ class Line:
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
-    """A level that lines are held against.
+    """A limit for the values of the lines.
 
     Parameters
     ----------
     label : str
-        Whose.
+        Name in the legend.
     value : float
         In the unit of the vertical axis.
     """
@@ -71,7 +70,7 @@ class MarkedPlace:
     Parameters
     ----------
     label : str
-        What is there; the same for all places of a sort.
+        Name in the legend, the same for all places of one sort.
     value : float
         In the unit of the horizontal axis.
     """
@@ -82,20 +81,20 @@ class MarkedPlace:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Chart:
-    """Lines over an angle or a number, with limits.
+    """A chart: lines over an angle or a number, with limits.
 
     Parameters
     ----------
     title : str
-        What is told.
+        Title of the chart.
     x, y : str
-        What the axes are, with their units.
+        Labels of the axes, with units.
     lines : tuple of Line
-        At least one.
+        At least one line.
     limits : tuple of Limit
-        Those that hold for the lines.
+        Limits for the lines.
     marks : tuple of MarkedPlace
-        Places within the lines.
+        Marked places on the horizontal axis.
     """
 
     title: str
@@ -109,17 +108,17 @@ class Chart:
         return f"<Chart of {self.title}: {', '.join(line.label for line in self.lines)}>"
 
     def draw(self, ax: Axes | None = None) -> Axes:
-        """Draw the chart.
+        """Draw the chart with matplotlib.
 
         Parameters
         ----------
         ax : Axes, optional
-            Where; a new figure where left out.
+            Axes to draw into; a new figure by default.
 
         Returns
         -------
         Axes
-            Of matplotlib, with title, labels, limits, marked places and legend.
+            With title, labels, limits, marked places and legend.
 
         Raises
         ------
@@ -138,7 +137,7 @@ class Chart:
             else:
                 ax.plot([], [], color="0.35", ls=" ", label=f"{text}, beyond this chart")
         told: set[str] = set()
-        for mark in self.marks:  # a legend names each sort once
+        for mark in self.marks:  # one legend entry for each sort
             label = None if mark.label in told else mark.label
             ax.axvline(mark.value, color="0.5", ls=":", lw=0.8, label=label)
             told.add(mark.label)
@@ -152,9 +151,9 @@ class Chart:
 
     @property
     def range(self) -> tuple[float, float]:
-        """Smallest and largest value of all lines and of the limits that are near them.
+        """Smallest and largest value of all lines and of the limits near them.
 
-        Of a level line some room about it.
+        The range of a constant line is widened.
         """
         values = np.concatenate([line.y[np.isfinite(line.y)] for line in self.lines])
         low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
@@ -167,13 +166,13 @@ class Chart:
 
 
 def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]:
-    """Return the `knots` of a law, in the unit of an axis, between its ends `low` and `high`."""
+    """Return marks at the `knots` of a law between `low` and `high`, in the unit of the axis."""
     inside = knots[(knots > low) & (knots < high)]
     return tuple(MarkedPlace(label="knots", value=value) for value in inside.tolist())
 
 
 Charts = Mapping[str, Callable[[Any], Chart]]
-"""What makes each chart of a kind from its result, by name."""
+"""Functions that return the charts of a result, by name."""
 
 
 def _new_axes() -> Axes:

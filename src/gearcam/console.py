@@ -109,7 +109,7 @@ def fault_text(error: Exception, file: str) -> str:
 
 
 def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> str:
-    """Return the message for a refused `file`: the `error` with all its problems."""
+    """Return the message that `file` was not `done`, with all problems of the `error`."""
     if isinstance(error, InfeasibleError):
         return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
     count = len(error.problems)

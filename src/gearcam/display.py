@@ -1,6 +1,6 @@
-"""How objects show themselves: in one line, and in a notebook as a picture with its facts.
+"""Representations of objects: one line of text, and a picture with facts in a notebook.
 
-Pictures and tables are made by `gearcam.markup`, which is loaded when a notebook asks for one.
+Pictures and tables come from `gearcam.markup`, which is imported when a notebook needs it.
 """
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ if TYPE_CHECKING:
     from gearcam.facts import Facts
 
 WIDTH: Final = 96
-"""Letters of a line that stands for an object."""
+"""Length of the one-line representation, characters."""
 
 _WORD: Final = 30
-"""Letters of a text within it."""
+"""Length of a text within it, characters."""
 
 _FEW: Final = 4
-"""Items up to which each is shown."""
+"""Number of items up to which all are shown."""
 
 
 class Brief:
-    """Makes a dataclass show itself in one line: its type, and its fields but for defaults.
+    """Base of dataclasses with a one-line representation: type, and fields without defaults.
 
-    Numbers and texts are shown, of arrays the shape, of other objects the type.
+    It shows numbers and texts, the shapes of arrays, and the types of other objects.
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         if "__repr__" not in vars(cls):
-            cls.__repr__ = cls.__repr__  # a dataclass writes its own where a class has none
+            cls.__repr__ = cls.__repr__  # else the dataclass generates its own
 
     def __repr__(self) -> str:
         fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]
@@ -54,12 +54,12 @@ def line(name: str, words: Sequence[str]) -> str:
 
 
 def cut(text: str) -> str:
-    """Return a `text` in angle brackets, cut to one line."""
+    """Return a `text` that is in angle brackets, cut to one line."""
     return text if len(text) <= WIDTH else f"{text[: WIDTH - 4]}...>"
 
 
 def word(value: Any) -> str:
-    """Return a `value` in a word, or nothing of what has none: functions and what is missing."""
+    """Return a `value` as a short text, empty for functions and None."""
     value = os.fspath(value) if isinstance(value, os.PathLike) else value
     if isinstance(value, str):
         return repr(value if len(value) <= _WORD else f"{value[: _WORD - 3]}...")
@@ -75,7 +75,7 @@ def word(value: Any) -> str:
 
 
 def _items(values: Sequence[Any] | Mapping[str, Any]) -> str:
-    """Return a few short items in a word each, of others how many there are."""
+    """Return a few short items as text, else their number."""
     named = isinstance(values, Mapping)
     rows = list(values.values() if isinstance(values, Mapping) else values)
     texts = [word(one) for one in rows] if len(rows) <= _FEW else []
@@ -89,21 +89,21 @@ def _items(values: Sequence[Any] | Mapping[str, Any]) -> str:
 
 
 def _usual(field: dataclasses.Field[Any], value: Any) -> bool:
-    """Return whether a field has its default, as far as that can be told at once."""
+    """Return whether a field has its default; only simple values are compared."""
     return isinstance(value, bool | int | float | str | tuple) and value == field.default
 
 
 class Displayed(ABC):
-    """What a notebook shows as a picture with its facts below."""
+    """Base of objects that a notebook shows as a picture with facts below."""
 
     @cached_property
     @abstractmethod
     def facts(self) -> Facts:
-        """What is known of it."""
+        """The quantities shown."""
 
     @abstractmethod
     def picture(self) -> str:
-        """Return a picture, SVG; nothing of what has none."""
+        """Return the picture as SVG text; empty if there is none."""
 
     def _repr_svg_(self) -> str | None:
         return self.picture() or None

@@ -1,8 +1,8 @@
-"""Interrupts: signals that end the program, and stretches that they do not break.
+"""Interrupts: signals that end the program, and blocks of code that they must not interrupt.
 
-Ctrl-C (SIGINT), SIGTERM and SIGHUP end the command in the same way: where it is, by
-`KeyboardInterrupt`, so that whatever has been begun is taken back. What must not be left half done,
-such as moving files into place, is *unbroken*: a signal that comes meanwhile counts after it.
+Ctrl-C (SIGINT), SIGTERM and SIGHUP raise `KeyboardInterrupt`, so that unfinished work is undone.
+Steps that must not be left half done, such as moving files into place, run inside `unbroken`, which
+delays signals until its end.
 
 Depends on nothing.
 """
@@ -20,29 +20,29 @@ from typing import Final
 SIGNALS: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
-"""What ends the program: Ctrl-C, whoever asks it to, a terminal that is closed."""
+"""Signals that end the program: Ctrl-C, a request to terminate, a closed terminal."""
 
 _OWN: Final = (signal.SIG_DFL, signal.default_int_handler)
-"""Handlers that nobody has chosen; others, such as that of ``nohup``, stay."""
+"""Default handlers; others, such as that of ``nohup``, are kept."""
 
 _BASE: Final = 128
-"""By the rule of shells an exit code is this and the signal's number."""
+"""Exit code of shells for signal n: this plus n."""
 
 
 @dataclass
 class Ended:
-    """Which signal has ended the program.
+    """The signal that has ended the program.
 
     Parameters
     ----------
     number : int or None
-        None where none has.
+        Number of the signal; None for none.
     """
 
     number: int | None = None
 
     def code(self, code: int) -> int:
-        """Return the exit code: that of the signal, or `code`, which knows of Ctrl-C itself."""
+        """Return the exit code of the signal; `code` for Ctrl-C or no signal."""
         if self.number is None or self.number == signal.SIGINT:
             return code
         return _BASE + self.number
@@ -50,7 +50,7 @@ class Ended:
 
 @contextmanager
 def interruptible() -> Iterator[Ended]:
-    """Let every signal that ends the program raise `KeyboardInterrupt`; yield which one did."""
+    """Make signals that end the program raise `KeyboardInterrupt`; yield which one came."""
     ended = Ended()
 
     def end(number: int, _: FrameType | None) -> None:
@@ -70,9 +70,9 @@ def interruptible() -> Iterator[Ended]:
 
 @contextmanager
 def unbroken() -> Iterator[None]:
-    """Have signals that end the program wait until what is done within is done.
+    """Delay signals that end the program until the block has ended.
 
-    Threads and processes that begin within answer none of them.
+    Threads and processes started in the block ignore these signals.
 
     Yields
     ------
@@ -82,7 +82,7 @@ def unbroken() -> Iterator[None]:
     before = {number: signal.getsignal(number) for number in SIGNALS} if _is_main() else {}
     waiting = {number: one for number, one in before.items() if one not in (signal.SIG_IGN, None)}
     try:
-        for number in waiting:  # one may come by another thread, which no mask keeps back
+        for number in waiting:  # another thread, which the mask does not cover, may receive one
             signal.signal(number, lambda number, _: came.append(number))
         with _masked():
             yield
@@ -95,7 +95,7 @@ def unbroken() -> Iterator[None]:
 
 @contextmanager
 def _masked() -> Iterator[None]:
-    """Keep signals back from this thread, and from what it begins, where systems can."""
+    """Block signals in this thread and its children, if the system supports it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -107,5 +107,5 @@ def _masked() -> Iterator[None]:
 
 
 def _is_main() -> bool:
-    """Return whether this is the thread that signals come to."""
+    """Return whether this is the main thread, which handles signals."""
     return threading.current_thread() is threading.main_thread()

@@ -1,10 +1,10 @@
-"""Ladders: one stage of a design computed at rising resolution, to see what exactness costs.
+"""Convergence ladders: one stage of a design computed at increasing resolution.
 
-A *ladder* makes the same thing at several *levels*, coarse to fine: numbers of intervals, points on
-a flank, chord tolerances. What was made at a level is a *rung*; its error is told against a closed
-form where there is one, else against a level beyond the finest, which is made once and not timed.
-The folder of a kind makes its ladders (see `gearcam.designs.kind`); what climbs them is
-`gearcam.studies.accuracy`.
+A *ladder* repeats a computation at several *levels*, from coarse to fine: numbers of intervals,
+points on a flank, chord tolerances. The result at one level is a *rung*. Its error is the deviation
+from a closed form if there is one, else from a level finer than all others, which is computed once
+and not timed. The folder of a kind defines its ladders (see `gearcam.designs.kind`);
+`gearcam.studies.accuracy` measures them.
 
 Depends on results, solids and numeric.
 """
@@ -26,53 +26,53 @@ if TYPE_CHECKING:
     from gearcam.solids import Mesh
 
 INTERVALS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, float(FIRST_CUTS), 2.0 * FIRST_CUTS)
-"""Numbers of intervals of expansions; the program begins with the last but one."""
+"""Numbers of intervals of expansions; the program starts with the last but one."""
 
 EXPANSION_ORDER: Final = 10.0
-"""Order of an integral by expansions of degree 8: Gauss-Chebyshev nodes, which lie evenly about
-the middle, integrate one degree more than they carry."""
+"""Order of an integral by expansions of degree 8: the symmetric Gauss-Chebyshev nodes integrate one
+degree more exactly."""
 
 CHORD_ORDER: Final = 2.0
-"""Order of chords: a chord of length l is off by ``kappa*l^2/8``."""
+"""Order of chords: the sagitta of a chord of length l is ``kappa*l^2/8``."""
 
 COARSER: Final = (64.0, 16.0, 4.0, 1.0, 0.25, 0.0625)
-"""Chord tolerances in the design's own."""
+"""Chord tolerances as multiples of the design's."""
 
 BEYOND: Final = 1.0 / 64.0
-"""Chord tolerance of what others are held against, in the finest: it spoils a rung's error by as
-much, which moves the order by a hundredth."""
+"""Chord tolerance of the reference as a part of the finest: it changes the error of a rung by this
+part, and the order by one hundredth."""
 
 _PLACES: Final = 997
-"""Places at which two functions are compared: a prime, so that no grid of intervals hides one."""
+"""Number of places at which functions are compared: a prime, to avoid the ends of intervals."""
 
 _SHARES: Final = np.array([1, 3, 5, 7, 8, 9, 11, 13, 15]) / 16.0
-"""Places inside a chord at which its distance is measured."""
+"""Relative places on a chord at which its distance from the curve is measured."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Ladder:
-    """A stage at rising resolution.
+    """A stage at increasing resolution.
 
     Parameters
     ----------
     refined : str
-        What a level is, with its unit: ``intervals``, ``chord tolerance, mm``.
+        What a level counts or is, with its unit: ``intervals``, ``chord tolerance, mm``.
     measured : str
-        What the error is of.
+        The quantity whose error is measured.
     unit : str
-        Of the error.
+        Unit of the error.
     levels : sequence of float
         From coarse to fine.
     own : float or None
-        The level that the program itself takes; None where it takes none of them.
+        The level that the program uses; None if it uses none of them.
     order : float
-        With which power of the number of points the error falls.
+        Expected order of convergence in the number of points.
     rounding : float
-        Error, in its unit, that is rounding: below it no order is told.
+        Rounding error, in the unit of the error: below it there is no order.
     make : callable
-        ``make(level)`` does the work that is timed.
+        ``make(level)`` does the computation that is timed.
     measure : callable
-        ``measure(made)`` returns the error of what was made and its number of points.
+        ``measure(made)`` returns the error of the result of `make` and its number of points.
     """
 
     refined: str
@@ -87,7 +87,7 @@ class Ladder:
 
 
 Ladders = Mapping[str, Callable[[Any], Ladder]]
-"""What makes each ladder of a kind from its result, by the name of the stage."""
+"""Functions that return the ladders of a result, by the name of the stage."""
 
 
 def integral_ladder(
@@ -99,25 +99,25 @@ def integral_ladder(
     measured: str,
     unit: str,
 ) -> Ladder:
-    """Return the ladder of an integral by Chebyshev expansions, as the program makes them.
+    """Return the ladder of an integral by Chebyshev expansions, as the program computes them.
 
     Parameters
     ----------
     function : callable
         The integrand, smooth between the knots.
     knots : (n,) array
-        Rising.
+        In increasing order.
     exact : callable or None
-        The integral in closed form, any constant; None: the finest level stands for it.
+        The integral in closed form, up to a constant; None: a finer level is the reference.
     size : float
-        What the integral is multiplied by.
+        Factor of the integral.
     measured, unit : str
-        Those of the ladder.
+        As in a `Ladder`.
 
     Returns
     -------
     Ladder
-        The error is the largest over the whole range, the integrals being 0 at its beginning.
+        Its error is the largest over the whole range; the integrals start at 0.
     """
     ends = float(knots[0]), float(knots[-1])
     x = np.linspace(*ends, _PLACES)
@@ -152,12 +152,12 @@ def tolerances_around(own: float, finest: float = 0.0, coarsest: float = np.inf)
 
 
 def chord_distance(sampler: Sampler) -> tuple[float, int]:
-    """Return how far a curve is from its chords, mm, at nine places in each, and their number.
+    """Return the largest distance of a curve from its chords, mm, and the number of chords.
 
     Parameters
     ----------
     sampler : Sampler
-        With its chords; what it says of their error itself is not asked.
+        The curve with its chords; the distance is measured at nine places of each chord.
 
     Returns
     -------
@@ -182,27 +182,27 @@ def limit_ladder(
     unit: str,
     beyond: float = BEYOND,
 ) -> Ladder:
-    """Return the ladder of numbers that depend on a chord tolerance, against their limit.
+    """Return the ladder of numbers that converge as the chord tolerance decreases.
 
     Parameters
     ----------
     own : float, mm
         The design's chord tolerance.
     make : callable
-        ``make(tolerance)`` does the work.
+        ``make(tolerance)`` does the computation.
     told : callable
-        ``told(made)`` returns the numbers and how many points they were made from.
+        ``told(made)`` returns the numbers and the number of points they were computed from.
     levels : sequence of float
         Chord tolerances, mm, from coarse to fine.
     measured, unit : str
-        Those of the ladder.
+        As in a `Ladder`.
     beyond : float
-        Chord tolerance of the limit, in the finest.
+        Chord tolerance of the reference, as a part of the finest.
 
     Returns
     -------
     Ladder
-        The error is the largest of the numbers.
+        Its error is the largest of all numbers.
     """
     limit = told(make(beyond * levels[-1]))[0]
 
@@ -229,16 +229,16 @@ def solid_ladder(result: Result, own: float, levels: Sequence[float]) -> Ladder:
     Parameters
     ----------
     result : Result
-        Of a design whose chord tolerance is a key of its output.
+        The result of a design with the key ``output.chord_tolerance_mm``.
     own : float, mm
-        The program's own chord tolerance.
+        The chord tolerance that the program uses.
     levels : sequence of float
         Chord tolerances, mm, from coarse to fine.
 
     Returns
     -------
     Ladder
-        Parts are made once a level, and are not timed again.
+        The parts of each level are made once, and not timed again.
     """
     from gearcam.solids import solid
 

@@ -1,8 +1,7 @@
 """Pictures and tables as text: SVG and HTML.
 
-The paper of a picture: millimetres in the view box, y downwards, strokes scaled to the picture,
-white ground, a caption below. What is drawn on it comes from elsewhere: drawings from
-`gearcam.export.svg`, plain outlines from `outlines`.
+A picture has a view box in millimetres with y downwards, strokes scaled to its size, a white
+background and a caption below. `gearcam.export.svg` draws machines, `outlines` plain outlines.
 
 Depends on numerals.
 """
@@ -21,24 +20,24 @@ if TYPE_CHECKING:
     from gearcam.facts import Facts, NamedFact
 
 PIXELS: Final = 960
-"""Width of a picture where the page does not say otherwise."""
+"""Default width of a picture, pixels."""
 
 SHOWN: Final = 560
-"""Greatest height of a picture above a table, pixels."""
+"""Largest height of a picture above a table, pixels."""
 
 MARGIN: Final = 0.04
-"""Margin, part of the drawing's width."""
+"""Margin relative to the width of the drawing."""
 
 FILLS: Final = ("#cfe0f2", "#f8e0c6", "#dcebd3")
 INKS: Final = ("#27598c", "#a35f22", "#4d7a34")
-"""Soft fill and dark stroke of wheel 1, of wheel 2 or a follower, and of the second of two cams."""
+"""Fills and strokes of wheel 1, of wheel 2 or a follower, and of the second of two cams."""
 
 CENTRODE_INK: Final = "#5a5a5a"
 TEXT_INK: Final = "#222222"
 GROUND: Final = "#ffffff"
 
 GLYPH: Final = 0.6
-"""Width of a letter, part of the font's size, on the safe side."""
+"""Upper estimate of the width of a letter relative to the font size."""
 
 _number: Final = partial(decimal, decimals=4)
 
@@ -47,7 +46,7 @@ Corners = tuple[Sequence[float], Sequence[float]]
 
 
 def svg_document(attributes: str, title: str, elements: Iterable[str]) -> bytes:
-    """Return an SVG file, UTF-8: `attributes` of its root, a `title`, and `elements` as lines."""
+    """Return an SVG file, UTF-8: root `attributes`, a `title`, and `elements` as lines."""
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>',
@@ -66,11 +65,11 @@ def picture(
     Parameters
     ----------
     lines : sequence of str
-        Of the caption; the first, in bold, is the title.
+        Lines of the caption; the first, in bold, is the title.
     corners : (low, high)
-        Of what is drawn, mm, y upwards.
+        Corners of the drawing, mm, y upwards.
     elements : callable
-        ``elements(pixel)`` returns what is drawn; `pixel` is the width of one, mm.
+        ``elements(pixel)`` returns SVG elements; `pixel` is the size of a pixel, mm.
 
     Returns
     -------
@@ -123,15 +122,15 @@ def outlines(
     Parameters
     ----------
     lines : sequence of str
-        Of the caption; the first, in bold, is the title.
+        Lines of the caption; the first, in bold, is the title.
     closed : sequence of (n, 2) array, mm
-        The outline, and openings in it.
+        The outline and the openings in it.
     dashed : sequence of (n, 2) array, mm
-        Curves that are drawn dashed, open.
+        Open curves, drawn dashed.
     wheel : {1, 2}
-        Whose colours it has.
+        Wheel whose colours are used.
     axis : bool
-        Whether the origin is its axis, and drawn as a cross.
+        Whether to mark the origin with a cross.
 
     Returns
     -------
@@ -162,21 +161,21 @@ def _steps(chain: Any) -> str:
 
 
 def page(drawn: str, facts: Facts, remarks: Sequence[str] = ()) -> str:
-    """Return a picture, SVG, and facts as HTML: those that are always shown, or all of few.
+    """Return a picture and facts as HTML.
 
     Parameters
     ----------
     drawn : str
-        May be empty.
+        The picture as SVG text; may be empty.
     facts : Facts
-        What is known.
+        The facts; if some are marked as shown, the others are folded below.
     remarks : sequence of str
-        What stands below as a list.
+        Remarks listed below the facts.
 
     Returns
     -------
     str
-        The rest of the facts is folded below.
+        HTML.
     """
     first, every = list(facts.shown()), list(facts.quantities())
     parts = [_image(drawn)] if drawn else []
@@ -192,19 +191,19 @@ def page(drawn: str, facts: Facts, remarks: Sequence[str] = ()) -> str:
 
 
 def refusal(title: str, error: Exception) -> str:
-    """Return as HTML that what is called `title` cannot be made, and why: the `error`."""
+    """Return the message that `title` cannot be made because of `error`, as HTML."""
     why = escape(str(error).replace("; ", "\n"))
     return f"<div><p><b>{escape(title)} cannot be made</b></p><pre>{why}</pre></div>"
 
 
 def refusal_picture(title: str, error: Exception) -> str:
-    """Return the same as a picture (see `refusal`)."""
+    """Return the same message as a picture (see `refusal`)."""
     lines = [f"{title} cannot be made", *str(error).replace("; ", "\n").splitlines()]
     return picture(lines, ((0.0, 0.0), (PIXELS, 0.0)), lambda _: ())
 
 
 def _image(drawn: str) -> str:
-    """Return a picture as an image, which no style or name of the page gets into."""
+    """Return a picture as an ``img`` element, independent of styles and ids of the page."""
     data = base64.b64encode(drawn.encode()).decode()
     style = f"max-width:100%;max-height:{SHOWN}px"
     return f'<img alt="" style="{style}" src="data:image/svg+xml;base64,{data}"/>'

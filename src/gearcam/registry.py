@@ -1,6 +1,6 @@
-"""Registries: entries by name, each registered by the module that is its home.
+"""Registries: entries by name, each registered by the module that defines it.
 
-A home is imported when its entry is asked for: a design with one law loads that law.
+That module is imported when its entry is first used: a design with one law loads that law only.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from typing import Any, Generic, Protocol, TypeVar
 
 
 class Named(Protocol):
-    """What a registry can hold."""
+    """The protocol of entries."""
 
     @property
     def name(self) -> str:
-        """As in a design file."""
+        """The name in a design file."""
         ...
 
 
@@ -23,14 +23,14 @@ E = TypeVar("E", bound=Named)
 
 
 class Registry(Mapping[str, E], Generic[E]):
-    """Entries by name.
+    """Entries by name, loaded on demand.
 
     Parameters
     ----------
     what : str
-        What an entry is, for messages.
+        Word for an entry in messages, such as ``law``.
     homes : mapping of str to tuple of str
-        The names that modules register when they are imported, by module.
+        The names that each module registers, by module.
     """
 
     def __init__(self, what: str, homes: Mapping[str, tuple[str, ...]]) -> None:
@@ -39,17 +39,17 @@ class Registry(Mapping[str, E], Generic[E]):
         self._entries: dict[str, E] = {}
 
     def register(self, *entries: E) -> None:
-        """Take entries in.
+        """Add entries.
 
         Parameters
         ----------
         *entries : Named
-            One or more.
+            The entries.
 
         Raises
         ------
         ValueError
-            If a name is taken.
+            If a name is already registered.
         """
         for entry in entries:
             if entry.name in self._entries:
@@ -58,7 +58,7 @@ class Registry(Mapping[str, E], Generic[E]):
 
     @property
     def loaded(self) -> tuple[E, ...]:
-        """The entries whose homes have been imported."""
+        """The entries whose modules have been imported."""
         return tuple(self._entries.values())
 
     def __getitem__(self, name: str) -> E:
@@ -77,27 +77,27 @@ class Registry(Mapping[str, E], Generic[E]):
 
 
 def name_of(registry: Registry[Any], part: object) -> str:
-    """Return the name of the entry of a `registry` whose parameters a `part` is, or nothing."""
-    # an object's class has been imported, and with it the entry been registered
+    """Return the name of the entry in `registry` whose parameters `part` is; else an empty text."""
+    # the class of the object was imported, so its entry is registered
     return next((one.name for one in registry.loaded if one.parameters is type(part)), "")
 
 
 def classes_in(registry: Registry[Any]) -> dict[str, type]:
-    """Return the classes of parameters of all entries of a `registry`, by their own names."""
+    """Return the parameter classes of all entries of a `registry` by class name."""
     return {one.parameters.__name__: one.parameters for one in registry.values()}
 
 
 def lazy_classes(
     what: str, load: Callable[[], Mapping[str, Any]]
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return ``__getattr__`` and ``__dir__`` of a package that gives classes by their names.
+    """Return ``__getattr__`` and ``__dir__`` of a package that loads classes on demand.
 
     Parameters
     ----------
     what : str
-        What a class is, for messages.
+        Word for a class in messages.
     load : callable
-        Returns the classes by name; asked only for names that begin as those of classes do.
+        Returns the classes by name; called only for names with a capital letter.
 
     Returns
     -------
@@ -107,6 +107,6 @@ def lazy_classes(
     def find(name: str) -> Any:
         if name[:1].isupper() and name in (known := load()):
             return known[name]
-        raise AttributeError(f"there is no {what} {name}; dir() tells of all")
+        raise AttributeError(f"there is no {what} {name}; dir() lists all names")
 
     return find, lambda: sorted(load())

@@ -1,13 +1,12 @@
-"""Scenes: parts that move, as data.
+"""Scenes: moving parts as data.
 
-A *scene* shows bodies while the driver goes through its *cycle*: a turn of a closed pair or of a
-cam, the travel of an open pair, the way of a cam that slides. A *body* is rigid: what it looks like
-is drawn once, in its own frame, and a placement for each *place* of the driver tells where it
-stands. What moves with no body, the points of contact and the pitch point, is told in the fixed
-frame. The folder of a kind makes its scene from the arrays of a result (see
-`gearcam.designs.kind`); nothing here knows what moves.
+A *scene* shows bodies during a *cycle* of the driver: a turn of a closed pair or of a cam, the
+travel of an open pair, the travel of a translating cam. A *body* is rigid: its features are given
+once, in its own frame, with a rotation and a translation for each *place* of the driver. Points of
+contact and the pitch point are given in the fixed frame. The folder of each kind of design defines
+its scene (see `gearcam.designs.kind`).
 
-Refused: arrays that do not belong to the places.
+Refused: arrays whose lengths do not match the places.
 
 Depends on drawings, numpy only.
 """
@@ -26,37 +25,36 @@ from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 
 PLACES: Final = 720
-"""Steps of the driver in a cycle, and one more place for its end."""
+"""Steps of the driver in a cycle; there is one more place for its end."""
 
 SAGITTA: Final = 1e-3
-"""Chord error of arcs and circles in a scene, mm; outlines keep their own."""
+"""Chord error of arcs and circles in a scene, mm; outlines keep their own chords."""
 
 
 _DIRECTIONS: Final = 180
-"""Directions in which the outmost points of a body are sought: what lies between two of them is
-farther out by less than a six-thousandth of its size."""
+"""Directions in which the outermost points of a body are searched: the error of the extent is below
+1/6000 of its size."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MovingBody(Brief):
-    """A rigid body.
+    """A rigid body of a scene.
 
     Parameters
     ----------
     name : str
-        As its part is called; ``follower`` of a follower. Bodies of one part move as one.
+        Name of its part, or ``follower``. Bodies of one part move together.
     called : str
-        For people.
+        Name for people.
     features : tuple of Feature
-        What it looks like, in its own frame; what is drawn later lies on top.
+        Shapes in its own frame; later ones are drawn on top.
     turn : (n,) array, rad
-        Counter-clockwise at each place, without jumps.
+        Rotation at each place, counter-clockwise, without jumps.
     shift : (n,) complex array, mm
-        Place of its origin.
+        Position of its origin at each place.
     teeth : (k, 2) array of int
-        First and last vertex of each tooth on the shape of its first feature, in the order of the
-        teeth's numbers; the last is the smaller where a tooth lies over the first vertex. None
-        where nothing contacts tooth by tooth.
+        Indices of the first and last vertex of each tooth on the shape of the first feature, in the
+        order of tooth numbers; first > last for a tooth across vertex 0. None without teeth.
     """
 
     name: str
@@ -69,20 +67,20 @@ class MovingBody(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ContactPoints(Brief):
-    """Where bodies touch, in the fixed frame, place after place.
+    """Points of contact of two bodies in the fixed frame.
 
     Parameters
     ----------
     start : (n + 1,) array of int
-        The rows of place k are ``start[k]`` to ``start[k + 1]``, the last excluded.
+        The points at place k are those from ``start[k]`` to before ``start[k + 1]``.
     point : (m,) complex array, mm
         Points of contact.
     force : (m,) complex array
-        Unit direction in which the driver presses there: the line of action.
+        Unit vector of the force of the driver, along the line of action.
     teeth : (m, 2) array of int
-        Teeth that touch, of both bodies with teeth in the order of their names: their places in
-        `MovingBody.teeth`, from 1, which are their numbers but where an open wheel begins with half
-        a tooth. None where bodies have none.
+        Teeth in contact, of both bodies in the order of their names: rows of `MovingBody.teeth`,
+        from 1. They are the tooth numbers, unless an open wheel begins with half a tooth. None
+        without teeth.
     """
 
     start: Ints
@@ -93,24 +91,24 @@ class ContactPoints(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Scene(Brief):
-    """Bodies over a cycle of the driver.
+    """Moving bodies over a cycle of the driver.
 
     Parameters
     ----------
     title : str
-        What is seen.
+        Title of the scene.
     driver : str
-        The driver's place with its unit, as charts call their axis: ``driver angle phi1, deg``.
+        Quantity and unit of the places, as on chart axes: ``driver angle phi1, deg``.
     places : (n,) array
-        Of the driver, rising, in that unit; the last is the end of the cycle.
+        Places of the driver in that unit, increasing; the last is the end of the cycle.
     closed : bool
-        Whether the cycle repeats: its end is the next one's beginning.
+        Whether the cycle repeats.
     start : float
         The place that is shown first.
     bodies : tuple of MovingBody
-        What moves, and what stands; what comes later lies on top.
+        Moving and fixed bodies; later ones are drawn on top.
     contacts : mapping of str to ContactPoints
-        Points of contact by what they are.
+        Points of contact by name.
     pitch : (n,) complex array, mm, optional
         The pitch point.
     """
@@ -127,23 +125,22 @@ class Scene(Brief):
     def __post_init__(self) -> None:
         for body in self.bodies:
             if not body.turn.shape == body.shift.shape == self.places.shape:
-                raise ValueError(f"{body.name}: a placement for each place of the driver")
+                raise ValueError(f"{body.name}: needs a placement for each place of the driver")
         for name, contacts in self.contacts.items():
             if len(contacts.start) != len(self.places) + 1:
-                raise ValueError(f"{name}: a row of contacts for each place of the driver")
+                raise ValueError(f"{name}: needs contacts for each place of the driver")
 
 
 def still(features: tuple[Feature, ...], places: Array) -> MovingBody:
-    """Return the `features` that do not move, a body named ``frame``, over all `places`."""
+    """Return a body named ``frame`` of `features` that are fixed at all `places`."""
     turn, shift = np.zeros(len(places)), np.zeros(len(places), dtype=np.complex128)
     return MovingBody(name="frame", called="frame", features=features, turn=turn, shift=shift)
 
 
 def extent(scene: Scene) -> tuple[float, float, float, float]:
-    """Return the box of a `scene` in every place: left, bottom, right, top, mm.
+    """Return the bounding box of a `scene` over all places: left, bottom, right, top, mm.
 
-    It holds the circles that bodies sweep which turn all around, so that nothing leaves it on the
-    way, and of others all places.
+    It contains the whole circle swept by a body that makes a full turn, also between places.
     """
     low, high = [], []
     for body in scene.bodies:
@@ -160,7 +157,7 @@ def extent(scene: Scene) -> tuple[float, float, float, float]:
 
 
 def _outmost(points: Plane) -> Plane:
-    """Return those points that are farthest in some direction: the box of no others matters."""
+    """Return the points that are outermost in some direction; others do not affect the box."""
     if len(points) <= _DIRECTIONS:
         return points
     ways = 2.0 * np.pi * np.arange(_DIRECTIONS)[:, None] / _DIRECTIONS

@@ -1,4 +1,4 @@
-"""Tolerances: one frozen object, passed explicitly, each field with its unit and its reason."""
+"""Tolerances of the internal computations, passed explicitly."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class Tolerances:
-    """How exact the inner computations are; never the tolerance of a part.
+    """Tolerances of the internal computations, not of a part.
 
     Parameters
     ----------
     expansion : float
-        Relative truncation error allowed to a Chebyshev expansion of a piece. Near the rounding
-        error of double precision: expansions are the root of every length and angle.
+        Largest relative truncation error of Chebyshev expansions, near the rounding error of
+        double precision, since all lengths and angles derive from expansions.
     refusal : float
-        Largest miss of the driven angle over a lobe that is built at all, rad: 1e-6 rad is 0.2
-        micrometres at 200 mm. Ratios typed with seven digits pass, with a finding (see the check
-        ``closure``).
+        Largest closing error of the driven angle over a lobe, rad; beyond it the design is refused.
+        1e-6 rad is 0.2 micrometres at 200 mm: ratios typed with seven digits pass, with a finding
+        of the check ``closure``.
     oversampling : int
-        Dense points per final chord of an outline; 8 makes the error of the dense polygon about
+        Dense points per final chord of an outline; with 8 the error of the dense polygon is about
         1/64 of the chord error.
 
     Examples

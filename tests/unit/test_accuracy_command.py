@@ -86,8 +86,8 @@ def test_table_and_file_tell_the_same(design: str, capsys: pytest.CaptureFixture
         assert ("*" in cells) == (row["own"] == 1)
         assert int(cells[-1]) == row["points"]
         assert float(cells[-3]) == pytest.approx(1e3 * row["time_s"], abs=1e-3)
-    assert "order 2.00, 2 expected" in told
-    assert "median of 2 in turns" in told
+    assert "order 2.00, expected 2" in told
+    assert "median of 2 runs" in told
 
 
 def test_orders_in_the_file_are_slopes_of_its_errors(design: str) -> None:
@@ -115,9 +115,9 @@ def test_the_files_of_a_build_stay(design: str) -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (("--stage", "outlin"), ('"outlin" is no stage', "did you mean outline?")),
-        (("--stage", "centrode"), ('"centrode" is no stage of designs of kind cam',)),
-        (("--stage", "cam,law"), ('"law" is no stage of designs of kind cam',)),
+        (("--stage", "outlin"), ('"outlin" is not a stage', "did you mean outline?")),
+        (("--stage", "centrode"), ('"centrode" is not a stage of designs of kind cam',)),
+        (("--stage", "cam,law"), ('"law" is not a stage of designs of kind cam',)),
         (("--stage", ","), ("no stage is listed",)),
     ],
 )
@@ -148,7 +148,7 @@ def test_python_is_refused_the_same() -> None:
     result = gearcam.build(gearcam.loads(TEXT))
     with pytest.raises(DesignError, match="1 or more"):
         accuracy(result, repeat=0)
-    with pytest.raises(DesignError, match="is no stage"):
+    with pytest.raises(DesignError, match="is not a stage"):
         accuracy(result, ["centrode"])
 
 
@@ -224,11 +224,11 @@ def test_rounding_has_no_order(planted: dict[str, Any]) -> None:
     planted["one"] = lambda _: ladder(rounding=1e-3)
     found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
     assert [rung.order for rung in found.rungs] == [None, pytest.approx(2.0), None]
-    assert any("order 2.00, 2 expected" in line for line in found.lines())
+    assert any("order 2.00, expected 2" in line for line in found.lines())
     planted["one"] = lambda _: ladder(rounding=1.0)
     found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
     assert found.order("one") is None
-    assert any("rounding, 2 expected" in line for line in found.lines())
+    assert any("rounding, expected 2" in line for line in found.lines())
 
 
 # --- the figure ---------------------------------------------------------------------------------

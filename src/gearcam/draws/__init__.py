@@ -1,1 +1,1 @@
-"""Random designs: draws of one seed, and what kinds of design make of them."""
+"""Random designs: reproducible random numbers, and designs drawn from them."""

@@ -14,11 +14,11 @@ def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:
     Parameters
     ----------
     d : Draw
-        Draws of this design.
+        Random numbers of this design.
     radius : float, mm
-        What its openings keep within.
+        Radius within which its openings lie.
     unit : float, mm
-        The size of its edges' details: the module.
+        Size of the details of its edges: the module.
     both : bool
         Whether it is for two wheels, which may differ.
     """
@@ -53,7 +53,7 @@ def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:
 
 
 def _bore(d: Draw, bore: float, made: dict[str, Any]) -> float:
-    """Give a bore a keyway or a flat, and return the diameter that it takes."""
+    """Add a keyway or a flat to a bore at random; return the diameter that it needs."""
     if d.chance(0.3):
         width, depth = short(bore * d.even(0.1, 0.4)), short(bore * d.even(0.05, 0.2))
         angle = d.even(-180, 180)

@@ -1,4 +1,4 @@
-"""Designs with something broken: wrong values and types, keys, tables, formulas, texts."""
+"""Designs with an error: wrong values, types, keys, tables, formulas or text."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ _FORMULAS: Final = (
     *("(" * 300 + "{}" + ")" * 300, "-" * 500 + "{}", "1 +", "sin", "{} {}", "__import__('os')"),
     *("1 + 0.1*sign(sin({}))", "floor({})", "max({}, 1)", "1 + 1e-9*sin(1000*{})", "asin({})"),
 )
-"""Formulas with poles, corners and faults; braces stand for a variable."""
+"""Formulas with poles, corners and errors; braces stand for a variable."""
 
 _VARIABLES: Final = ("phi1", "x", "theta", "u", "y")
 
 
 def broken(d: Draw, document: Document, tables: Mapping[str, str]) -> dict[str, Any]:
-    """Break something in a design.
+    """Return a design with an error.
 
     Parameters
     ----------
     d : Draw
-        Draws of this design.
+        Random numbers of this design.
     document : dict
-        What its file holds.
+        Content of the design file.
     tables : mapping of str to str
-        Texts of its tables by file name.
+        Texts of its CSV files by file name.
 
     Returns
     -------
     dict
-        ``files``, and in ``broken`` what was done, as `gearcam.draws.designs.Drawn` takes them.
+        ``files`` and ``broken``, the arguments of `gearcam.draws.designs.Drawn`.
     """
     made, ways = copy.deepcopy(document), [*_WAYS, *_OF_TEXTS]
     weights = [_WAYS.get(way, 1) for way in ways]
@@ -69,7 +69,7 @@ def broken(d: Draw, document: Document, tables: Mapping[str, str]) -> dict[str, 
 
 
 def _places(node: Any) -> list[Place]:
-    """Return every key of tables and every place of lists, however deep."""
+    """Return all keys of tables and indices of lists, at any depth."""
     found: list[Place] = []
     items = node.items() if isinstance(node, dict) else enumerate(node)
     for key, item in items:
@@ -81,7 +81,7 @@ def _places(node: Any) -> list[Place]:
 
 
 def _chosen(d: Draw, document: Document, wanted: Callable[[Any], bool]) -> Place:
-    """Return a place whose value is wanted, any place where there is none."""
+    """Return a random place whose value is wanted; any place if there is none."""
     known = _places(document)
     return d.pick([one for one in known if wanted(one[0][one[1]])] or known)
 
@@ -168,7 +168,7 @@ _WAYS: Final[dict[Callable[[Draw, Document], None], int]] = {
     _list_changed: 2,
     _formula_with_poles: 2,
 }
-"""What is done to a document, and how often."""
+"""Changes of a document, with their relative frequencies."""
 
 _OF_TEXTS: Final = (_text_cut, _text_without_a_sign, _text_with_a_sign, _lines_changed)
-"""What is done to the text of a file."""
+"""Changes of the text of a file."""

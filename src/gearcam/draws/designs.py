@@ -1,7 +1,7 @@
-"""Random designs as the texts of their files: most can be built, a tenth has something broken.
+"""Random designs as the texts of their files: most can be built, one in ten has an error.
 
-A design is told by its kind, the seed and its number, and does not depend on how many others are
-drawn. Laws, rises and followers take turns.
+A design depends on its kind, the seed and its number only, not on how many others are drawn. Laws
+and followers take turns.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from gearcam.draws.output import limits, tables_as_files
 from gearcam.draws.toml import toml
 
 BROKEN: Final = 0.1
-"""Share of designs with something in them that may be refused as often as not."""
+"""Share of designs with an error, which may be refused."""
 
 _ANYWHERE: Final = 0.15
-"""Share of the others with one value anywhere in its documented range."""
+"""Share of the others with one value drawn from its whole documented range."""
 
 _LIMITED: Final = 0.15
 """Share of designs that set limits of checks."""
@@ -35,16 +35,16 @@ class Drawn:
     Parameters
     ----------
     files : mapping of str to str
-        Texts by file name: the design file first, then its tables.
+        Texts by file name: the design file first, then its CSV files.
     broken : str
-        What was broken in it; empty where it was drawn so that it can be built.
+        The error in it; empty for a design meant to be buildable.
     """
 
     files: Mapping[str, str]
     broken: str = ""
 
     def write(self, folder: Path) -> Path:
-        """Write it into a `folder` and return the design file."""
+        """Write the files into a `folder` and return the path of the design file."""
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in self.files.items():
             (folder / name).write_text(text, encoding="utf-8")
@@ -52,7 +52,7 @@ class Drawn:
 
 
 def drawn_kinds() -> tuple[str, ...]:
-    """Return the kinds of which designs are drawn: those whose folder has a ``draw``."""
+    """Return the kinds of design with a module ``draw``."""
     return tuple(kind for kind in KINDS if find_room(kind, "draw") is not None)
 
 
@@ -64,7 +64,7 @@ def design(kind: str, seed: int, index: int) -> Drawn:
     kind : str
         One of `drawn_kinds`.
     seed, index : int
-        Which one.
+        Seed, and number of the design.
     """
     d = Draw(f"{kind} {seed} {index}")
     name = f"{kind}-{seed}-{index}"

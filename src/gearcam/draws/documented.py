@@ -1,6 +1,6 @@
-"""What the program documents of a design's keys, and values drawn over those ranges.
+"""Random values from the documented ranges of keys.
 
-The ranges are read from the schema, so that they are always those of the program.
+The ranges come from the schema of design files, so that they agree with the program.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from gearcam.designs import schema as schemas
 from gearcam.draws.draw import Draw
 
 _NARROWEST, _WIDEST = 1e-9, 1e6
-"""Where a documented range is open, the least of its upper end and the most that is drawn."""
+"""For ranges without an end: the smallest value relative to the largest, and the largest."""
 
 _AFFORDABLE: Final = {
     "teeth": (3, 300),
@@ -23,24 +23,24 @@ _AFFORDABLE: Final = {
     "chord_tolerance_mm": (1e-4, 1.0),
     "bolts": (0, 30),
 }
-"""Ranges drawn from where the documented one would take minutes or gigabytes."""
+"""Ranges to use instead of documented ones that would take minutes or gigabytes."""
 
 
 @cache
 def schema() -> schemas.Schema:
-    """Return the schema of design files, made once."""
+    """Return the schema of design files, cached."""
     return schemas.schema()
 
 
 def known_keys(node: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys that the schema knows at a node for what is given there, with their schemas.
+    """Return the keys that the schema allows in a table, with their schemas.
 
     Parameters
     ----------
     node : mapping
-        A part of the schema.
+        The part of the schema for the table.
     given : mapping
-        The table of a design: which branches hold follows from its values.
+        The table of a design; its values select the branches of the schema.
     """
     found: dict[str, Any] = {}
     if "$ref" in node:
@@ -60,17 +60,17 @@ def _resolved(node: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def places(document: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str, Mapping[str, Any]]]:
-    """Yield every key that the tables of a design know: the table, the key, its schema.
+    """Yield every key allowed in the tables of a design: the table, the key, its schema.
 
     Parameters
     ----------
     document : mapping
-        A design; tables that it does not have are not offered.
+        A design; only the tables that it has are considered.
     """
     for title, node in known_keys(schema(), document).items():
         tables = document.get(title)
         if isinstance(tables, dict) and "items" in node:
-            continue  # one table in place of a list is another thing
+            continue  # the schema describes a list of tables
         for table in tables if isinstance(tables, list) else [tables]:
             if isinstance(table, dict):
                 inner = node.get("items", node)
@@ -78,16 +78,16 @@ def places(document: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str, M
 
 
 def value(d: Draw, key: str, node: Mapping[str, Any]) -> Any:
-    """Return a value anywhere in a documented range: log-uniform where it is of numbers.
+    """Return a random value from a documented range; numbers are log-uniform.
 
     Parameters
     ----------
     d : Draw
-        Draws.
+        Random numbers.
     key : str
-        Its key in design files.
+        The key in design files.
     node : mapping
-        Its schema.
+        The schema of the key.
     """
     node = node["anyOf"][0] if "anyOf" in node else node
     if "const" in node:

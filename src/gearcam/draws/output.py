@@ -1,4 +1,4 @@
-"""Random files of a design, limits of its checks, and tables in files of their own."""
+"""Random output settings and limits of a design, and its tables as CSV files."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from gearcam.draws.documented import known_keys, schema
 from gearcam.draws.draw import Draw, short
 
 _CHEAP: Final = ("svg", "inspection")
-"""Files that cost little for any number of vertices."""
+"""Kinds of files that are cheap for any number of vertices."""
 
 _COLUMNS: Final = (
     *("phi1_deg", "ratio", "phi2_deg", "r1", "x", "y"), "theta_deg", "lift_mm", "lift_deg"
 )  # fmt: skip
-"""Keys that may be columns of a file."""
+"""Keys that can be columns of a CSV file."""
 
 
 def asked(d: Draw, shares: Mapping[str, float], rarer: float = 1.0) -> dict[str, Any]:
-    """Return which files a design has beside its tables, and how they are written.
+    """Return a random table ``[output]``.
 
     Parameters
     ----------
     d : Draw
-        Draws of this design.
+        Random numbers of this design.
     shares : mapping of str to float
-        Share of designs that have each kind of file.
+        Share of designs with each kind of file.
     rarer : float
-        Part of these shares where files cost more than usual.
+        Factor on these shares for designs whose files cost more than usual.
     """
     often = {key: one * (1.0 if key in _CHEAP else rarer) for key, one in shares.items()}
     output: dict[str, Any] = {"files": ["csv", *(key for key in often if d.chance(often[key]))]}
@@ -44,7 +44,7 @@ def asked(d: Draw, shares: Mapping[str, float], rarer: float = 1.0) -> dict[str,
 
 
 def limits(d: Draw, document: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a limit or two of the checks of a `document`, about their defaults, by draws `d`."""
+    """Return one or two limits of checks of a `document`, drawn by `d` near their defaults."""
     known = known_keys(known_keys(schema(), document)["limits"], {})
     made = {}
     for key in {d.pick([*known]): None, d.pick([*known]): None}:
@@ -57,16 +57,16 @@ def limits(d: Draw, document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def tables_as_files(d: Draw, document: Mapping[str, Any], name: str) -> dict[str, str]:
-    """Put the columns of a table into a file of their own, in half of the designs that have one.
+    """Move the columns of tables into CSV files, in half of the designs with tables.
 
     Parameters
     ----------
     d : Draw
-        Draws of this design.
+        Random numbers of this design.
     document : mapping
-        The design; its tables are changed.
+        The design; its tables are changed in place.
     name : str
-        Stem of the files.
+        Stem of the file names.
 
     Returns
     -------

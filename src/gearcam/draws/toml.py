@@ -1,4 +1,4 @@
-"""Designs as the texts of their files."""
+"""Designs as TOML text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def toml(document: Mapping[str, Any]) -> str:
-    """Return a design as the text of its file: values, tables, and lists of tables."""
+    """Return a design as TOML text: values, tables, and arrays of tables."""
     lines = [f"{key} = {_told(value)}" for key, value in document.items() if not _tables(value)]
     for title, content in document.items():
         head = f"[[{title}]]" if isinstance(content, list) else f"[{title}]"

@@ -1,1 +1,1 @@
-"""The fuzzer: random designs are built in processes of their own, and what is made doubted."""
+"""The fuzzer: builds random designs in separate processes and cross-checks the results."""

@@ -1,4 +1,4 @@
-"""A campaign: which designs are tried, and what is counted."""
+"""A campaign: the designs to try, and the statistics of their outcomes."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from gearcam.fuzz.pool import Pool
 from gearcam.fuzz.shrink import Files, shrunk
 
 DOUBTED: Final = 0.1
-"""Share of designs that a study by other means is held against."""
+"""Share of designs whose results are compared with those of other methods."""
 
 FOLLOWED: Final = 0.2
-"""Share of designs whose remedies are searched and built, where they are refused or have errors."""
+"""Share of the designs refused or with errors whose remedies are searched and built."""
 
 MOST_REFUSED: Final = 0.2
-"""Share of the designs drawn to be built that may be refused."""
+"""Largest share of refusals among the designs that are meant to be buildable."""
 
 PATIENCE: Final = 120.0
-"""Time for making a failing design small, s."""
+"""Time limit for shrinking a failing design, s."""
 
 _REASONS: Final = 12
-"""Reasons of refusals that are told."""
+"""Number of reasons for refusals that are listed."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A random design, told by its `kind`, the `seed` and its number, `index`."""
+    """A random design, identified by its `kind`, the `seed` and its number, `index`."""
 
     kind: str
     seed: int
@@ -42,12 +42,12 @@ class Case:
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """Name of the design."""
         return f"{self.kind}-{self.seed}-{self.index}"
 
     @property
     def command(self) -> str:
-        """What tries it alone."""
+        """The command that tries this design alone."""
         return f"gearcam fuzz --kind {self.kind} --seed {self.seed} --only {self.index}"
 
     @cached_property
@@ -56,7 +56,7 @@ class Case:
         return design(self.kind, self.seed, self.index)
 
     def task(self, files: Files | None = None) -> Task:
-        """Return what is to be tried: the design, or other `files` in the same way."""
+        """Return the task for the design, or for other `files` with the same settings."""
         d = Draw(f"trial of {self.name}")
         return Task(
             files=self.drawn.files if files is None else files,
@@ -67,7 +67,7 @@ class Case:
 
 @dataclass(kw_only=True)
 class Catch:
-    """A `failure`, its `case`, and the `files` of the smallest design that fails so."""
+    """A `failure`, its `case`, and the `files` of the smallest design that fails in this way."""
 
     case: Case
     failure: Failure
@@ -81,21 +81,21 @@ class Campaign:
     Parameters
     ----------
     cases : sequence of Case
-        Which.
+        The designs to try.
     pool : Pool
-        Where they are tried.
+        The processes that try them.
     counts : mapping of (str, str, str) to int
-        Ends by kind and by whether the design is broken.
+        Numbers of designs by kind, by buildable or with an error, and by outcome.
     reasons : mapping of str to int
-        Why designs that were drawn to be built are refused.
+        Reasons for refusals of designs meant to be buildable.
     found : list of Catch
         Failures.
     slowest : (float, str)
-        The longest processor time, s, and the design that took it.
+        The longest processor time, s, and the name of that design.
     seconds, clock : float, s
-        Processor time of all trials; time by the clock.
+        Processor time of all trials, and elapsed time.
     doubted, followed : int
-        Designs that were studied by other means, suggestions that were built.
+        Numbers of designs checked by other methods and of remedies built.
     """
 
     cases: Sequence[Case]
@@ -110,7 +110,7 @@ class Campaign:
     clock: float = 0.0
 
     def run(self, progress: Callable[[str, int, int], None] | None) -> Iterator[Catch]:
-        """Try all and yield failures as they are found, `progress` told."""
+        """Try all designs and yield failures as they are found; report to `progress`."""
         start = time.monotonic()
         try:
             for done, (number, outcome) in enumerate(self._outcomes(), start=1):
@@ -126,7 +126,7 @@ class Campaign:
             self.clock = time.monotonic() - start
 
     def _outcomes(self) -> Iterator[tuple[int, Outcome]]:
-        """Yield how trials ended; what took too long is tried once more, as machines may pause."""
+        """Yield the outcomes; a design that took too long is tried once more."""
         late: list[int] = []
         for number, outcome in self.pool.each(self._tasks(range(len(self.cases)))):
             if outcome.failure is not None and outcome.failure.kind == LATE:
@@ -149,7 +149,7 @@ class Campaign:
             self.reasons[outcome.reason] += 1
 
     def shrink(self, found: Catch) -> None:
-        """Make the design of a failure small."""
+        """Reduce the design of a failure."""
 
         def fails(files: Files) -> bool:
             return found.failure.same(self.pool.one(found.case.task(files)).failure)
@@ -158,7 +158,7 @@ class Campaign:
 
     @property
     def refused(self) -> float:
-        """Share of the designs drawn to be built that were refused."""
+        """Share of refusals among the designs meant to be buildable."""
         ends: Counter[str] = Counter()
         for (_, drawn, end), count in self.counts.items():
             ends[end] += count if drawn == _WHOLE else 0
@@ -166,11 +166,11 @@ class Campaign:
 
     @property
     def good(self) -> bool:
-        """Whether nothing failed, and not too much was refused."""
+        """Whether nothing failed and the share of refusals is small enough."""
         return not self.found and self.refused <= MOST_REFUSED
 
     def lines(self) -> Iterator[str]:
-        """Yield the tables of what was tried."""
+        """Yield the lines of the printed statistics."""
         ends = (BUILT, REFUSED, WRONG, FAILED)
         rows: list[tuple[str, ...]] = [("", "designs", *ends)]
         for kind, drawn in sorted({key[:2] for key in self.counts}):
@@ -178,15 +178,15 @@ class Campaign:
             rows.append((f"{kind}, {drawn}", *map(str, (sum(counts), *counts))))
         yield from lined_up(rows)
         shares = (f"{100 * share:.1f} %" for share in (self.refused, MOST_REFUSED))
-        yield f"refused of those {_WHOLE}: {' of at most '.join(shares)}"
+        yield f"refused among the {_WHOLE} ones: {', limit '.join(shares)}"
         for reason, count in self.reasons.most_common(_REASONS):
             yield f"  {count:>6}  {reason}"
-        yield f"studied by other means: {self.doubted}, suggestions built: {self.followed}"
+        yield f"checked by other methods: {self.doubted}, remedies built: {self.followed}"
         count = self.counts.total()
         each = self.seconds / max(count, 1)
         yield (
             f"processor time {self.seconds:.1f} s, {1 / each if each else 0:.1f} designs a second "
-            f"for each process; {self.clock:.1f} s by the clock"
+            f"per process; elapsed {self.clock:.1f} s"
         )
         yield f"slowest: {self.slowest[1]}, {self.slowest[0]:.1f} s"
         kinds = Counter(f"{one.failure.kind} {one.failure.place}" for one in self.found)
@@ -194,5 +194,5 @@ class Campaign:
         yield from (f"  {count:>6}  {kind}" for kind, count in kinds.most_common())
 
 
-_WHOLE: Final = "drawn to be built"
-_BROKEN: Final = "with something broken"
+_WHOLE: Final = "buildable"
+_BROKEN: Final = "with an error"

@@ -1,7 +1,7 @@
-"""What is true of every result: polygons are simple, solids closed, files read by other readers.
+"""Checks that every result must pass: simple polygons, closed solids, files that others can read.
 
-Shapely says what a polygon is, trimesh what is closed, ezdxf, the XML and the JSON reader what is
-in a file; none of them is asked when designs are built, or only by what writes files.
+Shapely checks polygons, trimesh solids, and ezdxf, XML and JSON readers files: libraries that the
+computation of a design does not use.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from gearcam.parts.body import Layer, Part
 from gearcam.written import Written
 
 _ROUNDING: Final = 1e-9
-"""Part of a part's reach that coordinates in files are rounded by, at most."""
+"""Largest rounding of coordinates in files, relative to the size of the part."""
 
 _JOINED: Final = 0.1
-"""Gap between the curves of an edge, in tolerances: where a profile is fast the rounding of an
-angle moves their ends; more is refused."""
+"""Largest gap between the curves of an edge, in tolerances: on a steep profile the rounding of an
+angle moves their ends."""
 
 
 def look_at(result: Any, written: Written) -> Iterator[Failure]:
-    """Yield what is wrong with a result and its files.
+    """Yield the failures of a result and its files.
 
     Parameters
     ----------
     result : Result
-        What was built.
+        The result to check.
     written : Written
-        What was written of it.
+        Its files.
     """
     parts = _parts(result)
     for part in parts:
@@ -53,7 +53,7 @@ def look_at(result: Any, written: Written) -> Iterator[Failure]:
 
 
 def _parts(result: Any) -> tuple[Part, ...]:
-    """Return what can be cut; nothing where that is refused, and no file asks for it."""
+    """Return the parts; none if they cannot be made, which is allowed if no file needs them."""
     try:
         return tuple(result.parts)
     except InfeasibleError:
@@ -71,7 +71,7 @@ def _polygons(part: Part) -> Iterator[Failure]:
 
 
 def _torn(part: Part) -> Iterator[Failure]:
-    """Yield edges whose smooth curves do not begin where the ones before end."""
+    """Yield edges with gaps between their smooth curves."""
     for layer in (*part.layers, *part.pockets):
         for edge in (one for one in layer.edges if isinstance(one, Contour)):
             ends = np.array([run.points[[0, -1]] for run in edge.runs])
@@ -86,7 +86,7 @@ def _rings(layer: Layer, tolerance: float) -> tuple[Any, list[Any]]:
 
 
 def _drawing_errors(parts: Iterable[Part], written: Written) -> Iterator[Failure]:
-    """Yield files of curves that, read back, are farther from the true ones than allowed."""
+    """Yield a failure if DXF curves read back deviate from the true ones by more than allowed."""
     read = written.summary.get("accuracy", {}).get("dxf_mm")
     if not read:
         return
@@ -94,12 +94,12 @@ def _drawing_errors(parts: Iterable[Part], written: Written) -> Iterator[Failure
     reach = max(abs(part.outline).max() for part in parts)
     allowed = max(part.tolerance for part in parts) + _ROUNDING * float(reach)
     if not worst <= allowed:
-        words = f"DXF read back is {worst} mm off, {allowed} mm are allowed"
+        words = f"DXF read back deviates by {worst} mm, {allowed} mm are allowed"
         yield Failure(kind="file", words=words, place="dxf error")
 
 
 def _unread(path: Path) -> Iterator[str]:
-    """Yield why another reader finds a file at fault."""
+    """Yield the error that another reader finds in a file."""
     try:
         words = _READERS.get(path.suffix, _nothing)(path)
     except (GearcamError, ValueError, ET.ParseError) as error:
@@ -113,12 +113,12 @@ def _nothing(path: Path) -> str:
 
 
 def _solids(path: Path) -> str:
-    """Read solids with trimesh: each is closed and encloses something."""
+    """Read solids with trimesh: each is closed and has a positive volume."""
     from trimesh import Scene, load
 
     found = load(io.BytesIO(path.read_bytes()), file_type=path.suffix[1:])
     bodies = found.geometry.values() if isinstance(found, Scene) else [found]
-    if path.suffix == ".stl":  # which holds triangles of all bodies in one heap
+    if path.suffix == ".stl":  # one unordered list of the triangles of all bodies
         bodies = [one for body in bodies for one in body.split(only_watertight=False, repair=False)]
     open_ones = sum(not body.is_watertight for body in bodies)
     if not bodies or open_ones:
@@ -140,7 +140,7 @@ def _markup(path: Path) -> str:
 
 
 def _table(path: Path) -> str:
-    """Read a table: rows as long as the head, numbers that are numbers."""
+    """Read a table: rows as long as the header, no NaN in outlines."""
     head, *rows = csv.reader(io.StringIO(path.read_text(encoding="utf-8")))
     for number, row in enumerate(rows, start=2):
         if len(row) != len(head):
@@ -152,7 +152,7 @@ def _table(path: Path) -> str:
 
 def _summary(path: Path) -> str:
     def no_number(word: str) -> float:
-        raise ValueError(f"{word} is no number of JSON")
+        raise ValueError(f"{word} is not a JSON number")
 
     found = json.loads(path.read_text(encoding="utf-8"), parse_constant=no_number)
     return "" if math.isfinite(found["format"]) else "no format"
@@ -167,4 +167,4 @@ _READERS: Final[dict[str, Callable[[Path], str]]] = {
     ".csv": _table,
     ".json": _summary,
 }
-"""What reads a file by its ending and returns what is wrong; others are only not empty."""
+"""Readers by file extension; they return an error or an empty text. Other files: not empty."""

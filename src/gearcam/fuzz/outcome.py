@@ -1,4 +1,4 @@
-"""What is tried of a design, and how that ended."""
+"""The trial of a design and its outcome."""
 
 from __future__ import annotations
 
@@ -8,24 +8,23 @@ from typing import Final
 
 BUILT: Final = "built"
 REFUSED: Final = "refused"
-WRONG: Final = "refused by reading"
+WRONG: Final = "invalid"
 FAILED: Final = "failed"
 
 LATE: Final = "time"
-"""The kind of failure of what takes too long."""
+"""The kind of failure of a trial that takes too long."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """A design that is to be tried: its `files`, and what is done beside building it.
+    """A design to try, with the additional checks to run.
 
     Parameters
     ----------
     files : mapping of str to str
-        Texts by file name: the design file first.
+        Texts by file name, the design file first.
     doubt, follow : bool
-        Whether a study by other means is held against it; whether remedies are searched and
-        built.
+        Whether to compare the result with other methods; whether to search and build remedies.
     """
 
     files: Mapping[str, str]
@@ -35,17 +34,17 @@ class Task:
 
 @dataclass(frozen=True, kw_only=True)
 class Failure:
-    """What is wrong with the program.
+    """A bug in the program.
 
     Parameters
     ----------
     kind : str
         Such as ``crash``, ``time``, ``polygon``.
     words : str
-        What happened.
+        Description.
     place : str
-        What tells it from other failures of its kind: an exception with the function that raised
-        it, the name of a file.
+        What distinguishes it from other failures of its kind: an exception with the function that
+        raised it, or a file extension.
     """
 
     kind: str
@@ -53,28 +52,28 @@ class Failure:
     place: str = ""
 
     def same(self, other: Failure | None) -> bool:
-        """Whether another failure is this one."""
+        """Return whether another failure has the same kind and place."""
         return other is not None and (self.kind, self.place) == (other.kind, other.place)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """How the trial of a design ended.
+    """The outcome of a trial.
 
     Parameters
     ----------
-    end : {"built", "refused", "refused by reading", "failed"}
-        How.
+    end : {"built", "refused", "invalid", "failed"}
+        How it ended.
     seconds : float, s
         Processor time.
     reason : str
-        Why it was refused, without its numbers.
+        Reason for the refusal, without its numbers.
     failure : Failure or None
-        What went wrong.
+        The bug found.
     doubted : bool
-        Whether a study by other means was held against it.
+        Whether the result was compared with other methods.
     followed : int
-        Suggested changes that were built.
+        Number of remedies built.
     """
 
     end: str

@@ -1,7 +1,7 @@
-"""Trials in processes of their own, each with so much time and memory; whoever dies is replaced.
+"""Trials in separate processes with limited time and memory; crashed processes are restarted.
 
-Time is that of the processor where the system counts it for a process, so that a busy machine
-makes no failures; by the clock a process has a few times more, and elsewhere just as much.
+Processor time is limited where the system counts it, so that a busy machine causes no failures; the
+limit of elapsed time is then a few times larger, elsewhere the same.
 """
 
 from __future__ import annotations
@@ -23,34 +23,34 @@ from gearcam.console import quieten
 from gearcam.fuzz.outcome import FAILED, LATE, Failure, Outcome, Task
 
 SECONDS: Final = 30.0
-"""Processor time of a trial."""
+"""Processor time allowed for a trial, s."""
 
 MEMORY: Final = 4 << 30
-"""Bytes that a process may take: a design that would take all must not end other programs."""
+"""Memory allowed for a process, bytes: a design must not exhaust the machine."""
 
 _COUNTED: Final = hasattr(signal, "setitimer")
-"""Whether the system ends a process that has had its time."""
+"""Whether the system can limit the processor time of a process."""
 
 _CLOCK: Final = 5.0 if _COUNTED else 1.0
-"""Time by the clock after which a process is ended, in processor times."""
+"""Limit of the elapsed time, as a multiple of the processor time."""
 
 
 Work = Callable[[Task, Path], Outcome]
-"""What processes do: try a design in an empty folder."""
+"""The work of a process: ``work(task, folder)`` tries a design in an empty folder."""
 
 
 def _serve(channel: connection.Connection, work: Work, seconds: float, folder: Path) -> None:
-    """Answer tasks until there are no more; each has a folder within the given one."""
+    """Serve tasks until the channel is closed, each in its own subfolder."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     quieten()
     _limit_memory()
     with contextlib.suppress(EOFError, OSError):
         while True:
             task = channel.recv()
-            channel.send(None)  # its time begins
+            channel.send(None)  # the timer of this task starts
             own = Path(tempfile.mkdtemp(dir=folder))
             if _COUNTED:
-                signal.setitimer(signal.ITIMER_PROF, seconds)  # whose signal ends a process
+                signal.setitimer(signal.ITIMER_PROF, seconds)  # its signal kills the process
             outcome = work(task, own)
             if _COUNTED:
                 signal.setitimer(signal.ITIMER_PROF, 0.0)
@@ -59,14 +59,14 @@ def _serve(channel: connection.Connection, work: Work, seconds: float, folder: P
 
 
 def _limit_memory() -> None:
-    with contextlib.suppress(ImportError, ValueError, OSError):  # which not every system has
+    with contextlib.suppress(ImportError, ValueError, OSError):  # not available on every system
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
 class _Worker:
-    """A process, and the number of the task that it has."""
+    """A process, and the number of its current task."""
 
     def __init__(self, work: Work, seconds: float, folder: Path) -> None:
         context = multiprocessing.get_context("spawn")
@@ -75,18 +75,18 @@ class _Worker:
             target=_serve, args=(theirs, work, seconds, folder), daemon=True
         )
         self.process.start()
-        theirs.close()  # so that its death is heard
+        theirs.close()  # so that the end of the process closes the channel
         self.seconds = seconds
         self.number: int | None = None
         self.until = math.inf
 
     def give(self, number: int, task: Task) -> None:
         self.number = number
-        with contextlib.suppress(OSError):  # its death is told when it is asked
+        with contextlib.suppress(OSError):  # answer() reports a dead process
             self.channel.send(task)
 
     def answer(self) -> Outcome | None:
-        """Return how its task ended, by its death too; None where it has only begun."""
+        """Return the outcome of its task, a crash included; None if the task has just started."""
         outcome: Outcome | None = _TOO_LONG
         if self.channel.poll():
             try:
@@ -114,22 +114,22 @@ def _death(code: int | None) -> Outcome:
 
 
 class Pool:
-    """Processes that try designs.
+    """A pool of processes that try designs.
 
     Parameters
     ----------
     work : callable
-        What they do; it pickles.
+        The work of each process; it must be picklable.
     processes : int
-        How many.
+        Number of processes.
     seconds : float, s
-        Processor time that a trial may take.
+        Processor time allowed for a trial.
     """
 
     def __init__(self, work: Work, processes: int, seconds: float = SECONDS) -> None:
         self.work, self.processes, self.seconds = work, processes, seconds
         self._workers: list[_Worker] = []
-        # not within a process: one that is ended leaves its folder behind
+        # owned by the parent: a process that is killed cannot clean up
         self._folder = tempfile.TemporaryDirectory(prefix="fuzz-", ignore_cleanup_errors=True)
 
     def __enter__(self) -> Self:
@@ -142,21 +142,21 @@ class Pool:
         self._folder.cleanup()
 
     def one(self, task: Task) -> Outcome:
-        """Return how the trial of one `task` ended."""
+        """Return the outcome of one `task`."""
         return next(outcome for _, outcome in self.each([(0, task)]))
 
     def each(self, tasks: Iterable[tuple[int, Task]]) -> Iterator[tuple[int, Outcome]]:
-        """Yield how each trial ended, as they end.
+        """Yield the outcomes of tasks as they finish.
 
         Parameters
         ----------
         tasks : iterable of (int, Task)
-            Numbered.
+            Numbered tasks.
 
         Yields
         ------
         int, Outcome
-            The task's number, how it ended.
+            Number of the task, and its outcome.
         """
         waiting = iter(tasks)
         while self._give(waiting):
@@ -171,7 +171,7 @@ class Pool:
                 yield number, outcome
 
     def _give(self, waiting: Iterator[tuple[int, Task]]) -> bool:
-        """Give tasks to processes that have none; whether any has one then."""
+        """Assign tasks to free processes; return whether any process has a task."""
         free = [one for one in self._workers if one.number is None]
         for number, task in itertools.islice(
             waiting, self.processes - len(self._workers) + len(free)
@@ -183,7 +183,7 @@ class Pool:
         return any(one.number is not None for one in self._workers)
 
     def _heard(self) -> list[_Worker]:
-        """Wait until a process says something, dies, or has had its time, and return all such."""
+        """Wait for processes that answer, end or exceed their time, and return them."""
         soonest = min(one.until for one in self._workers)
         channels = [one.channel for one in self._workers if one.number is not None]
         wait = max(0.0, soonest - time.monotonic())

@@ -1,4 +1,4 @@
-"""A failing design made small: what can be left out is, as long as it fails in the same way."""
+"""Shrinking a failing design: parts are left out as long as it fails in the same way."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from gearcam.draws.toml import toml
 Files = Mapping[str, str]
 
 _DIGITS: Final = (1, 2, 3)
-"""Digits that numbers are shortened to, the fewest that do."""
+"""Numbers of digits to which values are shortened, fewest first."""
 
 _KEPT: Final = ("kind", "name")
 
 
 def shrunk(files: Files, fails: Callable[[Files], bool], patience: float) -> dict[str, str]:
-    """Return a smaller design that fails as well.
+    """Return a smaller design that fails in the same way.
 
     Parameters
     ----------
     files : mapping of str to str
-        Texts by file name: the design file first.
+        Texts by file name, the design file first.
     fails : callable
-        Whether other files fail in the same way.
+        ``fails(files)`` returns whether other files fail in the same way.
     patience : float, s
-        Time after which nothing more is tried.
+        Time limit.
 
     Returns
     -------
@@ -60,7 +60,7 @@ def _document(text: str) -> dict[str, Any] | None:
 
 
 def _texts(text: str) -> Iterator[str]:
-    """Yield texts without some of the lines."""
+    """Yield copies of the text with some lines removed."""
     lines = text.splitlines(keepends=True)
     size = len(lines) // 2
     while size:
@@ -70,7 +70,7 @@ def _texts(text: str) -> Iterator[str]:
 
 
 def _documents(text: str) -> Iterator[str]:
-    """Yield designs with a table, a key or an item less, or a shorter number."""
+    """Yield designs with one table, key or item removed, or one number shortened."""
     document = _document(text) or {}
     for path in _paths(document):
         made = copy.deepcopy(document)
@@ -92,7 +92,7 @@ def _documents(text: str) -> Iterator[str]:
 
 
 def _paths(node: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    """Return the places of all that is in a document, tables before their keys."""
+    """Return the paths of all items of a document, tables before their keys."""
     items = list(node.items() if isinstance(node, dict) else enumerate(node))
     found: list[tuple[Any, ...]] = []
     for key, item in reversed(items):

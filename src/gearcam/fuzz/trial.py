@@ -1,4 +1,4 @@
-"""The trial of one design: read, built, written, doubted, its remedies followed."""
+"""The trial of one design: read it, build it, write and check its files, build its remedies."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from gearcam.fuzz.oracles import look_at
 from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 
 SEARCH: Final = 0.6
-"""Patience of a search for remedies, s: a few designs."""
+"""Patience of the search for remedies, s: enough for a few designs."""
 
 _SHOWN: Final = 500
-"""Characters of what was raised that are told."""
+"""Characters of an exception that are reported."""
 
 _PACKAGE: Final = f"{Path(__file__).parents[1].name}/"
 
 
 class FaultError(Exception):
-    """A fault of the program was found."""
+    """A bug in the program was found."""
 
     def __init__(self, failure: Failure) -> None:
         self.failure = failure
@@ -35,24 +35,24 @@ class FaultError(Exception):
 
 
 def tried(task: Task, folder: Path) -> Outcome:
-    """Return how the trial of a design, a `task`, in an empty `folder` ended."""
+    """Return the outcome of a `task`, tried in an empty `folder`."""
     return Trial(task, folder).run()
 
 
 @dataclass
 class Trial:
-    """A design that is tried.
+    """The trial of a design.
 
     Parameters
     ----------
     task : Task
-        It, and what is done beside building it.
+        The design and the additional checks.
     folder : Path
-        An empty one.
+        An empty folder.
     doubted : bool
-        Whether a study was held against it.
+        Whether the result was compared with other methods.
     followed : int
-        Remedies that were built.
+        Number of remedies built.
     """
 
     task: Task
@@ -61,7 +61,7 @@ class Trial:
     followed: int = 0
 
     def run(self) -> Outcome:
-        """Return how it ended."""
+        """Run the trial and return its outcome."""
         start = time.process_time()
         reason, failure = "", None
         try:
@@ -82,7 +82,7 @@ class Trial:
         )
 
     def _end(self) -> tuple[str, str]:
-        """Return how it ended and why; raise what is a fault."""
+        """Return the end of the trial and the reason; raise `FaultError` for a bug."""
         for name, text in self.task.files.items():
             (self.folder / name).write_text(text, encoding="utf-8")
         file = str(self.folder / next(iter(self.task.files)))
@@ -119,7 +119,7 @@ class Trial:
             )
 
     def _follow(self, result: Any, refusal: InfeasibleError | None) -> None:
-        """Build what is suggested, with all its files."""
+        """Build the remedies, with all their files."""
         if not self.task.follow:
             return
         found = remedies(result, refusal, patience=SEARCH)
@@ -143,14 +143,14 @@ class Trial:
 
 
 def _told(error: DesignError | InfeasibleError, file: str, words: str) -> str:
-    """Tell a refusal, and return what is the same in those that differ by numbers and names."""
+    """Return the reason of a refusal with its numbers and names replaced by placeholders."""
     refusal_text(error, file, BUILT)
     told = re.sub(r"\"[^\"]*\"|'[^']*'", "...", words.splitlines()[0])
     return re.sub(r"[-+]?\d[\d.e+-]*", "#", told)[:80]
 
 
 def _place(error: BaseException) -> str:
-    """Return what was raised and the innermost function of the program that it came through."""
+    """Return the type of an exception and the innermost function of gearcam in its traceback."""
     frames = traceback.extract_tb(error.__traceback__)
     own = [one for one in frames if _PACKAGE in one.filename.replace("\\", "/")]
     last = own[-1] if own else frames[-1]

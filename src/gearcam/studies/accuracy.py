@@ -1,4 +1,4 @@
-"""Error against run time: the stages of a design at rising resolution, measured in turns."""
+"""Error against run time: the stages of a design, measured at increasing resolution."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from gearcam.result import Progress, Result
 from gearcam.written import Written
 
 REPEATS: Final = 5
-"""How often each level is made where nobody says how often."""
+"""Default number of runs of each level."""
 
 TABLE: Final = "accuracy.csv"
 PICTURE: Final = "accuracy.svg"
@@ -40,10 +40,10 @@ COLUMNS: Final = (
     "stage", "measured", "refined", "level", "own", "error", "unit", "rounding",
     "order", "order_expected", "time_s", "points",
 )  # fmt: skip
-"""Of ``accuracy.csv``."""
+"""Columns of ``accuracy.csv``."""
 
 _FITTED: Final = 3
-"""Rungs to which the order of a ladder is fitted: the finest that are above rounding."""
+"""Number of rungs to which the order is fitted: the finest above rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,20 +53,20 @@ class Rung(Brief):
     Parameters
     ----------
     stage : str
-        Whose.
+        Name of the stage.
     level : float
-        What was asked for: intervals, points on a flank, a chord tolerance in mm.
+        The resolution: intervals, points on a flank, or a chord tolerance in mm.
     own : bool
-        Whether the program itself takes this level.
+        Whether the program uses this level.
     error : float
         In the unit of the ladder.
     order : float or None
-        With which power of the points the error fell since the rung before; None for the first,
-        where points did not rise, and where rounding is what is left.
+        Order of convergence in the number of points, from the rung before to this one; None for
+        the first rung, without more points, and below rounding.
     seconds : float
         Median run time.
     points : int
-        What it was made from.
+        Number of points.
     """
 
     stage: str
@@ -80,21 +80,20 @@ class Rung(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Accuracy(Brief):
-    """What has been measured on a result.
+    """The accuracy of a result, measured.
 
     Parameters
     ----------
     result : Result
-        Of which.
+        The result measured.
     ladders : mapping of str to Ladder
         By stage.
     rungs : tuple of Rung
         By stage, from coarse to fine.
     refused : mapping of (str, float) to str
-        Levels at which nothing could be made, with the reason; of a stage of which nothing could,
-        not-a-number.
+        Reasons by stages and levels that cannot be computed; the level is NaN for a whole stage.
     repeat : int
-        How often each was made.
+        Number of runs of each level.
     """
 
     result: Result
@@ -108,9 +107,9 @@ class Accuracy(Brief):
         return tuple(rung for rung in self.rungs if rung.stage == stage)
 
     def order(self, stage: str) -> float | None:
-        """Return the order of a `stage`: the slope through its finest rungs above rounding.
+        """Return the order of convergence of a `stage`, fitted to its finest rungs above rounding.
 
-        None where fewer than two are above rounding, or take the same points.
+        None if fewer than two rungs are above rounding or have different numbers of points.
         """
         found = [rung for rung in self.of(stage) if rung.error > self.ladders[stage].rounding]
         points, errors = np.log(
@@ -121,12 +120,12 @@ class Accuracy(Brief):
         return -float(np.polyfit(points, errors, 1)[0])
 
     def lines(self) -> Iterator[str]:
-        """Yield the table for people: a heading for each stage, its rungs lined up below."""
-        yield f"error against run time, median of {self.repeat} in turns; * as the program does it"
+        """Yield the lines of the printed table: a heading for each stage, its rungs below."""
+        yield f"error against run time, median of {self.repeat} runs; * as used by gearcam"
         for stage, ladder in self.ladders.items():
             order = self.order(stage)
             told = "rounding" if order is None else f"order {order:.2f}"
-            yield f"{stage}: error of {ladder.measured}; {told}, {shown(ladder.order)} expected"
+            yield f"{stage}: error of {ladder.measured}; {told}, expected {shown(ladder.order)}"
             rows = [(ladder.refined, "", "error", "order", "time", "points")]
             for rung in self.of(stage):
                 error = f"{rung.error:.2e} {ladder.unit}".rstrip()
@@ -144,7 +143,7 @@ class Accuracy(Brief):
 
     @cached_property
     def table(self) -> bytes:
-        """``accuracy.csv``: a row for each rung, empty where there is nothing to tell."""
+        """The content of ``accuracy.csv``: a row for each rung; no order is an empty cell."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(COLUMNS)
@@ -162,7 +161,7 @@ class Accuracy(Brief):
 
     @cached_property
     def charts(self) -> tuple[Chart, ...]:
-        """A chart for each stage: errors over run times, and a ring around the program's own."""
+        """A chart for each stage: errors over run times, with a ring around the level used."""
         return tuple(self._chart(stage) for stage in self.ladders)
 
     def _chart(self, stage: str) -> Chart:
@@ -173,14 +172,14 @@ class Accuracy(Brief):
             return Line(label=label, x=x, y=np.array([rung.error for rung in some]), dots=dots)
 
         own = [rung for rung in rungs if rung.own]
-        lines = (line(f"by {ladder.refined}", rungs, False),)
+        lines = (line(f"levels: {ladder.refined}", rungs, False),)
         if own:
-            lines += (line("as the program does it", own, True),)
+            lines += (line("as used by gearcam", own, True),)
         what = f"{ladder.measured}, {ladder.unit}" if ladder.unit else ladder.measured
         return Chart(title=stage, x="run time, s", y=f"error of {what}", lines=lines)
 
     def write(self, directory: str | Path = "output") -> Written:
-        """Write table and figure beside the files of a build, which stay.
+        """Write table and figure; the files of a build are kept.
 
         Parameters
         ----------
@@ -190,12 +189,12 @@ class Accuracy(Brief):
         Returns
         -------
         Written
-            Whose facts tell the table.
+            Its facts print as the table.
 
         Raises
         ------
         WriteError
-            If the disk refuses.
+            If a file cannot be written.
         """
         from gearcam.studies.svg import log_charts
 
@@ -205,26 +204,26 @@ class Accuracy(Brief):
 
 
 class _Told(Facts):
-    """The facts of a result that are told as the table of what was measured on it."""
+    """The facts of a result, printed as the table of its accuracy."""
 
     def __init__(self, made: Accuracy) -> None:
         super().__init__(made.result.facts.document)
         self._made = made
 
     def lines(self) -> Iterator[str]:
-        """Yield the table."""
+        """Yield the lines of the table."""
         return self._made.lines()
 
 
 def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, ...]:
-    """Return the stages of a design that can be measured, or those `asked` for.
+    """Return the stages of a design that can be measured, or the requested ones of them.
 
     Parameters
     ----------
     design : Design
         Of any kind.
     asked : sequence of str, optional
-        Names of stages; all that its kind has where left out.
+        Names of stages; all by default.
 
     Returns
     -------
@@ -233,7 +232,7 @@ def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, 
     Raises
     ------
     DesignError
-        If its kind has no such stage, with those that it has.
+        If the kind has no such stage; the message lists those that it has.
     """
     known = tuple(_ladders(design.kind))
     if asked is None and known:
@@ -242,8 +241,8 @@ def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, 
     every = {name for kind in KINDS for name in _ladders(kind)}
     for name in dict.fromkeys(asked or ("",)):
         if name not in known:
-            what = f"is no stage of designs of kind {design.kind}" if name in every else ""
-            message = f"{show(name)} {what or 'is no stage'}" if name else "no stage is listed"
+            what = f" of designs of kind {design.kind}" if name in every else ""
+            message = f"{show(name)} is not a stage{what}" if name else "no stage is listed"
             hint = "" if name in every else did_you_mean(name, known)
             allowed = ", ".join(known) or f"none of designs of kind {design.kind}"
             problems.append(Problem(message, key="--stage", allowed=allowed, hint=hint))
@@ -258,19 +257,19 @@ def accuracy(
     repeat: int = REPEATS,
     progress: Progress | None = None,
 ) -> Accuracy:
-    """Measure the stages of a result at rising resolution.
+    """Measure the error and run time of the stages of a result at increasing resolution.
 
     Parameters
     ----------
     result : Result
-        Of a design of any kind that has ladders.
+        The result of a design whose kind has ladders.
     stages : sequence of str, optional
-        Which; all where left out.
+        Names of stages; all by default.
     repeat : int
-        How often each level is made, 1 or more: all levels in turns, so that a busy moment hits
-        them alike, after one round that does not count.
+        Number of runs of each level, at least 1, after one that is not timed. Levels take turns,
+        so that a load on the machine affects all alike.
     progress : callable, optional
-        Called with a stage's name, the rounds done and their number.
+        Called with the name of a stage, the rounds done and their total.
 
     Returns
     -------
@@ -281,7 +280,7 @@ def accuracy(
     DesignError
         If there is no such stage, or `repeat` is less than 1.
     InfeasibleError
-        If the design cannot be made, or its first stage, or a stage at none of its levels.
+        If the design, its first stage, or all levels of a stage cannot be made.
 
     Examples
     --------
@@ -314,7 +313,7 @@ def accuracy(
             if progress is not None:
                 progress(name, next(done), total)
             levels = [level for whose, level in first if whose == name]
-            # each time another one comes first: caches are cold then
+            # rotate the levels: the first one meets cold caches
             cut = number % len(levels)
             for level in levels[cut:] + levels[:cut]:
                 start = time.perf_counter()
@@ -335,7 +334,7 @@ def _first_round(
     first: dict[tuple[str, float], tuple[float, int]],
     refused: dict[tuple[str, float], str],
 ) -> None:
-    """Make every level of a ladder once and measure it; what cannot be made is refused."""
+    """Compute and measure every level of a ladder once; record those that fail in `refused`."""
     reason: GearcamError | None = None
     for level in ladder.levels:
         try:
@@ -370,13 +369,13 @@ def _rungs(
 
 
 def _ladders(kind: str) -> Ladders:
-    """Return the ladders of a kind of design; none where it has no room for them."""
+    """Return the ladders of a kind of design; empty if it defines none."""
     room = find_room(kind, "ladder")
     return {} if room is None else room.LADDERS
 
 
 def _right(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
-    """Return rows whose cells are filled up from the left, so that digits stand in columns."""
+    """Return rows with right-aligned cells."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
         tuple(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in rows

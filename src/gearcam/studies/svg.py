@@ -1,4 +1,4 @@
-"""Charts with two logarithmic axes as one SVG: error against run time, drawn without matplotlib.
+"""Charts with two logarithmic axes in one SVG file, drawn without matplotlib.
 
 Points without a logarithm, such as an error of exactly 0, are left out.
 """
@@ -19,28 +19,28 @@ from gearcam.numerals import decimal
 from gearcam.numeric.arrays import Array
 
 COLUMNS: Final = 2
-"""Charts beside each other."""
+"""Number of charts in a row."""
 
 _WIDE, _HIGH = 480.0, 360.0
-"""A chart with its labels, pixels."""
+"""Width and height of a chart with its labels, pixels."""
 
 _LEFT, _RIGHT, _ABOVE, _BELOW = 78.0, 16.0, 34.0, 48.0
-"""Room around the axes, pixels."""
+"""Margins around the axes, pixels."""
 
 _ROW: Final = 15.0
 """Height of a row of the legend, pixels."""
 
 _INKS: Final = ("#27598c", "#c0562b", "#3c8043", "#8c3a7a", "#9a7b16", "#3f3f3f", "#2b8a97")
-"""Colours of lines that can be told apart in print."""
+"""Colours of lines that remain distinct in print."""
 
 _MOST_TICKS: Final = 8
-"""Powers of ten that an axis is labelled with."""
+"""Largest number of powers of ten on an axis."""
 
 _SHORT: Final = 2
-"""Decades up to which an axis is labelled between them too."""
+"""Number of decades up to which an axis has labels between powers of ten."""
 
 _LEAST: Final = 1.2
-"""Decades that an axis has at least: noise of run times is not to fill a chart."""
+"""Least number of decades on an axis, so that noise in run times does not fill the chart."""
 
 _number: Final = partial(decimal, decimals=2)
 
@@ -51,9 +51,9 @@ def log_charts(title: str, charts: Sequence[Chart]) -> bytes:
     Parameters
     ----------
     title : str
-        Of the file.
+        Title of the file.
     charts : sequence of Chart
-        In order, `COLUMNS` in a row; a line of one point is a mark by itself.
+        `COLUMNS` in a row; a line of one point is drawn as a single mark.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def _chart(chart: Chart) -> Iterator[str]:
 
 
 def _legend(lines: Sequence[Line]) -> Iterator[str]:
-    """Tell what lines are, above the axes, where nothing is drawn."""
+    """Yield the legend, above the axes."""
     for number, line in enumerate(lines):
         y, ink = _ABOVE + _ROW * number, _INKS[number % len(_INKS)]
         x = _LEFT + 6.0
@@ -113,12 +113,12 @@ def _legend(lines: Sequence[Line]) -> Iterator[str]:
 
 
 def _fill(line: Line, ink: str) -> str:
-    """Return how marks are drawn: filled on a line, as rings around single values."""
+    """Return the style of marks: filled on a line, rings around single values."""
     return f'fill="none" stroke="{ink}" stroke-width="1.5"' if line.dots else f'fill="{ink}"'
 
 
 class _Axis:
-    """A logarithmic axis from `first` to `last`, pixels, that holds the `values`."""
+    """A logarithmic axis from `first` to `last`, pixels, that spans the `values`."""
 
     def __init__(self, values: Array, first: float, last: float) -> None:
         ends = np.log10([values.min(), values.max()]) if values.size else np.array([0.0, 1.0])
@@ -133,7 +133,7 @@ class _Axis:
 
     @property
     def ticks(self) -> list[float]:
-        """Powers of ten, so few that their labels have room; on a short axis twice and 5 times."""
+        """Powers of ten, few enough to label; on a short axis also times 2 and 5."""
         low, high = math.floor(self._low), math.floor(self._high)
         if high - low <= _SHORT:
             made = [
