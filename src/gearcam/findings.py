@@ -122,6 +122,8 @@ class Check:
         The kind of subject that it examines.
     limit : tuple of (str, Param, float) or None
         Name in ``[limits]``, quantity with its range, and default in internal units (mm, rad).
+    severities : tuple of str
+        Severities that its findings may have, the usual one first.
     run : callable
         ``run(subject, limit)`` yields findings; `limit` in internal units, nan without one.
     """
@@ -129,7 +131,13 @@ class Check:
     code: str
     kind: str
     limit: tuple[str, Param, float] | None
+    severities: tuple[Severity, ...]
     run: Run
+
+    @property
+    def doc(self) -> str:
+        """What it does, then ``Looks at: ...``: the docstring of its function in one line."""
+        return " ".join((self.run.__doc__ or "").split())
 
 
 ROUNDING: Final = 1e-9
@@ -144,7 +152,7 @@ def check(
     *,
     kind: str | tuple[str, ...],
     limit: tuple[str, Param, float] | None = None,
-    severity: Severity = "warning",
+    severity: Severity | tuple[Severity, ...] = "warning",
     unit: str = "",
 ) -> Callable[[Look], Run]:
     """Return a decorator that makes a function a check of one or more kinds (see `Check`).
@@ -153,8 +161,8 @@ def check(
     ----------
     code, kind, limit
         As in a `Check`.
-    severity : {"note", "warning", "error"}
-        Default severity of its findings.
+    severity : {"note", "warning", "error"} or tuple of them
+        Severities that its findings may have; the first is the default.
     unit : str
         Default unit of its values; if empty, that of the limit.
 
@@ -165,12 +173,13 @@ def check(
     """
     quantity = limit[1].quantity if limit else NUMBER
     unit = unit or quantity.unit
+    severities = (severity,) if isinstance(severity, str) else severity
 
     def finding(found: Remark, own: float) -> Finding:
         bound = own / quantity.factor if math.isnan(found.limit) else found.limit
         return Finding(
             code=code,
-            severity=found.severity or severity,
+            severity=found.severity or severities[0],
             message=found.message,
             value=found.value,
             limit=bound if found.value is not None and math.isfinite(bound) else None,
@@ -186,7 +195,9 @@ def check(
         for one in (kind,) if isinstance(kind, str) else kind:
             if (one, code) in CHECKS:
                 raise ValueError(f"check {code!r} is registered twice")
-            CHECKS[one, code] = Check(code=code, kind=one, limit=limit, run=run)
+            CHECKS[one, code] = Check(
+                code=code, kind=one, limit=limit, severities=severities, run=run
+            )
         return run
 
     return register

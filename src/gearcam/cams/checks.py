@@ -81,12 +81,15 @@ def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
     "undercut",
     kind=KIND,
     limit=("lost_lift", Param(LENGTH, ge=0, doc="lift that trimming may cost"), 0.01),
+    severity=("warning", "error"),
 )
 def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
-    """Tell where a profile is undercut, and the lift that its trimming costs.
+    """Warn of an undercut profile, which is trimmed.
 
-    Looks at: stretches on which the follower would cut away what it needs elsewhere; they
-    are trimmed.
+    It is an error where trimming costs more lift than the limit.
+
+    Looks at: the parts of a profile that the follower cuts away from other places, and the lift
+    lost.
     """
     for wall in cam.walls:
         yield from _undercut(wall, limit)
@@ -147,7 +150,7 @@ def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
 
 @check("hard-shock", kind=KIND)
 def hard_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of every knot where the velocity jumps.
+    """Warn of a knot at which the velocity jumps.
 
     Looks at: knots where the velocity jumps.
     """
@@ -163,7 +166,7 @@ def hard_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 
 @check("soft-shock", kind=KIND, severity="note")
 def soft_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Note every knot where the acceleration jumps.
+    """Note a knot at which the acceleration jumps.
 
     Looks at: knots where the acceleration jumps.
     """
@@ -184,7 +187,8 @@ def soft_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a sharp profile.
 
-    Looks at: the smallest convex radius of an untrimmed profile: sharp ones wear and pit.
+    Looks at: the smallest convex radius of the profile; sharp ones wear and pit. Trimmed profiles
+    are left out.
     """
     for wall in cam.walls:
         convex, _ = wall.profile_radius
@@ -198,9 +202,11 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
 
 @check("coarse-rows", kind=KIND, unit="mm")
 def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of a motion that is known less well than the profile is cut.
+    """Warn if the lift between rows of a motion table is known less well than the profile is cut.
 
-    Looks at: the estimated error of the lift between the rows of its table.
+    The rows are too coarse, or they were measured and are not smoothed.
+
+    Looks at: the estimated error of the lift against `chord_tolerance_mm`.
     """
     lead = cam.motions[0]
     error = lead.program.errors[0] * lead.mechanism.lever
@@ -220,7 +226,7 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between walls"), 0.1),
 )
 def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
-    """Warn of a follower that moves while the cam stands still.
+    """Warn of a follower that can move between the two walls of a groove.
 
     Looks at: the largest lost motion of a follower that two walls hold: from one to the other.
     """
@@ -239,7 +245,7 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
 
 @check("face-width", kind=KIND, severity="note")
 def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Note how wide the faces of a yoke must be.
+    """Note how wide the faces of a yoke must be: twice the farthest contact from their middle.
 
     Looks at: how far off its middle a face of a yoke is touched, either way.
     """
@@ -254,7 +260,9 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 
 @check("other-profile", kind=FOLLOWED)
 def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of a profile that is not the one of its cam.
+    """Warn if a followed profile is probably not that of the design.
+
+    The lift differs from the one asked for by more than a tenth of it.
 
     Looks at: how far the lift is from the one asked for, in a study of a followed profile.
     """

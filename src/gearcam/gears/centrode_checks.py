@@ -31,9 +31,11 @@ _CUTTER_TEETH = (
     "closure", limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE)
 )
 def closure(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn if the law closes only roughly: ratios typed with too few digits.
+    """Warn if the law does not close exactly: its ratios were typed with too few digits.
 
-    Looks at: miss of the driven angle over a lobe.
+    Beyond 1e-6 rad the design is refused.
+
+    Looks at: the error of the driven angle over one lobe.
     """
     miss = abs(subject.pair.law.closure_error)
     if miss > limit:
@@ -50,7 +52,7 @@ def closure(subject: Subject, limit: float) -> Iterator[Remark]:
 def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large.
 
-    Looks at: smallest ratio, and largest as its inverse.
+    Looks at: the largest ratio and the inverse of the smallest, over their mean.
     """
     law = subject.pair.law
     (low_place, low), (high_place, high) = law.ratio_range
@@ -71,9 +73,9 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
 )
 def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn at knots where a derivative jumps that the limit wants continuous.
+    """Warn of a knot at which a derivative of the ratio jumps, up to the order of the limit.
 
-    Looks at: order to which the ratio is continuous at its knots.
+    Looks at: the order to which the ratio is continuous at its knots.
     """
     law = subject.pair.law
     for jump in law.jumps:
@@ -96,9 +98,10 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
     severity="note",
 )
 def concave(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Note a concave part, which a rack or hob cannot cut.
+    """Note a concave part of a centrode: no rack or hob can cut that wheel.
 
-    Looks at: concave parts of the centrodes; a ring is concave by nature.
+    Looks at: the radius of concave parts of the centrodes; not of a ring, which is concave by
+    nature.
     """
     for gear in subject.gears:
         cutter, (place, radius) = gear.toothing.cutter, gear.toothing.track.concave
@@ -120,9 +123,9 @@ def concave(subject: Subject, limit: float) -> Iterator[Remark]:
     unit="modules",
 )
 def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where a centrode bends so sharply that teeth have hardly a root.
+    """Warn where a centrode is curved so sharply that teeth have hardly any root.
 
-    Looks at: smallest convex radius of the centrodes.
+    Looks at: the smallest convex radius of the centrodes.
     """
     for gear in subject.gears:
         place, radius = gear.toothing.track.convex
@@ -138,9 +141,9 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
 
 @pair_check("concave-teeth", limit=_CUTTER_TEETH, unit="teeth")
 def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where teeth are wide for a concave part: tips crowd, and only a tiny cutter fits.
+    """Warn where the teeth are too wide for a concave part: only a tiny pinion cutter fits into it.
 
-    Looks at: teeth of the largest pinion cutter that fits into the concave parts.
+    Looks at: the teeth of the largest pinion cutter that fits into the concave parts.
     """
     for gear in subject.gears:
         count, (place, radius) = gear.toothing.cutter.teeth, gear.toothing.track.concave
@@ -179,9 +182,10 @@ def cutter_small(subject: Subject, limit: float) -> Iterator[Remark]:
     ),
 )
 def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where the tooth force pushes the shafts apart rather than turn the wheel.
+    """Warn where the tooth force pushes the shafts apart rather than turns the wheel.
 
-    Looks at: largest angle between the tooth force and the motion of the pitch point.
+    Looks at: the angle of the tooth force to the motion of the pitch point, driving forward and
+    backward.
     """
     found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
     if found:
@@ -208,17 +212,15 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     ),
 )
 def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where the ends of an open wheel nearly meet; those that meet are refused.
+    """Warn if the ends of an open wheel nearly meet; ends that meet are refused.
 
-    Looks at: angle left between the ends of an open wheel before its centrode comes round to
-    itself.
-
-    A centrode given by its radius over a rising angle crosses itself only beyond a full turn.
+    Looks at: what an open wheel leaves of a full turn.
     """
     for gear in subject.gears:
         track = gear.toothing.track
         if track.closed or track.slides:
             continue
+        # a centrode given by its radius over a rising angle crosses itself only beyond a full turn
         gap = 2.0 * math.pi - float(np.ptp(track.rotation(track.angle(gear.toothing.ends))))
         if gap < limit:
             yield Remark(
@@ -233,10 +235,10 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
 )
 def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of a motion that will shake: at steady speed the driven wheel's acceleration.
+    """Warn of a motion that shakes the machine although the driver turns steadily.
 
-    Looks at: largest angular acceleration of the driven wheel over the driver's speed
-    squared.
+    Looks at: `d(i21)/dphi1`: the acceleration of the driven wheel over the square of the driver's
+    speed.
     """
     places, values = subject.accelerations
     worst = int(np.argmax(np.abs(values)))
@@ -251,7 +253,7 @@ def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
 
 @pair_check("remote-cutter", unit="mm")
 def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn if the pinion cutter would cut a tooth far from the space it is in.
+    """Warn if the pinion cutter, standing in one tooth space, would cut a tooth farther away.
 
     Looks at: pinion cutter that reaches a remote part of its wheel.
     """

@@ -84,11 +84,14 @@ def _straight_depth(cutter: Cutter) -> float:
     return math.ceil(depth * math.pi / cutter.pitch * 1e4 - 0.5) / 1e4
 
 
-@pair_check("undercut", limit=CONTACT_RATIO, unit="teeth")
+@pair_check("undercut", limit=CONTACT_RATIO, severity=("warning", "error"), unit="teeth")
 def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of undercut teeth; an error where they no longer drive well enough.
+    """Warn of undercut flanks.
 
-    Looks at: flanks that turn back on themselves, and whether the pair still drives.
+    It is an error where flanks no longer touch in every phase, or the contact ratio that is left is
+    below the limit.
+
+    Looks at: flanks that turn back on themselves, and the contact ratio that they leave.
     """
     ratio = subject.contact_ratio
     driven = subject.driven
@@ -127,9 +130,9 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     unit="modules",
 )
 def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of thin or pointed teeth.
+    """Warn of teeth that are thin at their tips, or pointed.
 
-    Looks at: thickness of the teeth at their tips.
+    Looks at: the thickness of the teeth at their tips.
     """
     for gear in subject.gears:
         thickness = gear.profile.tip_thickness / subject.pair.module
@@ -150,9 +153,9 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
     unit="addenda",
 )
 def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Note flanks that stop well below the addendum curve.
+    """Note flanks that end well below the addendum curve: at a cusp, a point or the mate's reach.
 
-    Looks at: flanks that end before the addendum curve.
+    Looks at: the height at which flanks end.
     """
     for gear in subject.gears:
         height = gear.profile.tip_height / gear.toothing.cutter.addendum
@@ -169,12 +172,14 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
 @pair_check(
     "tips-collide",
     limit=("tip_pass", Param(LENGTH, ge=0, doc="least margin by which tips pass each other"), 0.0),
-    severity="error",
+    severity=("error", "warning"),
 )
 def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Report tips of an internal pair that collide outside the mesh; a warning where they pass.
+    """Report teeth of an internal pair whose tips collide outside the mesh.
 
-    Looks at: corners of wheel 1 on their way into the ring and out of it.
+    It is a warning where they pass each other by less than the limit.
+
+    Looks at: the tips of wheel 1 on their way into the ring and out of it.
     """
     found = subject.tip_pass
     if found is None or found.margin >= limit:
@@ -204,9 +209,9 @@ def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
     unit="modules",
 )
 def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of a rim below 1.2 tooth depths (2.7 modules for the common rack).
+    """Warn of a thin rim; the default limit is 1.2 depths of a standard tooth.
 
-    Looks at: rim between bore and root, or outside the roots of a ring.
+    Looks at: the metal between bore and root, or outside the roots of a ring.
     """
     least = limit * subject.pair.module
     for rim, gear in subject.rims:
@@ -238,7 +243,7 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
 def no_backlash(subject: Subject, limit: float) -> Iterator[Remark]:
     """Note that the wheels are made without backlash.
 
-    Looks at: backlash between the flanks.
+    Looks at: the backlash between flanks, that of `blank.clearance_mm` included.
     """
     if subject.backlash < limit * (1.0 - ROUNDING):
         yield Remark(

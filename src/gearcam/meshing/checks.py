@@ -57,9 +57,9 @@ def _at(meshing: Meshing, chosen: Mask) -> str:
 
 @check("interference", kind=KIND, severity="error", unit="mm")
 def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
-    """Report interference, as an error.
+    """Report outlines that overlap where they should not.
 
-    Looks at: overlap where none may be, or deeper than the overclosure.
+    Looks at: overlap away from the contact, or deeper than the overclosure explains.
     """
     hit = meshing.every("interferes").astype(bool)
     if not hit.any():
@@ -95,7 +95,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
 
 @check("edge-contact", kind=KIND, unit="phases")
 def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of edges that touch first.
+    """Warn of phases in which the end of a flank touches first and positions the driven wheel.
 
     Looks at: phases at which an edge touches before the flanks do.
     """
@@ -111,9 +111,9 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: A
 
 @check("fillet-interference", kind=KIND, unit="phases")
 def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of facing half-teeth that overlap although their flanks cannot.
+    """Warn of outlines that touch on a fillet or a tip.
 
-    Looks at: contact of the outlines where no active flanks predict it.
+    Looks at: contact of the outlines that the active flanks do not explain.
     """
     least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
     rows = meshing.columns
@@ -131,10 +131,9 @@ def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # 
 
 @check("tip-clearance", kind=KIND, limit=_CLEARANCE, unit="modules")
 def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Remark]:
-    """Warn of tips that nearly touch the mate's root.
+    """Warn of tips that come near to the mate's root.
 
-    Looks at: smallest distance of a tip's middle from the mate's root as it passes the pitch
-    point.
+    Looks at: smallest distance of a tip's middle from the mate's root as it passes the pitch point.
     """
     module = meshing.setup.pairs[DRIVE].pitch / math.pi
     for wheel, distances in enumerate(clearances(meshing), start=1):

@@ -55,14 +55,19 @@ def _repeats(pairs: FlankPairs) -> str:
     return ", in each lobe" if pairs.closed and pairs.even and pairs.track.periods > 1 else ""
 
 
-@check("contact-ratio", kind=(PAIR_KIND, KIND), limit=CONTACT_RATIO)
+@check(
+    "contact-ratio",
+    kind=(PAIR_KIND, KIND),
+    limit=CONTACT_RATIO,
+    severity=("warning", "error"),
+)
 def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
-    """Warn of a low contact ratio; below 1, or where no flanks touch, it is an error.
+    """Warn of a low contact ratio.
 
-    Looks at: smallest contact ratio of any flank, both sides; what drives where no flanks
-    touch.
+    It is an error below 1, or where no flanks touch. `gearcam mesh` checks the pair as mounted.
+    Equal values for both directions are reported once.
 
-    What is the same of both sides is said once, with the lower ratio.
+    Looks at: smallest contact ratio of any flank, both sides; what drives where no flanks touch.
     """
     told: dict[str, list[tuple[float, str]]] = {}
     for pairs in subject.sides:
@@ -97,7 +102,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
 
 @check("nothing-drives", kind=KIND, severity="error", unit="deg")
 def nothing_drives(subject: Sided, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Report the arcs on which neither flanks nor their ends touch, as errors.
+    """Report the arcs on which neither flanks nor their ends touch.
 
     Looks at: arcs of the driver's turn on which nothing touches.
     """

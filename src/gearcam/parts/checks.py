@@ -120,11 +120,13 @@ def _apart(one: Any, other: Any) -> float:
     return float(length(shortest_line(one, other)))
 
 
-@check("wide-kerf", kind=KIND, unit="mm")
+@check("wide-kerf", kind=KIND, severity=("warning", "error"), unit="mm")
 def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
-    """Warn of a kerf wider than an inner corner or a slot, an error where flanks stay uncut.
+    """Warn of a kerf that is wider than an inner corner or a slot, where metal is left.
 
-    Looks at: whether what the cutter burns away fits into every place of an outline.
+    It is an error where metal is left on flanks of teeth.
+
+    Looks at: the largest tool that reaches every place of an outline, against `output.kerf_mm`.
     """
     rows = zip(subject.names, subject.tools, subject.uncut, strict=True)
     for name, tools, uncut in rows:
@@ -148,9 +150,11 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
     severity="note",
 )
 def large_tool(subject: PartsSubject, limit: float) -> Iterator[Remark]:
-    """Warn that the tool at hand (a wire of 0.25 mm with its gap by default) is too large.
+    """Note that the tool or wire at hand is too large to reach every place of an outline.
 
-    Looks at: the largest round tool or wire that reaches every place of an outline.
+    The default limit is a wire of 0.25 mm with its gap.
+
+    Looks at: the diameter of the largest tool that reaches every place, and which place limits it.
     """
     for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
