@@ -143,3 +143,34 @@ def test_all_tables_of_one_name_in_single_brackets() -> None:
 def test_where_the_kind_is_missing_and_any_is_likely_only_that_is_told() -> None:
     (problem,) = problems("[blank]\ntip_rounding_mm = 0.3\n")
     assert (problem.key, problem.message) == ("kind", "is missing")
+
+
+def hints_of(text: str) -> dict[str, str]:
+    return {problem.key: problem.hint for problem in problems(text)}
+
+
+def test_a_misspelt_type_does_not_hide_the_other_keys_of_its_table() -> None:
+    law = PAIR.replace('"phases"', '"phase"').replace("knots_deg", "knot_deg")
+    assert hints_of(law) == {
+        "law.type": "did you mean phases?", "law.knot_deg": "did you mean knots_deg?"
+    }  # fmt: skip
+    cam = CAM.replace('"rise"', '"rize"').replace("lift_mm", "lift").replace('"disc"', '"disk"')
+    assert {key: hint[:21] for key, hint in hints_of(cam).items()} == {
+        "motion[0].type": "did you mean rise?",
+        "motion[0].lift": "did you mean lift_mm?",
+        "cam.form": "did you mean disc?",
+    }
+    curve = CAM.replace("cycloidal", "cycloidel", 1).replace("lift_mm", "lft_mm")
+    assert hints_of(curve) == {
+        "motion[0].law": "did you mean cycloidal?", "motion[0].lft_mm": "did you mean lift_mm?"
+    }  # fmt: skip
+    groove = CAM.replace('"disc"', '"grove"').replace("[cam]", "[cam]\ngroove_dept_mm = 4")
+    assert hints_of(groove)["cam.groove_dept_mm"] == "did you mean groove_depth_mm?"
+
+
+def test_where_no_type_is_like_it_the_hint_says_that_the_other_keys_wait() -> None:
+    waits = "the other keys of this table are checked once its type is known"
+    assert hints_of(PAIR.replace('"phases"', '"zzz"')) == {"law.type": waits}
+    assert hints_of(PAIR.replace('type = "phases"\n', "")) == {"law.type": waits}
+    assert hints_of(CAM.replace('"rise"', '"zzz"'))["motion[0].type"] == waits
+    assert "known" not in hints_of('kind = "gear-pair"\nname = "a"\n[law]\n')["law.type"]

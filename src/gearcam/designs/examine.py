@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any, Final
 
 from gearcam.designs.faults import (
+    MISSING,
     TOO_DEEP,
     Fault,
     is_deep,
@@ -214,7 +215,7 @@ def _examine_limits(document: Mapping[str, Any], kind: DesignKind, found: Examin
 
 def chosen(
     at: Path, raw: Mapping[str, Any], key: str, what: str, known: Mapping[str, Any], found: Examined
-) -> str:
+) -> tuple[str, bool]:
     """Return the word of a key that names an entry of a registry.
 
     Parameters
@@ -234,15 +235,20 @@ def chosen(
 
     Returns
     -------
-    str
-        Empty where there is none.
+    word : str
+        As in the registry; where the table has another one the nearest, by which its other keys can
+        be checked, or nothing.
+    right : bool
+        Whether the table has it.
     """
     word, rule = raw.get(key), quoted(known)
     if isinstance(word, str) and word in known:
-        return word
-    if key not in raw:
-        found.faults.append(Fault((*at, key), "is missing", allowed=rule))
-    else:
-        message, hint = f"{show(word)} is not {what}", did_you_mean(word, known)
-        found.faults.append(Fault((*at, key), message, word, rule, hint))
-    return ""
+        return word, True
+    near = nearest(word, known) if isinstance(word, str) else ""
+    message = f"{show(word)} is not {what}" if key in raw else "is missing"
+    hint = f"did you mean {near}?" if near else ""
+    if not near and len(raw) > 1:
+        hint = f"the other keys of this table are checked once its {key} is known"
+    value = word if key in raw else MISSING
+    found.faults.append(Fault((*at, key), message, value, rule, hint))
+    return near, False

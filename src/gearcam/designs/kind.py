@@ -38,6 +38,7 @@ from typing import Any, Final
 
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.lines import Path
+from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Key, Table
 from gearcam.findings import CHECKS
 
@@ -302,7 +303,7 @@ def made_of(
     here = [fault.path[depth:] for fault in faults]
     if any(len(path) == 1 and path[0] in known.entries for path in here):
         return None, []
-    wrong = {path[0] for path in here}
+    wrong = {path[0] for path in here} | misspelt(raw if faults else {}, known.entries)
     readable = {key: value for key, value in raw.items() if key in known.entries}
     try:
         made = make(**known.inward(readable))

@@ -15,6 +15,7 @@ from gearcam.designs.examine import chosen
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import Examined, made_of, told_faults
 from gearcam.designs.lines import Path
+from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of
 from gearcam.kinds.cam.forms.base import SLIDING, form_of
@@ -192,7 +193,7 @@ def _phase(
         rule = f"a table with type = {quoted(PHASES)}"
         found.faults.append(Fault(at, f"{show(raw)} is not a table", raw, rule))
         return None
-    name = chosen(at, raw, "type", "a phase", PHASES, found)
+    name, right = chosen(at, raw, "type", "a phase", PHASES, found)
     if not name:
         return None
     rest = {key: value for key, value in raw.items() if key != "type"}
@@ -202,7 +203,7 @@ def _phase(
     if name not in WITH_LAW:
         faults = list(faults_of(own, rest, home=home, at=at, listed=_told(own, oscillating)))
     else:
-        chose = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
+        chose, _ = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
         rest.pop("law", None)
         if not chose:  # whatever any law asks for may be meant
             rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
@@ -218,8 +219,9 @@ def _phase(
     other = list(_wrong_kind(own, rest, at, oscillating))
     own = own.of_lifts(oscillating=bool(oscillating))
     phase, own_problems = made_of(own, make, rest, faults, at)
-    found.faults += [*faults, *problems, *own_problems, *other]
-    return None if other or spans else phase
+    told = [*faults, *problems, *own_problems, *other]
+    found.faults += [one for one in told if right or one.path[len(at)] in raw]
+    return None if other or spans or not right else phase
 
 
 def _told(known: Table, oscillating: bool | None, *chosen: str) -> list[str]:
@@ -284,8 +286,9 @@ def _examine_program(
         elif phases[number] is not None:
             known = phase_table(raw[number]["type"]).of_cams(sliding=sliding)
             known = known.of_lifts(oscillating=oscillating)
-            at = (TITLE, number)
-            found.faults += told_faults([(name, None, message, rule)], known, raw[number], at)
+            faults = told_faults([(name, None, message, rule)], known, raw[number], (TITLE, number))
+            meant = misspelt(raw[number], known.entries)  # of these the unknown key is told
+            found.faults += [one for one in faults if one.path[2] not in meant]
 
 
 def motion_of(

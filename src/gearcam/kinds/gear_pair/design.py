@@ -135,12 +135,15 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
         else:
             found.faults.append(Fault(("law",), "the table [law] is missing", allowed=rule))
         return
-    law_type = chosen(("law",), raw, "type", "a law", LAWS, found)
+    law_type, right = chosen(("law",), raw, "type", "a law", LAWS, found)
     if not law_type:
         return
     known = law_table(law_type)
     rest = {key: value for key, value in raw.items() if key != "type"}
     faults = list(faults_of(known, rest, home=partial(home_of, KINDS[NAME])))
+    if not right:  # what is missing is told once the law is known
+        found.faults += [one for one in faults if one.path[1] in rest]
+        return
     law, problems = made_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
     found.faults += [*faults, *problems]
     if law is not None and not faults and not problems:

@@ -16,6 +16,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
 
 from gearcam.designs.faults import Fault, quoted, show
+from gearcam.designs.slips import nearest
 from gearcam.designs.table import Table, table_of
 from gearcam.facts import Fact
 from gearcam.laws.program import Program, make_program
@@ -166,10 +167,10 @@ FORMS: Registry[Form] = Registry(
 
 
 def form_of(document: Mapping[str, Any]) -> Form:
-    """Return the form that a `document` names; the disc where it names none that there is."""
+    """Return the form that a `document` names or nearly names, else the disc."""
     cam = document.get("cam")
     name = cam.get("form") if isinstance(cam, Mapping) else None
-    return FORMS[name if isinstance(name, str) and name in FORMS else "disc"]
+    return FORMS[(nearest(name, FORMS) if isinstance(name, str) else "") or "disc"]
 
 
 def form_keys(document: Mapping[str, Any], table: Table) -> list[str]:
