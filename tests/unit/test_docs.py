@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import re
 import shlex
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import gearcam
 from arch import rules
 from gearcam.cli import main
 
 PAGES = sorted((rules.ROOT / "docs").glob("*.md"))
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+SUMMARY = (rules.ROOT / "docs" / "summary.md").read_text("utf-8")
+NAMED = ("design", "files", "how", "solved", "stale", "timings_s", "versions")
+"""Keys of the summary whose entries are names, not keys."""
 SHOWN = [page for page in PAGES if "\n```console\n" in page.read_text("utf-8")]
 
 
@@ -78,3 +84,48 @@ def test_another_answer_is_seen(
     assert not like(shown, printed)
     assert like("a\n...\nbuilt in 0.2 s\n", "a\nb\nc\nbuilt in 1.31 s\n")
     assert not like("a\n...\nbuilt in 0.2 mm\n", "a\nb\nc\nbuilt in 1.31 mm\n")
+
+
+def keys(document: Any) -> Iterator[str]:
+    """Every key of a document, lists of entries included; walls have names, not keys."""
+    if isinstance(document, dict):
+        for key, value in document.items():
+            yield key
+            yield from keys(value) if key not in NAMED else ()
+    elif isinstance(document, list):
+        for value in document:
+            yield from keys(value)
+
+
+def unknown(summary: dict[str, Any], page: str) -> set[str]:
+    """Keys of a summary that a page does not name."""
+    names = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]+)`", page))))
+    walls = r"(?:inner|outer|lower|upper|relief|1|2)_"
+    parts = {*summary.get("solids", {}), *summary["accuracy"].get("dxf_mm", {})}
+    found = {re.sub(f"^{walls}", "", key) for key in keys(summary)} - parts
+    units = {key: re.sub(r"per_mm(\d?)$", r"per_rad\1", key) for key in found}
+    return {key for key, name in units.items() if not {key, name.replace("deg", "mm")} & names}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "shop_order", "stepped_ellipse", "ring_ellipse", "feeder", "nail_machine_two_phase",
+        "plate_cam_offset_roller", "measured_cam", "groove_cam", "conjugate_cams", "yoke_cam",
+        "translating_cam", "valve_lever", "undercut_cam",
+    ],
+)  # fmt: skip
+def test_every_key_of_the_summary_is_described(name: str, tmp_path: Path) -> None:
+    result = gearcam.build(gearcam.load(rules.ROOT / "profiles" / f"{name}.toml"))
+    files = ["dxf", "csv", "stl"] if name in {"ring_ellipse", "plate_cam_offset_roller"} else []
+    written = result.write(tmp_path, files=files)
+    assert unknown(written.summary, SUMMARY) == set()
+
+
+def test_every_key_of_studies_is_described(tmp_path: Path) -> None:
+    pair = gearcam.build(gearcam.load(rules.ROOT / "profiles" / "ellipse.toml"))
+    assert isinstance(pair, gearcam.GearPairResult)
+    assert unknown(pair.mesh(steps=24).write(tmp_path).summary, SUMMARY) == set()
+    columns = (tmp_path / "ellipse" / "meshing.csv").read_text("ascii").split("\n")[0].split(",")
+    assert [name for name in columns if f"`{name}`" not in SUMMARY] == []
+    assert unknown({"accuracy": {}, "new_key": 1}, SUMMARY) == {"new_key"}  # a control
