@@ -1,19 +1,21 @@
-# make demo    build the nail machine's gears into output/ (installs into .venv first)
-# make test    every test that is not slow (installs both extras, STEP files and charts, 440 MB, and
-#              on Debian, as root, the browser chromium)
-# make lint    style, types, import contracts
-# make slow    the slow tests    make bench   measure, and write benchmarks/results/performance.md
-# make needs   what each output computes and imports, into benchmarks/results/performance.md
-# make peers   compare flanks with those of another package
-# make growth   how time and memory grow with the size of designs; write benchmarks/results/growth.md
-# make accuracy  compare methods, error against run time, and write benchmarks/results/accuracy.md
-# make compare BASE=COMMIT [N=50] [SEED=1] [MORE=...]   what both make of N random designs of each
-#              kind and of the gallery; MORE goes to tools/compare.py, which tells of its options
-# make matrix  the tests with every supported Python found, and with the lowest and the newest versions
-# make notebooks   run the notebooks of docs/notebooks and store what they show
-# make lock    renew requirements.lock    make clean   remove environments, caches and output
+# make demo       build the gears of a nail machine into output/
+# make test       run the tests that are not slow
+# make slow       run the slow tests
+# make lint       check style, types and import contracts
+# make matrix     run the tests with each Python found, and with the lowest and newest packages
+# make notebooks  run the notebooks of docs/notebooks and store their output
+# make bench      measure run times; write benchmarks/results/performance.md
+# make needs      measure the cost of each kind of file; update performance.md
+# make growth     measure time and memory against the size of designs; write growth.md
+# make accuracy   measure error against run time of several methods; write accuracy.md
+# make peers      compare tooth flanks with those of another package
+# make compare    compare random designs with those of an older commit: BASE=COMMIT [N=50] [SEED=1]
+# make lock       renew requirements.lock
+# make clean      remove environments, caches and output
+# make help       list these targets
 #
-# Needs Python 3.11 or later and a network for the first call. `make PYTHON=/path/to/python demo` chooses one.
+# The first call needs a network and Python 3.11 or later; PYTHON=/path/to/python selects one.
+# `make test` installs about 440 MB, and chromium if it runs as root on Debian.
 
 SHELL  := /bin/sh
 VENV   := .venv
@@ -22,7 +24,7 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 DEMO   := profiles/nail_machine_two_phase.toml
 PYTHON ?=
 
-# Sections of the lock that an environment takes; `make matrix` takes others.
+# Sections of requirements.lock to install; `make matrix` sets others.
 RUN    := run install
 TEST   := $(RUN) step plot test
 
@@ -81,8 +83,8 @@ clean:
 	find src tests benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +
 	[ ! -d output ] || find output -mindepth 1 ! -name .gitkeep -delete
 
-# The stamps: a second call finds them fresh and needs neither pip nor network.
-# The candidates are run, not only looked up: a name on the path may be a shim for nothing.
+# Stamp files: a second call finds them up to date and needs neither pip nor network.
+# Each candidate is run, since a name on the path may be a shim without a Python.
 $(VENV)/.made:
 	@python=; \
 	for candidate in $(PYTHON) $(if $(PYTHON),,python3.13 python3.12 python3.11 python3 python); do \
@@ -99,7 +101,7 @@ $(VENV)/.made:
 	"$$python" -m venv --clear $(VENV)
 	@touch $@
 
-# Only what the lock holds, by its hashes; wheels only, since what builds them would not be locked.
+# Install locked packages by their hashes; wheels only, since build tools would not be locked.
 define locked
 	@awk -v wanted=" $(1) " '/^# for /{on = index(wanted, " " $$3 " ")} on' requirements.lock > $@.txt
 	$(PIP) install --only-binary :all: --require-hashes --requirement $@.txt

@@ -1,9 +1,9 @@
 """Flanks of ncgears and of gearcam, point by point: `make peers`.
 
-Closed laws ``phi2 = phi1 + harmonics`` that ncgears builds are built by both with the same rack;
-the vertices of its outlines lie on the flanks of ours, within a millionth of a module. Tips and
-roots are left out: they follow from the cutter, not from the law. Ends with 1 if one does not
-agree, if fewer than twenty were built by both, or if ncgears builds one that gearcam does not.
+Both programs build closed laws ``phi2 = phi1 + harmonics`` with the same rack. The vertices of the
+outlines of ncgears lie on the flanks of gearcam within a millionth of a module. Tips and roots are
+not compared: they depend on the cutter, not on the law. The exit code is 1 if a case does not
+agree, if both build fewer than twenty cases, or if ncgears builds one that gearcam does not.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ Array = NDArray[np.float64]
 Harmonics = tuple[tuple[int, float, float], ...]
 
 AGREE = 1e-6
-"""Largest distance, in modules."""
+"""Largest distance allowed, in modules."""
 
 CHORD = 1e-7
-"""Chord error of our outlines, in modules."""
+"""Chord error of the outlines of gearcam, in modules."""
 
 BAND = 0.75
-"""Height on both sides of the centrode, in modules, that is flank on every tooth here."""
+"""Distance from the centrode, in modules, within which all teeth have flanks."""
 
 EVERY = 7
-"""Only every so-manieth vertex is measured: some dozens are left on each flank."""
+"""Every seventh vertex is measured: some dozens on each flank."""
 
 FEWEST = 20
 
@@ -65,7 +65,7 @@ CASES: tuple[tuple[int, Harmonics], ...] = (
     (47, ((1, 0.0, 0.12), (2, 0.0, -0.02))),
     (80, ((1, 0.0, -0.25), (2, 0.0, 0.03))),
 )
-"""Tooth count and harmonics (k, of the cosine, of the sine) of phi2, rad."""
+"""Number of teeth and harmonics of phi2: (k, cosine and sine coefficients in rad)."""
 
 
 def law_of(harmonics: Harmonics) -> peers.Law:
@@ -90,7 +90,7 @@ def formula(harmonics: Harmonics) -> str:
 
 
 def farthest(points: Array, gear: Gear) -> float:
-    """Largest distance of the points near the centrode from our outline, mm."""
+    """Return the largest distance of points near the centrode from the outline of gearcam, mm."""
     centrode = shapely.LinearRing(gear.centrode(np.linspace(0.0, 2.0 * math.pi, 20001)[:-1]))
     outline = shapely.LinearRing(gear.outline)
     for ring in (centrode, outline):
@@ -101,7 +101,7 @@ def farthest(points: Array, gear: Gear) -> float:
 
 
 def ours(text: str, teeth: int) -> tuple[Gear, Gear]:
-    """Build both wheels at module 1 mm."""
+    """Return both wheels of gearcam with module 1 mm."""
     design = GearPairDesign(
         name="peer",
         law=Formula(phi2=text),
@@ -112,13 +112,13 @@ def ours(text: str, teeth: int) -> tuple[Gear, Gear]:
 
 
 def main() -> int:
-    """Compare all cases; print a line each."""
+    """Compare all cases and print a line for each."""
     agreed, bad = 0, 0
     for teeth, harmonics in CASES:
         text, start = formula(harmonics), time.perf_counter()
         made = peers.outlines(law_of(harmonics), 1.0, teeth)
         if isinstance(made, str):
-            print(f"z = {teeth:3d}  {text}: ncgears gives up: {made}", flush=True)
+            print(f"z = {teeth:3d}  {text}: ncgears fails: {made}", flush=True)
             continue
         try:
             gears = ours(text, teeth)
@@ -126,7 +126,7 @@ def main() -> int:
             print(f"z = {teeth:3d}  {text}: gearcam refuses: {error}", flush=True)
             bad += 1
             continue
-        # its drawings are mirrored: angles run clockwise there
+        # ncgears measures angles clockwise
         off = max(
             farthest(points * [1, -1], gear) for points, gear in zip(made, gears, strict=True)
         )

@@ -1,4 +1,4 @@
-"""How long things take over the commit before they were made faster, both measured here."""
+"""Run times relative to an older commit, both measured in the same run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 from compare_sides import tree_of
 
 BEFORE = "44f8390"
-"""The last commit before designs became files at once: what every ratio here is to."""
+"""The older commit to which all ratios refer."""
 
 CHILD = """
 import sys, tempfile, time
@@ -91,35 +91,35 @@ CASES = {
     "warm": ("(m) The nail machine's dxf, stl and csv in one process", 0.35, 9),
     "step": ("(n) STEP of the nail machine", 0.6, 5),
 }
-"""What is compared, the largest ratio asked, and how many samples."""
+"""Cases with title, largest ratio allowed, and number of samples."""
 OUTLINES_NOTE = """\
-the 41 000 points that both outlines ask their curves for take {:.3f} of the time before when they
-are asked for in one call a wheel, and the 46 calls that ask for them {:.3f} when they ask for eight
-points each; tips, corners, loops and the proof of one simple curve are the rest. Both wheels in one
-pass would save half of the calls and none of the points."""
+the 41 000 curve points of both outlines take {:.3f} of the earlier time if they are computed in one
+call per wheel, and the 46 calls that compute them {:.3f} with eight points each. The rest are tips,
+corners, loops and the test for self-intersections. Both wheels in one pass would save half of the
+calls and none of the points."""
 PROFILE_NOTE = """\
-a profile of 398 vertices is calls, not points: its 657 points in one call take {:.3f} of the time
-before, the five calls that ask for them {:.3f} when they ask for eight points each; the rest is
-calls as small, of the program, the extremes and the trimming."""
+the time of a profile of 398 vertices is that of calls, not of points: its 657 points in one call
+take {:.3f} of the earlier time, the five calls that compute them {:.3f} with eight points each. The
+rest are similar small calls for the motion, the extremes and the trimming."""
 CHECKS_NOTE = """\
-the dense points of both outlines, from which the largest tool is told and which files then take
-over, alone take {:.3f} of the time before."""
+the dense points of both outlines, which give the largest tool and are used again for files, alone
+take {:.3f} of the earlier time."""
 GIVEN_UP = {
     "outlines": (("outline points", "outline calls"), OUTLINES_NOTE),
     "profile": (("profile points", "profile calls"), PROFILE_NOTE),
     "checks": (("dense points",), CHECKS_NOTE),
 }
-"""What the given up targets are made of, and how that is told."""
+"""Parts of the cases that miss their target, and the text about them."""
 CAM = ROOT / "profiles" / "plate_cam_offset_roller.toml"
-NOTE = f"Processor time, of both sides in turns; before: commit {BEFORE}."
+NOTE = f"Processor time, both sides alternately; before: commit {BEFORE}."
 
 
 def against_before(fewer: int = 1) -> list[Result]:
-    """(i) to (o) What a stage takes over what it took before, each in the same run."""
+    """(i) to (o) Run times of stages relative to the older commit."""
     with ExitStack() as stack:
         before = stack.enter_context(tree_of(BEFORE))
         nail = Path(stack.enter_context(tempfile.TemporaryDirectory())) / NAIL.name
-        # the commit before knows no report
+        # the older commit has no report
         nail.write_text(NAIL.read_text(encoding="utf-8").replace(', "report"', ""), "utf-8")
         trees = {"before": before, "now": ROOT}
         sides = {name: stack.enter_context(_side(tree, nail)) for name, tree in trees.items()}
@@ -151,7 +151,7 @@ def _python(program: str, *words: str, **variables: str) -> subprocess.Popen[str
 
 
 def _in_turns(sides: dict[str, subprocess.Popen[str]], case: str, count: int) -> list[Timing]:
-    """Samples of a case from both sides, in turns; the first round does not count."""
+    """Return samples of a case from both sides, alternately; the first round is not counted."""
     samples: dict[str, list[float]] = {name: [] for name in sides}
     for _ in range(count + 1):
         for name, side in sides.items():
@@ -163,7 +163,7 @@ def _in_turns(sides: dict[str, subprocess.Popen[str]], case: str, count: int) ->
 
 
 def _cold(trees: dict[str, Path], nail: Path, tries: int) -> Result:
-    """The whole command in a process of its own."""
+    """Return the result for the whole command in a separate process."""
     with tempfile.TemporaryDirectory() as folder:
         words = ["build", str(nail), "--only", "dxf,stl,csv", "-o", folder]
         timings = commands(
@@ -173,7 +173,7 @@ def _cold(trees: dict[str, Path], nail: Path, tries: int) -> Result:
             },
             tries,
         )
-    note = f"Whole processes, in turns; before: commit {BEFORE}."
+    note = f"Whole processes, alternately; before: commit {BEFORE}."
     return _ratio("(o) The nail machine's dxf, stl and csv by the command", 0.55, timings, note)
 
 
@@ -183,7 +183,7 @@ def _ratio(
     before, now = timings
     ratio = now.over(before)
     return Result(
-        title=f"{title} against the commit before",
+        title=f"{title} against an older commit",
         asked=f"at most {asked:g} of its time",
         found=f"{ratio:.3f} of it",
         passed=ratio <= asked,
@@ -221,7 +221,7 @@ GROWTHS = {
 
 
 def large_growth(tries: int = 5) -> Result:
-    """(p) Outlines over teeth to 10 000, knots, rows of tables and harmonics."""
+    """(p) Outlines against numbers of teeth, knots, rows of tables and harmonics."""
     rows, slopes, worst = [], {}, 0.0
     for what, counts in GROWTHS.items():
         with ExitStack() as stack:
@@ -239,15 +239,15 @@ def large_growth(tries: int = 5) -> Result:
     listed = ", ".join(f"{what} n^{value:.2f}" for what, value in slopes.items())
     return Result(
         title="(p) To 10 000 teeth, 400 knots, 10 000 rows and 64 harmonics",
-        asked="time grows no worse than linearly (n^1.05 and 2.2 times, for the noise)",
-        found=f"{listed}; the last doubling takes {worst:.2f} times as long at most",
+        asked="time grows at most linearly (n^1.05 and 2.2 times, for noise)",
+        found=f"{listed}; the last doubling takes at most {worst:.2f} times as long",
         passed=max(slopes.values()) <= 1.05 and worst <= 2.2,
         body=[
-            "| what | median | samples |",
+            "| case | median | samples |",
             "|---|---|---|",
             *rows,
             "",
-            "Both outlines in processor time; 40 teeth of module 2 mm where not the teeth grow.",
+            "Processor time of both outlines; 40 teeth of module 2 mm except where teeth grow.",
         ],
     )
 
@@ -261,14 +261,14 @@ def _design(what: str, count: int) -> str:
             teeth, module = count, 20.0 / count
             law = 'type = "ellipse", eccentricity = 0.99'
         case "knots":
-            # so shallow that no arc between knots bends too much for the teeth
+            # so shallow that no arc between knots is too sharp for the teeth
             ratios = [1.0 + 1e-4 * wave for wave in waves]
             values = ", ".join(['"solve"' if k == 1 else f"{r}" for k, r in enumerate(ratios)])
             law = f'type = "phases", knots_deg = {angles}, ratios = [{values}]'
         case "rows":
             law = f'type = "table", phi1_deg = {angles}, ratio = {[1 + 0.3 * w for w in waves]}'
         case _:
-            # so small that the centrodes of all of them stay convex
+            # so small that all centrodes are convex
             cosines = [0.1 * math.sin(k) / k**3 for k in range(1, count + 1)]
             law = f'type = "fourier", cosines = {cosines}'
     return PAIR.format(law=law, teeth=teeth, module=module)

@@ -1,4 +1,4 @@
-"""The targets of cams, each measured in this run."""
+"""Targets of cams, measured in one run."""
 
 from __future__ import annotations
 
@@ -29,46 +29,46 @@ GROOVE = 'form = "groove", outer_diameter_mm = 110, thickness_mm = 20, groove_de
 RADIUS = 6.0
 ALLOWED = 1e-3
 NOTE = """\
-The cam is the reference cam with an offset roller. From a blank of 60 mm a roller of {segments}
-chords is taken away at {steps} even angles; both numbers are the smallest tried whose boundary,
-measured against a profile of 1 nm chords, is off by no more than 1 um: {error:.2f} um (gearcam's
-chords: {mine:.2f} um). One by one is what a boolean kernel is asked for by a loop over angles; one
-union of all rollers and one difference is the quickest way found: {union:.0f} times gearcam's
-time. Reading the design counts for no side."""
+The cam is the reference cam with an offset roller. From a blank of radius 60 mm a roller of
+{segments} chords is subtracted at {steps} even angles; both numbers are the smallest of those tried
+whose boundary deviates by at most 1 um from a profile with chords of 1 nm: {error:.2f} um
+(gearcam's chords: {mine:.2f} um). One difference for each angle is the obvious loop with a boolean
+kernel; one union of all rollers and one difference is the fastest way found: {union:.0f} times
+gearcam's time. No time includes reading the design."""
 
 
 def profile(design: Any) -> Any:
-    """The profile's polygon; nothing kept from an earlier call."""
+    """Return the polygon of the profile of a new result."""
     return gearcam.build(design).profile.vertices
 
 
 def walls(design: Any) -> Any:
-    """The polygons of all walls; nothing kept from an earlier call."""
+    """Return the polygons of all walls of a new result."""
     return [wall.contour.vertices for wall in gearcam.build(design).cam.walls]
 
 
 def groove_against_disc(tries: int = 25) -> Result:
-    """(r) Both walls of a groove against the disc cam of the same program."""
+    """(r) Both walls of a groove against the disc cam with the same motion."""
     disc = load(CAM.format(tolerance=ALLOWED))
     groove = load(CAM.format(tolerance=ALLOWED).replace("cam = {", "cam = { " + GROOVE))
     made = in_turns({"groove": lambda: walls(groove), "disc": lambda: walls(disc)}, tries)
     found = made[0].over(made[1])
     return Result(
-        title="(r) A groove against the disc cam of the same program",
+        title="(r) A groove against the disc cam with the same motion",
         asked="at most 2.2 times the time at 1 um",
         found=f"{found:.2f} times",
         passed=found <= 2.2,
-        body=[*table(made), "", "The walls of the reference cam as polygons, from its design."],
+        body=[*table(made), "", "The walls of the reference cam as polygons, from the design."],
     )
 
 
 def blank() -> Any:
-    """A disc that holds the cam."""
+    """Return a disc that contains the cam."""
     return shapely.Point(0.0, 0.0).buffer(60.0, quad_segs=180)
 
 
 def rollers(job: Any, steps: int, segments: int) -> Any:
-    """The roller at even angles, in the cam's frame."""
+    """Return the roller at even angles, in the frame of the cam."""
     theta = np.arange(steps) * (2.0 * math.pi / steps)
     centers = job.cam.curve.pitch(theta, job.program.derivatives(theta, 0)[0])
     made = shapely.points(centers.real, centers.imag)
@@ -76,12 +76,12 @@ def rollers(job: Any, steps: int, segments: int) -> Any:
 
 
 def united(job: Any, steps: int, segments: int) -> Any:
-    """One union of all rollers, one difference."""
+    """Return the cam by one union of all rollers and one difference."""
     return _cam(blank().difference(shapely.union_all(rollers(job, steps, segments))))
 
 
 def one_by_one(job: Any, steps: int, segments: int) -> Any:
-    """A difference for each roller."""
+    """Return the cam by a difference for each roller."""
     left = blank()
     for roller in rollers(job, steps, segments):
         left = left.difference(roller)
@@ -117,7 +117,7 @@ def against_subtraction(tries: int = 15) -> Result:
         asked="at least 150 times faster at an error of 1 um",
         found=f"{ratio:.0f} times; {union.median / mine.median:.0f} times one union of all rollers",
         passed=ratio >= 150,
-        given_up="what the profile's time is made of (k) tells.",
+        given_up="(k) shows where the time of the profile goes.",
         body=[
             *table([mine, loop, union]),
             "",
@@ -146,7 +146,7 @@ def cam_growth() -> Result:
     last = medians[-1] / medians[-2]
     return Result(
         title="(g) A cam from 1 um to 10 pm",
-        asked="time grows no worse than linearly in the number of points",
+        asked="time grows at most linearly in the number of points",
         found=f"time as n^{found:.2f}; the last {counts[-1] / counts[-2]:.2f} times the points "
         f"take {last:.2f} times as long",
         passed=found <= 1.0 and last <= 1.1 * counts[-1] / counts[-2],

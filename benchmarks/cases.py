@@ -1,4 +1,4 @@
-"""The four targets, each measured in this run."""
+"""Targets of gear pairs, measured in one run."""
 
 from __future__ import annotations
 
@@ -44,29 +44,29 @@ pair = {{ module_mm = 2, teeth = [{teeth}, {teeth}] }}
 output = {{ files = ["csv"], chord_tolerance_mm = {tolerance} }}
 """
 STARTS_NOTE = """\
-What ncgears says of the nail machine, with its first tooth at three places (its period must begin
-where the law is smooth, so not at a knot):"""
+Messages of ncgears for the nail machine, with the first tooth at three places (its period must
+begin where the law is smooth, not at a knot):"""
 PEER_NOTE = """\
-The even swing is the law phi2 = phi1 - 0.6 sin(phi1): the same swing of the ratio, 0.4 to 1.6,
-and no knots. ncgears makes {made}. Its chord tolerance is fixed, 0.123 um for this module; at that
+The sinusoidal law is phi2 = phi1 - 0.6 sin(phi1): the same range of the ratio, 0.4 to 1.6,
+without knots. ncgears makes {made}. Its chord tolerance is fixed, 0.123 um for this module; at that
 tolerance gearcam is {same:.0f} times faster. Both make {teeth} teeth with the rack of 20 degrees,
-addendum 1, dedendum 1.25, tip radius 0.38. Reading the design counts for gearcam on the nail
-machine; sampling the law never counts for ncgears."""
+addendum 1, dedendum 1.25, tip radius 0.38. The time of gearcam includes reading
+the design of the nail machine; that of ncgears excludes sampling the law."""
 SWEEP_NOTE = """\
 Ellipse of eccentricity 0.3, module 2 mm, 40 teeth. With {steps} positions a turn the sweep's flank
 error, measured on one space of either wheel, is {error:.1f} nm. Each wheel is one union of the
-rack's teeth wherever they reach it, and one difference; everything from the law to the outline
-counts for both sides."""
+rack's teeth in all positions that reach it, and one difference. Both times include everything
+from the law to the outline."""
 GROWTH_NOTE = """\
 Both outlines of ellipses of eccentricity 0.3 and module 2 mm at 1 um. Exponents by least squares
-over all; the last doubling may cost 10 % more than twice, for the noise."""
+over all sizes; the last doubling may take 10 % more than twice the time, for noise."""
 OVERLAP_NOTE = """\
-Driver 0.005 degrees ahead; gearcam in blocks of phases, as in the study. The whole outlines are
-turned and intersected by shapely at every phase, which gives one number; gearcam's rows say the
-tooth pair, length and place of every piece. Both give the same area. The target was 20 times, while
-facing halves were overlapped as graphs of their edges. That saved a tenth of a study and took 480
-lines beside the polygons, which were needed anyway: what is asked for since is what the polygons
-alone do. How many times faster: {listed}."""
+The driver is 0.005 degrees ahead; gearcam computes blocks of phases, as in the study. Shapely
+rotates and intersects the whole outlines at every phase, which gives one number; gearcam gives
+tooth pair, length and place of every overlap. Both give the same area. An earlier target of 20
+times assumed overlaps computed from graphs of edges. They saved a tenth of a study and took 480
+lines in addition to the polygons, which are needed anyway: the present target holds for polygons.
+Times faster: {listed}."""
 CHILD = """
 import json, resource, statistics, sys, time, tracemalloc
 import gearcam
@@ -89,7 +89,7 @@ print(json.dumps({"samples": samples, "peak": tracemalloc.get_traced_memory()[1]
 
 
 def load(text: str) -> Any:
-    """Load a design that is given as text."""
+    """Return the design of a text."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "design.toml"
         path.write_text(text, encoding="utf-8")
@@ -97,13 +97,13 @@ def load(text: str) -> Any:
 
 
 def outlines(design: Any) -> tuple[Any, Any]:
-    """Both outlines with every trimming and check of validity that they take; nothing kept."""
+    """Return both outlines of a new result, trimmed and validated."""
     job = gearcam.build(design)
     return job.gear1.outline, job.gear2.outline
 
 
 def alone(design: Any) -> Timing:
-    """As many points of both curves as the outlines ask for, in one call a wheel."""
+    """Time the points of both curves that the outlines use, in one call per wheel."""
     original, asked = Toothing.frames, []
 
     def counted(toothing: Toothing, phi: Any, **options: Any) -> Any:
@@ -122,38 +122,38 @@ def alone(design: Any) -> Timing:
 
 
 def against_ncgears(tries: int = 3) -> Result:
-    """(a) Both outlines of the nail machine at 1 um against ncgears, in the same run."""
+    """(a) Both outlines of the nail machine at 1 um against ncgears."""
     mine = measure("gearcam, nail machine, 1 um", lambda: outlines(gearcam.load(NAIL)), 15)
     nail = [peers.attempt(peers.nail_machine(start), MODULE, TEETH) for start in _starts()]
     built = [run for run in nail if run.built]
     coarse, fine = (load(SMOOTH.format(tolerance=value)) for value in ("0.001", "0.000123"))
     smooth = [
-        measure(f"gearcam, even swing, {name}", lambda d=design: outlines(d), 15)
+        measure(f"gearcam, sinusoidal law, {name}", lambda d=design: outlines(d), 15)
         for name, design in (("1 um", coarse), ("0.123 um", fine))
     ]
     even = [peers.attempt(peers.even_swing(), MODULE, TEETH) for _ in range(tries)]
     theirs = [
         Timing(
-            f"ncgears, nail machine, {'built' if built else 'until it gives up'}",
+            f"ncgears, nail machine, {'built' if built else 'until it fails'}",
             tuple(run.seconds for run in built or nail),
         ),
-        Timing("ncgears, even swing", tuple(run.seconds for run in even)),
+        Timing("ncgears, sinusoidal law", tuple(run.seconds for run in even)),
     ]
     first = theirs[0].median / mine.median
     second, same = (theirs[1].median / timing.median for timing in smooth)
     verdict = (
         f"{first:.0f} times on the nail machine"
         if built
-        else f"ncgears does not build the nail machine (it gives up after {first:.0f} times "
+        else f"ncgears does not build the nail machine (it fails after {first:.0f} times "
         "gearcam's time)"
     )
     return Result(
         title="(a) Both outlines of the nail machine against ncgears",
-        asked="at least 500 times faster on the even swing",
+        asked="at least 500 times faster on the sinusoidal law",
         found=f"{verdict}; {second:.0f} times on a law that both build",
         passed=second >= 500 and even[0].built,
         given_up=f"curve points alone would be {theirs[1].median / alone(coarse).median:.0f} "
-        "times (in one call a wheel); what the rest is (j) tells.",
+        "times faster (in one call per wheel); (j) shows the rest.",
         body=[
             *table([mine, theirs[0], *smooth, theirs[1]]),
             "",
@@ -188,7 +188,7 @@ def against_sweep(allowed: float = 1e-5, tries: int = 3) -> Result:
         found=f"{ratio:.0f} times",
         passed=ratio >= 150,
         given_up=f"curve points alone would be {theirs.median / alone(design).median:.0f} times "
-        "(in one call a wheel); what the rest is (j) tells.",
+        "faster (in one call per wheel); (j) shows the rest.",
         body=[
             *table([mine, theirs]),
             "",
@@ -217,14 +217,14 @@ class Sweeper:
         return max(errors)
 
     def both(self, steps: int) -> list[Any]:
-        """Both wheels, from the law to the outline."""
+        """Return both wheels, from the law to the outline."""
         return [
             sweep.whole_wheel(self.rolling, wheel, 40, self.basic, steps, 120) for wheel in (1, 2)
         ]
 
 
 def whole_process(tries: int = 9) -> Result:
-    """(c) The whole command against a bare start of the libraries that it cannot do without."""
+    """(c) The whole command against importing numpy and shapely."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "gearcam", "build", str(NAIL), "--only", "csv"]
         timings = commands(
@@ -242,17 +242,17 @@ def whole_process(tries: int = 9) -> Result:
     ratio = timings[0].over(timings[1])
     return Result(
         title="(c) The whole process",
-        asked='at most 2.4 times a bare `python -c "import numpy, shapely"`',
+        asked='at most 2.4 times `python -c "import numpy, shapely"`',
         found=f"{ratio:.2f} times",
         passed=ratio <= 2.4,
         body=table(timings),
-        given_up=f"a process that imports what this build imports, and then computes and writes "
-        f"nothing, takes {timings[2].over(timings[1]):.2f} times.",
+        given_up=f"a process that imports the same modules, and computes and writes nothing, "
+        f"takes {timings[2].over(timings[1]):.2f} times as long.",
     )
 
 
 def _imports_of(command: list[str], folder: str) -> str:
-    """Return a program that imports what a command does."""
+    """Return a program with the imports of a command."""
     ending = "print(*(name for name in sys.modules if name.startswith('gearcam')), sep=', ')"
     called = f"import sys; from gearcam.cli import main; main({[*command[3:], '-o', folder]})"
     done = subprocess.run(
@@ -262,7 +262,7 @@ def _imports_of(command: list[str], folder: str) -> str:
 
 
 def growth() -> Result:
-    """(d) Time and peak memory from 20 to 640 teeth, each in a process of its own."""
+    """(d) Time and peak memory from 20 to 640 teeth, each in a separate process."""
     counts = [20, 40, 80, 160, 320, 640]
     rows, medians, peaks = [], [], []
     with tempfile.TemporaryDirectory() as folder:
@@ -281,7 +281,7 @@ def growth() -> Result:
     last = [values[-1] / values[-2] for values in (medians, peaks)]
     return Result(
         title="(d) From 20 to 640 teeth",
-        asked="time and memory grow no worse than linearly",
+        asked="time and memory grow at most linearly",
         found=f"time as z^{slopes[0]:.2f}, peak memory as z^{slopes[1]:.2f}; from 320 to 640 teeth "
         f"{last[0]:.2f} and {last[1]:.2f} times",
         passed=max(slopes) <= 1.0 and max(last) <= 2.2,
@@ -330,22 +330,22 @@ def against_whole_outlines(tries: int = 7) -> Result:
     return Result(
         title="(e) Overlap of 360 phases against whole outlines",
         asked="at least 5 times faster at 1 um; linear in steps",
-        found=f"{ratio:.1f} times on the nail machine; 4 times the steps take "
-        f"{max(linear.values()):.1f} times as long at most",
+        found=f"{ratio:.1f} times on the nail machine; 4 times the steps take at most "
+        f"{max(linear.values()):.1f} times as long",
         passed=ratio >= 5 and max(linear.values()) <= 4.8,
         body=[*table(rows), "", OVERLAP_NOTE.format(listed=listed)],
     )
 
 
 def _by_blocks(turning: Turning, phases: Any, overclosure: float) -> list[Any]:
-    """Overlaps as the study asks for them."""
+    """Return overlaps in blocks, as the study computes them."""
     return [turning.overlaps(part, overclosure) for part in np.split(phases, len(phases) // BLOCK)]
 
 
 def _whole(
     outlines: tuple[Any, Any], turning: Turning, phases: Any, overclosure: float
 ) -> list[float]:
-    """Areas of the whole outlines' intersections."""
+    """Return the areas of the intersections of the whole outlines."""
     areas = []
     for phi in phases:
         turned = (
@@ -358,5 +358,5 @@ def _whole(
 
 
 def slope(counts: list[int], values: list[float]) -> float:
-    """Exponent of growth by least squares."""
+    """Return the exponent of growth by least squares."""
     return float(np.polyfit(np.log(counts), np.log(values), 1)[0])

@@ -1,6 +1,6 @@
 """Measure how time and memory grow with the size of designs; write benchmarks/results/growth.md.
 
-Words as arguments choose the series whose names hold one of them; then nothing is written.
+Arguments select the series whose names contain one of the words; then no page is written.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ from measuring import ROOT, environment, show
 PAGE = ROOT / "benchmarks" / "results" / "growth.md"
 HEAD = """# Growth
 
-Written by `make growth`: processor time and peak memory of one build, of short ones the better of
-two, each series in a process of its own, where a system can be asked for it on one processor:
-threads that wait take time of theirs. `build` is everything from reading to checks and facts; each
-kind of file and the meshing study of 120 steps are what they take beyond it. Exponents are those of
-the time by least squares, of its last step, mostly a decade, and of the memory by its last step. A
-cost that does not grow by a tenth of a second is not judged.
+Written by `make growth`: processor time and peak memory of one build; short builds are measured
+twice, and the faster one counts. Each series runs in a separate process, on one processor if the
+system allows it. `build` is everything from reading to checks and facts; each kind of file
+and the meshing study of 120 steps are additional costs. The first exponent of n fits the time by
+least squares; the others are those of time and memory from the last size but one, mostly a decade.
+Only costs that grow by at least 0.1 s are judged.
 """
 SLOPE, LAST, SEEN = 1.1, 1.2, 0.1
-"""Largest exponents over all and of the last step, and growth in s that is judged."""
+"""Largest exponents overall and of the last step, and least growth in s that is judged."""
 
 AGAIN = 2.0
-"""Seconds below which it is measured twice."""
+"""Time below which a build is measured twice, s."""
 
 
 @dataclass
 class Row:
-    """What one thing costs over sizes: the memory of the last two."""
+    """The cost of a stage against size; `bytes` for the last two sizes."""
 
     name: str
     stage: str
@@ -52,7 +52,7 @@ class Row:
 
     @property
     def slopes(self) -> tuple[float, float, float]:
-        """Exponents: of time over all, of its last step, of the memory's."""
+        """Exponents of the time overall, of its last step, and of the memory."""
         x = np.log(self.sizes)
         time, memory = np.log(np.maximum(self.seconds, 1e-6)), np.log(np.maximum(self.bytes, 1.0))
         step = x[-1] - x[-2]
@@ -61,24 +61,24 @@ class Row:
 
     @property
     def passed(self) -> bool:
-        """Whether it grows no worse than linearly."""
+        """Whether it grows at most linearly."""
         whole, last, _ = self.slopes
         grown = self.seconds[-1] - self.seconds[0] > SEEN
         return not grown or (whole <= SLOPE and last <= LAST)
 
     @property
     def given_up(self) -> str:
-        """Why it grows faster, where that is known."""
+        """The reason for faster growth, if known."""
         return next((why for names, why in growth_cases.GIVEN_UP.items() if self.fits(names)), "")
 
     def fits(self, names: tuple[str, str]) -> bool:
-        """Whether it is what a reason is given for: words of the series, and a stage."""
+        """Return whether a word occurs in the name of the series, and the stage is this one."""
         return names[0] in self.name and names[1] == self.stage
 
     def line(self) -> str:
-        """One row of the table."""
+        """Return a row of the table."""
         whole, last, memory = self.slopes
-        verdict = "" if self.passed else "given up" if self.given_up else "**fail**"
+        verdict = "" if self.passed else "not met" if self.given_up else "**fail**"
         low, high = (f"{size:g}" for size in (self.sizes[0], self.sizes[-1]))
         return (
             f"| {self.name} | {self.stage} | {low} to {high} | {show(self.seconds[0])} "
@@ -88,7 +88,7 @@ class Row:
 
 
 def once(text: str, stages: dict[str, Callable[[Any], object]], traced: bool) -> tuple[Any, Any]:
-    """The result, and what each stage costs: seconds, or bytes if traced."""
+    """Return the result and the cost of each stage: seconds, or bytes if traced."""
     costs: dict[str, float] = {}
     job: Any = None
     for name, stage in {"build": growth_cases.build, **stages}.items():
@@ -107,19 +107,19 @@ def once(text: str, stages: dict[str, Callable[[Any], object]], traced: bool) ->
 
 
 def alone(number: int) -> list[Row]:
-    """The rows of a series, measured in a new process."""
+    """Return the rows of a series, measured in a new process."""
     with ProcessPoolExecutor(1, get_context("spawn")) as process:
         return process.submit(measured, number).result()
 
 
 def measured(number: int) -> list[Row]:
-    """The rows of a series, measured here."""
+    """Return the rows of a series, measured in this process."""
     keep_freed_memory()  # as the command line does
     series = growth_cases.all_series()[number]
     sizes: list[float] = []
     seconds: list[dict[str, float]] = []
     peaks: list[dict[str, float]] = []
-    once(series.text(series.sizes[0]), series.stages, traced=False)  # loads what it needs
+    once(series.text(series.sizes[0]), series.stages, traced=False)  # imports the modules
     for size in series.sizes:
         text = series.text(size)
         job, costs = once(text, series.stages, traced=False)
@@ -137,7 +137,7 @@ def measured(number: int) -> list[Row]:
 
 
 def page(rows: list[Row], missing: int) -> str:
-    """The page as text, and how many series are still missing."""
+    """Return the page as text; `missing` is the number of series not yet measured."""
     stopped = f"The run was stopped before {missing} more series.\n"
     lines = [
         HEAD,
@@ -145,7 +145,7 @@ def page(rows: list[Row], missing: int) -> str:
         *environment(("gearcam", "numpy", "shapely")),
         "",
     ]
-    lines += ["| what grows | cost of | size | least | most | n^ | last n^ | memory | last n^ | |"]
+    lines += ["| what grows | cost of | size | first | last | n^ | last n^ | memory | last n^ | |"]
     lines += ["|---|---|---|---|---|---|---|---|---|---|", *(row.line() for row in rows), ""]
     for row in rows:
         if not row.passed and row.given_up:
@@ -154,8 +154,8 @@ def page(rows: list[Row], missing: int) -> str:
 
 
 def main() -> int:
-    """Measure all series, or those whose names hold a word."""
-    if sys.platform == "linux":  # processes it starts take it over, and load numpy only then
+    """Measure all series, or those selected by the arguments."""
+    if sys.platform == "linux":  # inherited by child processes, before they import numpy
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     words, rows, every = sys.argv[1:], [], growth_cases.all_series()
     for number, series in enumerate(every):

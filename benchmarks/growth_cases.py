@@ -1,4 +1,4 @@
-"""Designs of any size: what grows is teeth, points, knots, rows, harmonics or steps."""
+"""Designs of any size: the number of teeth, points, knots, rows, harmonics or steps grows."""
 
 from __future__ import annotations
 
@@ -42,13 +42,13 @@ LAWS: Final = {
     "log-spiral": "ratios = [0.5, 2], driven_travel_deg = 200",
     "rack": 'r1 = "1 + 0.2*cos(2*phi1)"',
 }
-"""A law of every kind but the table."""
+"""All laws except the table."""
 
 HARD: Final = {
     "ellipse of 0.99": 'type = "ellipse", eccentricity = 0.99',
     "swing of 0.9": 'type = "formula", phi2 = "phi1 - 0.9*sin(phi1)"',
 }
-"""Laws that are as uneven as they may be."""
+"""Laws with the most uneven ratios."""
 
 DISC: Final = "prime_radius_mm = 60"
 FLAT: Final = "base_radius_mm = 60"
@@ -72,40 +72,40 @@ FOLLOWERS: Final = {
     "yoke of rollers": (ROLLER, DISC + ', form = "yoke"'),
     "translating": (ROLLER, 'form = "translating", thickness_mm = 12'),
 }
-"""Every form of cams and every follower."""
+"""All forms of cams and all followers."""
 
 
 def pair(
     teeth: int, law: str, *, tolerance: float = 1e-3, module: float = 2.0, more: str = ""
 ) -> str:
-    """A pair, ten times as large with ten times the teeth."""
+    """Return a pair; its size is proportional to the number of teeth."""
     z2 = 2 * teeth if "internal" in more else teeth
     return PAIR.format(law=law, module=module, z1=teeth, z2=z2, more=more, tolerance=tolerance)
 
 
 def of_type(name: str) -> str:
-    """The keys of a law of `LAWS`."""
+    """Return the keys of a law of `LAWS`."""
     return f'type = "{name}", {LAWS[name]}'.rstrip(", ")
 
 
 def even(count: int, end: float = 360.0) -> list[float]:
-    """Angles from 0 to the end, deg."""
+    """Return angles from 0 to the end, deg."""
     return [end * k / (count - 1) for k in range(count)]
 
 
 def waves(angles: list[float]) -> list[float]:
-    """Their cosines, the last exactly as the first."""
+    """Return their cosines; the last equals the first."""
     return [round(math.cos(math.radians(angle)), 12) for angle in angles]
 
 
 def ratio_rows(count: int) -> str:
-    """Rows of the ratio of a smooth law."""
+    """Return rows of the ratio of a smooth law."""
     angles = even(count)
     return f'type = "table", phi1_deg = {angles}, ratio = {[1 + 0.3 * w for w in waves(angles)]}'
 
 
 def angle_rows(count: int) -> str:
-    """Rows of the driven angle."""
+    """Return rows of the driven angle."""
     angles = even(count)
     driven = [angle - 10.0 * math.sin(math.radians(angle)) for angle in angles]
     driven[-1] = 360.0
@@ -113,7 +113,7 @@ def angle_rows(count: int) -> str:
 
 
 def knots(count: int) -> str:
-    """Knots of a law of phases, so shallow that no arc between them bends too much for teeth."""
+    """Return knots of phases, so shallow that no arc between them is too sharp for teeth."""
     angles = even(count)
     ratios = [1.0 + 1e-4 * wave for wave in waves(angles)]
     values = ", ".join('"solve"' if k == 1 else f"{r}" for k, r in enumerate(ratios))
@@ -121,7 +121,7 @@ def knots(count: int) -> str:
 
 
 def speeds(count: int) -> str:
-    """Constant ratios with transitions between them."""
+    """Return constant ratios with transitions between them."""
     ratios = ", ".join('"solve"' if k == 1 else f"{1.0 + 1e-4 * (k % 2)}" for k in range(count))
     span = 180.0 / count
     return (
@@ -131,13 +131,13 @@ def speeds(count: int) -> str:
 
 
 def splines(count: int) -> str:
-    """Control radii."""
+    """Return control radii."""
     radii = [1.0 + 0.1 * math.cos(2.0 * math.pi * k / count) for k in range(count)]
     return f'type = "bspline", radii = {radii}'
 
 
 def fourier(count: int, of: str = "ratio") -> str:
-    """Harmonics so small that the centrodes of all of them stay convex."""
+    """Return harmonics so small that all centrodes are convex."""
     scale = 1.0 if of == "ratio" else 10.0
     cosines = [0.1 * scale * math.sin(k) / k**3 for k in range(1, count + 1)]
     if of == "phi2":
@@ -146,13 +146,13 @@ def fourier(count: int, of: str = "ratio") -> str:
 
 
 def terms(count: int, of: str) -> str:
-    """A formula with as many harmonics."""
+    """Return a formula with `count` harmonics."""
     told = " + ".join(f"{0.1 * math.sin(k) / k**3:.12f}*cos({k}*phi1)" for k in range(1, count + 1))
     return f'type = "formula", {of} = "1 + {told}"'
 
 
 def phases(count: int, lift: str, span: str) -> str:
-    """Rises and returns in turn."""
+    """Return alternating rises and returns."""
     count += count % 2
     rows = [
         f'{{ type = "{word}", law = "cycloidal", {span} = {360.0 / count!r}, {rest} }}'
@@ -162,7 +162,7 @@ def phases(count: int, lift: str, span: str) -> str:
 
 
 def program(follower: str, cam: str) -> str:
-    """The motion of the reference cam in the words of a follower and a form."""
+    """Return the motion of the reference cam with the keys for a follower and a form."""
     lift = "lift_deg = 5" if "oscillating" in follower else "lift_mm = 10"
     if "yoke" in cam:
         return (
@@ -180,7 +180,7 @@ def program(follower: str, cam: str) -> str:
 
 
 def cam(name: str, tolerance: float = 1e-3, motion: str = "", output: str = "") -> str:
-    """A cam for a follower of `FOLLOWERS`."""
+    """Return a cam for a follower of `FOLLOWERS`."""
     follower, form = FOLLOWERS[name]
     return CAM.format(
         follower=follower,
@@ -193,7 +193,7 @@ def cam(name: str, tolerance: float = 1e-3, motion: str = "", output: str = "") 
 
 
 def lift_rows(count: int, smoothing: str = "") -> str:
-    """Rows of a lift, the last left out, with a tenth of the tolerance as noise if smoothed."""
+    """Return rows of a lift without the last one, with noise if they are smoothed."""
     angles = [360.0 * k / count for k in range(count)]
     noise = 1e-3 if smoothing else 0.0
     lifts = [5.0 - 5.0 * math.cos(math.radians(a)) + noise * math.sin(1e4 * a * a) for a in angles]
@@ -201,26 +201,26 @@ def lift_rows(count: int, smoothing: str = "") -> str:
 
 
 def lift_terms(count: int) -> str:
-    """A lift by harmonics."""
+    """Return a lift as a sum of harmonics."""
     told = " + ".join(f"{2.0 / k**4:.12f}*(1 - cos({k}*theta))" for k in range(1, count + 1))
     return f'[motion]\nlift = "{told}"'
 
 
 def build(job: Any) -> None:
-    """Everything of a build but its files."""
+    """Compute everything of a build except its files."""
     points(job)
     _ = job.findings, job.facts
 
 
 def points(job: Any) -> int:
-    """Vertices of all outlines."""
+    """Return the number of vertices of all outlines."""
     if hasattr(job, "gears"):
         return sum(len(gear.outline) for gear in job.gears)
     return sum(len(contour.vertices) for contour in job.contours)
 
 
 def files(*kinds: str) -> dict[str, Callable[[Any], object]]:
-    """The stages that make kinds of files."""
+    """Return stages that make kinds of files."""
     return {kind: partial(_files, kind) for kind in kinds}
 
 
@@ -234,7 +234,7 @@ def _mesh(job: Any) -> object:
 
 @dataclass(frozen=True)
 class Series:
-    """Designs of rising sizes, and what of each is measured beside its build."""
+    """Designs of increasing sizes, and the stages measured in addition to the build."""
 
     name: str
     sizes: tuple[float, ...]
@@ -258,20 +258,20 @@ MESH: Final = {"mesh": _mesh}
 RING: Final = ', type = "internal"'
 TOOL: Final = ", tool_radius_mm = 5"
 MANY: Final = (
-    "every term is evaluated at every place, and places are looked at between all extremes, of "
-    "which there are as many as terms; formulas end at 2000 characters."
+    "every term is evaluated at every place, and the number of places grows with the number of "
+    "extremes, which grows with the number of terms; formulas have at most 2000 characters."
 )
 GIVEN_UP: Final = {
-    ("step of", "step"): "the checks and the translation of the solid modeller grow so.",
+    ("step of", "step"): "the checks and the translation of the solid modeller grow in this way.",
     ("harmonics of a formula", "build"): MANY,
-    ("files of conjugate", "cut-svg"): "parts are laid side by side by the distance of their "
-    "hulls, which is sought between all sides of both.",
+    ("files of conjugate", "cut-svg"): "parts are placed side by side by the distance of their "
+    "hulls, which is computed between all sides of both.",
 }
-"""Why what grows faster does so, by words of the series and the stage."""
+"""Reasons for faster growth, by a word in the name of the series and the stage."""
 
 
 def all_series() -> list[Series]:
-    """Every series that is measured."""
+    """Return all series."""
     return [*_of_pairs(), *_of_cams(), *_of_files()]
 
 

@@ -1,4 +1,4 @@
-"""Meshing studies of every kind of law against the ellipse's."""
+"""Meshing studies of all laws against that of the ellipse."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ LAWS = {
 }
 ROWS = 361
 NOTE = """\
-360 steps over a turn, 40 : 40 teeth, module 2 mm; the wheels are made before, the numbers of the
-summary count. The laws take turns with the ellipse. The table has 361 rows of the ellipse's ratio.
-The spiral, an open pair, and the rack have no ellipse to be compared with. How many times the
-ellipse's time: {listed}."""
+360 steps over a turn, 40 : 40 teeth, module 2 mm. The times include the numbers of the summary, not
+the wheels, which exist before. All laws alternate with the ellipse. The table has 361 rows of the
+ellipse's ratio. The spiral, an open pair, and the rack are not comparable. Times relative to the
+ellipse: {listed}."""
 
 
 def against_ellipse(tries: int = 5) -> Result:
-    """(h) The study of every closed law against the ellipse's, with the same steps and teeth."""
+    """(h) The study of every closed law against that of the ellipse."""
     laws = {name: f'type = "{name}", {rest}'.rstrip(", ") for name, rest in LAWS.items()}
     laws[f"table of {ROWS} rows"] = _table(0.3)
     timings = in_turns({name: _study(law) for name, law in laws.items()}, tries)
@@ -54,9 +54,9 @@ def against_ellipse(tries: int = 5) -> Result:
     ratios = {timing.name: timing.median / own for timing in timings}
     slowest = max(ratios, key=lambda name: ratios[name])
     return Result(
-        title="(h) Meshing studies of every law against the ellipse's",
+        title="(h) Meshing studies of all laws against that of the ellipse",
         asked="no law takes more than twice the ellipse's time",
-        found=f"{ratios[slowest]:.2f} times at most, {slowest}",
+        found=f"at most {ratios[slowest]:.2f} times, {slowest}",
         passed=ratios[slowest] <= 2.0,
         body=[
             *table(timings),
@@ -77,7 +77,7 @@ def _numbers(gears: Any, spec: Any) -> object:
 
 
 def _table(e: float) -> str:
-    """Even rows of ``i = (1 - e^2)/(1 + e^2 + 2*e*cos(phi1))``, an ellipse about its focus."""
+    """Return even rows of ``i = (1 - e^2)/(1 + e^2 + 2*e*cos(phi1))``, an ellipse."""
     angles = np.linspace(0.0, 360.0, ROWS)
     waves = np.cos(np.radians(angles))
     ratios = (1.0 - e * e) / (1.0 + e * e + 2.0 * e * waves)

@@ -1,4 +1,4 @@
-"""Time and memory, measured plainly: every sample is kept, medians decide."""
+"""Measurement of run times: all samples are kept, medians decide."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ PACKAGES = ("gearcam", "numpy", "shapely", "ncgears", "scipy", "sympy")
 
 @dataclass(frozen=True)
 class Timing:
-    """Samples of one thing, in seconds."""
+    """Run times of one case, s."""
 
     name: str
     samples: tuple[float, ...]
 
     @property
     def median(self) -> float:
-        """The middle sample."""
+        """The median of the samples."""
         return statistics.median(self.samples)
 
     def over(self, other: Timing) -> float:
-        """The middle of the ratios to samples of another that were taken in turns with these."""
+        """Return the median ratio to the samples of another case, measured alternately."""
         pairs = zip(self.samples, other.samples, strict=True)
         return statistics.median(mine / theirs for mine, theirs in pairs)
 
     def line(self) -> str:
-        """One row of a table: name, median, all samples."""
+        """Return a row of a table: name, median, all samples."""
         raw = ", ".join(show(sample) for sample in self.samples)
         return f"| {self.name} | {show(self.median)} | {raw} |"
 
 
 @dataclass(frozen=True)
 class Result:
-    """One target: what was asked, what was found, the text that shows it, why it is given up."""
+    """A target with the measured result, the text that shows it, and why it is not met."""
 
     title: str
     asked: str
@@ -56,19 +56,19 @@ class Result:
 
     @property
     def verdict(self) -> str:
-        """What became of it: one that is given up stays, with the reason measured."""
-        return "pass" if self.passed else "given up" if self.given_up else "fail"
+        """``pass``, ``not met`` with a known reason, or ``fail``."""
+        return "pass" if self.passed else "not met" if self.given_up else "fail"
 
 
 def show(seconds: float) -> str:
-    """Seconds in a unit that fits."""
+    """Return a time with a suitable unit."""
     if seconds < 1e-3:
         return f"{1e6 * seconds:.0f} us"
     return f"{1e3 * seconds:.2f} ms" if seconds < 1 else f"{seconds:.2f} s"
 
 
 def measure(name: str, function: Callable[[], object], count: int, *, warm: bool = True) -> Timing:
-    """Call a function `count` times, after one call that does not count."""
+    """Time `count` calls of a function, after one that is not timed."""
     if warm:
         function()
     samples = []
@@ -80,9 +80,9 @@ def measure(name: str, function: Callable[[], object], count: int, *, warm: bool
 
 
 def in_turns(functions: dict[str, Callable[[], object]], count: int) -> list[Timing]:
-    """Call functions `count` times, in turns: a busy moment hits them alike.
+    """Time `count` calls of each function, alternately, so that load affects all alike.
 
-    Objects that were there before, most of them of other benchmarks, are not searched for garbage.
+    Existing objects, most of them from other benchmarks, are exempt from garbage collection.
     """
     samples: dict[str, list[float]] = {name: [] for name in functions}
     for function in functions.values():
@@ -99,9 +99,9 @@ def in_turns(functions: dict[str, Callable[[], object]], count: int) -> list[Tim
 
 
 def commands(cases: dict[str, Sequence[str]], count: int) -> list[Timing]:
-    """Whole processes, in turns: a busy moment hits them alike. The first round does not count.
+    """Time whole processes, alternately, so that load affects all alike.
 
-    It leaves compiled modules behind, as an installed program has them.
+    The first round is not timed: it compiles the modules, as an installation does.
     """
     environment = {key: value for key, value in os.environ.items() if key != _UNCOMPILED}
     samples: dict[str, list[float]] = {name: [] for name in cases}
@@ -115,12 +115,12 @@ def commands(cases: dict[str, Sequence[str]], count: int) -> list[Timing]:
 
 
 def table(timings: Sequence[Timing]) -> list[str]:
-    """A table of timings with every sample."""
-    return ["| what | median | samples |", "|---|---|---|", *(timing.line() for timing in timings)]
+    """Return a table of timings with all samples."""
+    return ["| case | median | samples |", "|---|---|---|", *(timing.line() for timing in timings)]
 
 
 def environment(named: Sequence[str] = PACKAGES) -> list[str]:
-    """What a reader needs to judge the numbers: machine, versions of packages, commit, date."""
+    """Return machine, versions of packages, commit and date, as lines of a list."""
     packages = ", ".join(f"{name} {version(name)}" for name in named)
     system = f"{platform.system()} {platform.machine()}"
     return [
@@ -147,5 +147,5 @@ def _commit() -> str:
         )
         return done.stdout.strip() if done.returncode == 0 else ""
 
-    changed = " with changes not yet committed" if git("status", "--porcelain", "src") else ""
+    changed = " with uncommitted changes" if git("status", "--porcelain", "src") else ""
     return (git("rev-parse", "--short=12", "HEAD") or "none yet") + changed

@@ -1,7 +1,7 @@
-"""The peer from PyPI: ncgears on the nail machine's law, and on a law that it can build.
+"""The package ncgears from PyPI, on the law of the nail machine and on a law that it can build.
 
-Its engine is called on samples of the law taken beforehand, so that neither the evaluation of the
-formula nor the drawing of pictures counts against it.
+Its engine gets samples of the law computed beforehand, so that its time includes neither the
+evaluation of the formula nor drawings.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 SAMPLES = 8192
-"""Its own default for laws given as formulas."""
+"""The default of ncgears for laws given as formulas."""
 SAMPLES_PER_RADIAN = 110
-"""Its own default."""
+"""The default of ncgears."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """phi2 and its first three derivatives over one turn, from `start` (where they are smooth)."""
+    """phi2 and three derivatives over one turn, from `start`, where they must be smooth."""
 
     name: str
     start: float
@@ -35,7 +35,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Attempt:
-    """How one call ended: seconds, and what it said or made."""
+    """The outcome of one call: run time, and a message or the result."""
 
     seconds: float
     built: bool
@@ -66,7 +66,7 @@ def nail_machine(start: float) -> Law:
 
 
 def even_swing() -> Law:
-    """The same swing of the ratio, 0.4 to 1.6, without knots: phi2 = phi1 - 0.6*sin(phi1)."""
+    """The sinusoidal law phi2 = phi1 - 0.6*sin(phi1): ratios from 0.4 to 1.6, without knots."""
 
     def derivatives(phi: Array) -> tuple[Array, Array, Array, Array]:
         sine, cosine = 0.6 * np.sin(phi), 0.6 * np.cos(phi)
@@ -76,7 +76,7 @@ def even_swing() -> Law:
 
 
 def attempt(law: Law, module: float, teeth: int) -> Attempt:
-    """Generate both outlines with ncgears, by the same rack as gearcam's default, in time."""
+    """Time the generation of both outlines by ncgears with the default rack of gearcam."""
     seconds, made = _generated(law, module, teeth)
     if isinstance(made, str):
         return Attempt(seconds, built=False, outcome=made)
@@ -84,12 +84,12 @@ def attempt(law: Law, module: float, teeth: int) -> Attempt:
 
 
 def outlines(law: Law, module: float, teeth: int) -> tuple[Array, Array] | str:
-    """Return both outlines of ncgears, (n, 2), mm, or why it gives up."""
+    """Return both outlines of ncgears, (n, 2), mm, or its error message."""
     return _generated(law, module, teeth)[1]
 
 
 def _generated(law: Law, module: float, teeth: int) -> tuple[float, tuple[Array, Array] | str]:
-    """Seconds that it took, the law's samples not counted, and both outlines or the reason."""
+    """Return the run time in s, without sampling the law, and both outlines or the error."""
     with tempfile.TemporaryDirectory() as folder:
         path = _sampled(law, Path(folder))
         start = time.perf_counter()
@@ -102,7 +102,7 @@ def _generated(law: Law, module: float, teeth: int) -> tuple[float, tuple[Array,
 
 
 def _sampled(law: Law, folder: Path) -> Path:
-    """Write the samples of a law."""
+    """Write the samples of a law into a file and return its path."""
     phi = law.start + 2 * math.pi * np.arange(SAMPLES) / SAMPLES
     angle, *rates = law.derivatives(phi)
     columns = np.column_stack([phi, angle - angle[0], *rates])

@@ -1,4 +1,4 @@
-"""Internal pairs against external ones of the same law, teeth and module."""
+"""Internal pairs against external ones with the same law, teeth and module."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ PAIRS = {
     "constant, 40 : 90": ([40, 90], 'type = "constant"'),
 }
 NOTE = """\
-Both outlines at 1 um, module 2 mm; wheel and ring in turns with an external pair of the same law
-and teeth, which is another pair of curves. How many times its time: {listed}."""
+Both outlines at 1 um, module 2 mm; wheel and ring alternate with an external pair of the same law
+and teeth, which has other curves. Times relative to the external pair: {listed}."""
 
 
 def against_external(tries: int = 15) -> Result:
@@ -41,8 +41,8 @@ def against_external(tries: int = 15) -> Result:
     worst = max(ratios, key=lambda name: ratios[name])
     return Result(
         title="(q) Wheel and ring against an external pair",
-        asked="below twice the time at 1 um",
-        found=f"{ratios[worst]:.2f} times at most, {worst}",
+        asked="less than twice the time at 1 um",
+        found=f"at most {ratios[worst]:.2f} times, {worst}",
         passed=ratios[worst] < 2.0,
         body=[
             *table(rows),

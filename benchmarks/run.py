@@ -1,11 +1,11 @@
-"""Measure everything and write benchmarks/results/performance.md, which holds no number by hand."""
+"""Measure run times and write benchmarks/results/performance.md, with measured numbers only."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-# the sweep is the witness of the tests; what each output needs is found by a tool
+# the boolean sweep belongs to the tests, the table of outputs to a tool
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
 
@@ -20,22 +20,21 @@ from measuring import Result, environment
 
 HEAD = """# Performance
 
-Written by `make bench`; medians decide, of ratios of samples taken in turns where there are such,
-and every sample is shown. A target that cannot be met is given up by name, with the measurement
-that shows why.
+Written by `make bench`. Medians decide: medians of ratios if the samples of both sides alternate.
+All samples are shown. A target that is not met is marked, with a measurement that shows why.
 """
 
 
 def page(results: list[Result]) -> str:
-    """The page as text."""
-    lines = [HEAD, *environment(), "", "| target | asked | found | |", "|---|---|---|---|"]
+    """Return the page as text."""
+    lines = [HEAD, *environment(), "", "| case | target | measured | |", "|---|---|---|---|"]
     for result in results:
         verdict = result.verdict.replace("fail", "**fail**")
         lines.append(f"| {result.title} | {result.asked} | {result.found} | {verdict} |")
     for result in results:
         lines += ["", f"## {result.title}", "", *result.body]
-        if result.given_up:  # of one that passes too: others' reasons may point there
-            begin = "Given up" if result.verdict == "given up" else "What the time is"
+        if result.given_up:  # also of a target that is met: others may refer to it
+            begin = "Not met" if result.verdict == "not met" else "Where the time goes"
             lines += ["", f"{begin}: {result.given_up}"]
     return "\n".join(lines) + "\n"
 

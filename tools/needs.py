@@ -1,7 +1,7 @@
-"""What each output computes and imports: found in processes of their own, shown in a table.
+"""Measures what each output computes and imports, in separate processes.
 
-This tool writes the table of benchmarks/results/performance.md, and `make bench` the whole page. A
-test compares it with what is found. An *output* is a kind of file or a command, asked of one small
+It writes the table in benchmarks/results/performance.md; `make bench` writes the whole page. A test
+compares the table with new measurements. An *output* is a kind of file or a command, for one small
 design of each kind.
 """
 
@@ -27,10 +27,10 @@ PACKAGES: Final = (
     "numpy", "shapely", "ezdxf", "manifold3d", "trimesh", "networkx", "lxml", "jinja2", "rich",
     "OCP", "matplotlib",
 )  # fmt: skip
-"""What the program may import, of which more is imported than the standard library has."""
+"""Packages that the program may import."""
 
 DESIGNS: Final = {"gear-pair": "ellipse", "cam": "plate_cam_offset_roller"}
-"""A profile of each kind: nothing is ordered besides the files that are asked for."""
+"""A profile of each kind without hubs or openings."""
 
 COMMANDS: Final = {
     "check": ("check", "{file}"),
@@ -40,29 +40,29 @@ COMMANDS: Final = {
     "compare": ("compare", "{file}", "--set", "output.chord_tolerance_mm=0.001,0.002"),
     "view": ("view", "{file}"),
 }
-"""Outputs that are no kinds of files, and their words; of the live view what a save has made."""
+"""Outputs that are commands, with their arguments; of ``view`` the update after a save."""
 
 ONLY: Final = {"mesh": "gear-pair", "follow": "cam"}
-"""Commands that one kind of design has."""
+"""Commands for one kind of design."""
 
 STUDIES: Final = ("meshing", "follow")
-"""Stages of a result that are no properties of it."""
+"""Stages of a result that are not properties of it."""
 
 REPEATS: Final = 3
-"""Processes of which the median counts."""
+"""Number of processes; the median is taken."""
 
 HEAD: Final = "## What each output needs\n"
 
 ABOUT: Final = """\
-A process for each row, asked for that output alone: of the profile `ellipse`, 41 : 41 teeth, and of
-`plate_cam_offset_roller`. Processor time with the start of Python, and the largest memory held, of
-the middle one of {repeats} processes; a bare `python -c "import numpy, shapely"` takes {seconds}
-and {memory}. Stages are the properties of a result that were computed, each once, in their order;
-other results are those of designs that are compared or refined, or shown with coarser outlines.
-Rooms are those beyond a build of `csv`, which has, of both kinds, {rooms}."""
+Each row is a process that makes this output only, for the profile `ellipse`, 41 : 41 teeth, or
+`plate_cam_offset_roller`. Processor time, with the start of Python, and peak memory are those of
+the median of {repeats} processes; `python -c "import numpy, shapely"` takes {seconds} and {memory}.
+Stages are the properties of a result that were computed, each once, in order; other results belong
+to designs that are compared or refined, or shown with coarser outlines. Modules of gearcam are
+those in addition to a build of `csv`, which for both kinds loads {rooms}."""
 
 COLUMNS: Final = (
-    "| kind | output | stages | packages | rooms besides | time | peak memory |",
+    "| kind | output | stages | packages | more modules | time | peak memory |",
     "|---|---|---|---|---|---|---|",
 )
 
@@ -71,7 +71,7 @@ import contextlib, io, json, resource, sys, time
 from functools import cached_property
 
 def kept():
-    """The most memory that this process held, bytes; the one that began it does not count."""
+    """Return the peak memory of this process, bytes."""
     with contextlib.suppress(OSError), open("/proc/self/status") as told:
         return 1024 * int(next(line.split()[1] for line in told if line.startswith("VmHWM")))
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -128,18 +128,18 @@ main()
 
 @dataclass(frozen=True, kw_only=True)
 class Needs:
-    """What was computed and imported until an output was made.
+    """What was computed and imported for an output.
 
     Parameters
     ----------
     stages : tuple of str
-        Properties of the result.
+        Properties of the result that were computed.
     packages, rooms : frozenset of str
-        What is loaded, of `PACKAGES` and of gearcam.
+        Loaded packages of `PACKAGES`, and loaded modules of gearcam.
     seconds : float
         Processor time of the process.
     memory : float, bytes
-        The most that it held.
+        Peak memory of the process.
     """
 
     stages: tuple[str, ...]
@@ -150,7 +150,7 @@ class Needs:
 
 
 def outputs(kind: str) -> tuple[str, ...]:
-    """Return the outputs of a `kind` of design, ``follow`` after the file that it reads."""
+    """Return the outputs of a `kind` of design; ``follow`` reads a file of ``csv``."""
     from gearcam.designs.kind import KINDS
 
     commands = [name for name in COMMANDS if ONLY.get(name, kind) == kind]
@@ -159,14 +159,14 @@ def outputs(kind: str) -> tuple[str, ...]:
 
 
 def needs(kind: str, asked: Sequence[str]) -> Iterator[Needs]:
-    """Yield what is loaded after each of some outputs, made one after the other in one process.
+    """Yield what is loaded after each output, when all are made in one process.
 
     Parameters
     ----------
     kind : str
         The kind of design.
     asked : sequence of str
-        Outputs; none for a bare start of numpy and shapely.
+        Outputs; none: only numpy and shapely are imported.
     """
     with tempfile.TemporaryDirectory() as folder:
         words = [_words(kind, output, Path(folder)) for output in asked]
@@ -176,7 +176,7 @@ def needs(kind: str, asked: Sequence[str]) -> Iterator[Needs]:
 
 
 def _words(kind: str, output: str, folder: Path) -> list[str]:
-    """Return the words of the command line for an output, its design written beside."""
+    """Write the design for an output and return the arguments of the command line."""
     name = DESIGNS[kind]
     text = (ROOT / "profiles" / f"{name}.toml").read_text(encoding="utf-8")
     wanted = "csv" if output in COMMANDS else output
@@ -211,7 +211,7 @@ def _read(row: Mapping[str, Any]) -> Needs:
 
 
 def texts(found: Needs, usual: Iterable[str]) -> tuple[str, str, str]:
-    """Return stages, packages and rooms beyond the `usual` ones as the table has them."""
+    """Return stages, packages, and modules beyond the `usual` ones, as cells of the table."""
     packages = [name for name in PACKAGES if name in found.packages]
     return tuple(
         ", ".join(each) for each in (found.stages, packages, sorted(found.rooms - set(usual)))
@@ -219,7 +219,7 @@ def texts(found: Needs, usual: Iterable[str]) -> tuple[str, str, str]:
 
 
 def section() -> str:
-    """Return the section of the page, measured."""
+    """Measure, and return the section of the page."""
     bare = _median([next(iter(needs("cam", ()))) for _ in range(REPEATS)])
     rows, shared = [], None
     for kind in DESIGNS:
@@ -253,7 +253,7 @@ def _memory(found: Needs) -> str:
 
 
 def table(page: str) -> dict[tuple[str, str], tuple[str, str, str]]:
-    """Return stages, packages and rooms that a page tells of, by kind and output."""
+    """Return stages, packages and modules in the table of a `page`, by kind and output."""
     body = page.partition(BEGIN)[2].partition(END)[0]
     rows = [
         [cell.strip() for cell in line.strip("|").split("|")]
@@ -264,7 +264,7 @@ def table(page: str) -> dict[tuple[str, str], tuple[str, str, str]]:
 
 
 def write(page: str) -> None:
-    """Write a `page` with a new section in the place of the one that it has, or at its end."""
+    """Write a `page` with a new section, instead of the present one or at the end."""
     before, _, rest = page.partition(BEGIN)
     after = rest.partition(END)[2].lstrip("\n")
     made = f"{before.rstrip()}\n\n{section()}" + (f"\n{after}" if after else "")

@@ -74,6 +74,13 @@ def unmet(wanted: list[str], locked: list[Locked]) -> Iterator[str]:
             yield f"{line}: {version}"
 
 
+def test_make_help_lists_each_target_in_one_line() -> None:
+    head = MAKEFILE.partition("\n\n")[0]
+    listed = re.findall(r"^# make (\w+)  +\S", head, re.MULTILINE)
+    (targets,) = re.findall(r"^\.PHONY: (.+)$", MAKEFILE, re.MULTILINE)
+    assert sorted(listed) == sorted(targets.split())
+
+
 SECTIONS = sections(LOCK)
 
 
