@@ -1,11 +1,11 @@
-"""Compares what a commit and this tree make of random designs, and of the gallery.
+"""Compares the results of an older commit with those of this tree, for random designs and profiles.
 
     make compare BASE=13c2b87 N=200 SEED=7
     python tools/compare.py 13c2b87 --only cam/17 --keep /tmp/apart
 
-Each side is a process of its own that sees gearcam's public interface only. Designs are drawn until
-N of each kind can be built by the base. Outlines, findings, refusals and files are compared; the
-exit status is 1 where something differs, 2 where nothing could be compared.
+Each side is a separate process that uses the public interface of gearcam. Designs are drawn until
+the base has built N of each kind. Outlines, findings, refusals and files are compared. The exit
+code is 1 if something differs, and 2 if nothing can be compared.
 """
 
 from __future__ import annotations
@@ -29,21 +29,21 @@ from gearcam.draws.designs import design, drawn_kinds
 from gearcam.draws.toml import toml
 
 SHOWN: Final = 30
-"""Places of differences that are listed."""
+"""Largest number of places listed."""
 
 OUT: Final = "out of time"
-"""How a design ends that is not compared."""
+"""The outcome of a design that is not compared."""
 
 _AHEAD: Final = 3
-"""Designs that the sides may have before them."""
+"""Number of designs queued for the sides."""
 
 _DRAWN: Final = 3
-"""Designs drawn at most for one that is to be built."""
+"""Largest number of designs drawn for each one to be built."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A design that both sides are to build: its kind, its name, and the file of each side."""
+    """A design for both sides: its kind, its name, and the file of each side."""
 
     kind: str
     name: str
@@ -52,18 +52,18 @@ class Task:
 
 @dataclass
 class Report:
-    """What is found, kind by kind and place by place.
+    """Statistics of outcomes and differences.
 
     Parameters
     ----------
     allowed : sequence of str
         Patterns of places that may differ.
     more : bool
-        Whether summaries of the tree may tell what the base does not.
+        Whether summaries of the tree may have additional keys.
     counts : mapping of str to Counter
-        Ends, by kind.
+        Numbers of outcomes by kind.
     found : mapping of str to list
-        Names with their largest difference, by pattern of its place.
+        Names of designs with their largest difference, by pattern of its place.
     """
 
     allowed: Sequence[str] = ()
@@ -72,16 +72,16 @@ class Report:
     found: dict[str, list[tuple[str, Difference]]] = field(default_factory=dict)
 
     def take(self, task: Task, end: str, differences: Iterable[Difference]) -> bool:
-        """Count a design and keep where it differs; whether it does.
+        """Record a design and its differences; return whether it differs.
 
         Parameters
         ----------
         task : Task
             The design.
         end : str
-            How both sides ended.
+            Outcome of both sides.
         differences : iterable of Difference
-            Allowed ones too.
+            All differences, also those that are allowed.
         """
         kept = [one for one in differences if not self._may(one)]
         counts = self.counts.setdefault(task.kind, Counter())
@@ -98,7 +98,7 @@ class Report:
         return any(fnmatch.fnmatchcase(one.place, pattern) for pattern in self.allowed)
 
     def lines(self) -> Iterator[str]:
-        """Yield the table of what was compared, and of what differs."""
+        """Yield the lines of the printed statistics."""
         ends = ("built", "refused", "out of time", "one side only")
         head = ("designs", "same", "differ", *ends)
         yield f"{'':<12}" + "".join(f"{one:>15}" for one in head)
@@ -111,18 +111,18 @@ class Report:
             yield f"\n{pattern}: {len(cases)} design{'s' * (len(cases) > 1)}"
             yield f"    largest {worst.size:.3g} in {name}, {worst.place}: {worst.words[:300]}"
         if len(ranked) > SHOWN:
-            yield f"\nand {len(ranked) - SHOWN} places more"
+            yield f"\nand {len(ranked) - SHOWN} more places"
 
 
 def renamed(text: str, renames: Mapping[str, str]) -> str:
-    """Return a design file with the base's keys and words for the tree's.
+    """Return a design file of the tree with the keys and words of the base.
 
     Parameters
     ----------
     text : str
-        The file.
+        The design file.
     renames : mapping of str to str
-        Dotted keys, and words without a dot, of the base by those of the tree.
+        Dotted keys, or words without a dot, of the base by those of the tree.
     """
     document = tomllib.loads(text)
     for new, old in renames.items():
@@ -146,18 +146,18 @@ def differences(
     messages: bool,
     names: Mapping[str, str],
 ) -> tuple[str, list[Difference]]:
-    """Return how two sides ended with a design, and where they differ.
+    """Return the outcome of a design on both sides, and the differences.
 
     Parameters
     ----------
     files : tuple of Path
-        The design of each side; what was made of it stands beside it, in ``NAME.out``.
+        The design file of each side; its output is in the folder ``NAME.out`` beside it.
     ends : tuple of mapping
-        What each side told.
+        The answer of each side.
     limit : float, s
-        CPU time that each had.
+        CPU time allowed for each.
     messages : bool
-        Whether words are compared too.
+        Whether to compare the words of messages.
     names : mapping of str to str
         Names of the base by those of the tree (see `called`).
     """
@@ -182,14 +182,14 @@ def differences(
 
 
 def tolerance_of(file: Path) -> float:
-    """Return the chord tolerance of a design file, mm: that by default where it gives none."""
+    """Return the chord tolerance of a design file, mm, or the default one."""
     document = tomllib.loads(file.read_text(encoding="utf-8"))
     module = document.get("pair", {}).get("module_mm", 1.0)
     return document.get("output", {}).get("chord_tolerance_mm", min(1e-3, 1e-3 * module))
 
 
 class Comparison:
-    """Both sides at work.
+    """A comparison of two trees.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ class Comparison:
     trees : tuple of Path
         Base and tree.
     folder : Path
-        For designs and what is made of them.
+        Folder for designs and their output.
     """
 
     def __init__(self, given: argparse.Namespace, trees: tuple[Path, Path], folder: Path) -> None:
@@ -214,7 +214,7 @@ class Comparison:
         self.built = 0
 
     def run(self) -> Report:
-        """Compare everything that is asked for."""
+        """Run the comparison and return its statistics."""
         try:
             if not self.given.only and not self.given.no_gallery:
                 self._each(self._gallery())
@@ -287,31 +287,33 @@ class Comparison:
 
 
 def arguments() -> argparse.Namespace:
-    """Return what the command line asks for."""
+    """Return the arguments of the command line."""
     parser = argparse.ArgumentParser(description="Compare a commit with this tree.")
     parser.add_argument("base", help="a commit, or a folder with src and profiles")
-    parser.add_argument("--tree", type=Path, default=ROOT, help="instead of this tree")
+    parser.add_argument("--tree", type=Path, default=ROOT, help="tree instead of this one")
     parser.add_argument("--kind", action="append", choices=drawn_kinds())
-    parser.add_argument("--count", type=int, default=50, help="built designs of each kind")
+    parser.add_argument("--count", type=int, default=50, help="designs built of each kind")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", action="append", metavar="KIND/NUMBER", help="this design only")
+    parser.add_argument(
+        "--only", action="append", metavar="KIND/NUMBER", help="compare this design only"
+    )
     parser.add_argument("--no-gallery", action="store_true", help="random designs only")
-    words = "a place that may differ, such as 'summary.json:accuracy.*' or 'finding:tip-*'"
+    words = "ignore differences at this place, such as 'summary.json:accuracy.*' or 'finding:tip-*'"
     parser.add_argument("--allow", action="append", default=[], metavar="PATTERN", help=words)
-    words = "summaries of this tree may tell what those of the base do not"
+    words = "allow additional keys in summaries of this tree"
     parser.add_argument("--more", action="store_true", help=words)
-    words = "a key or word of designs that the base calls otherwise, as helix.steps=steps.count"
+    words = "key or word of designs with another name in the base: helix.steps=steps.count"
     parser.add_argument("--rename", action="append", default=[], metavar="OLD=NEW", help=words)
-    words = "a name in files and findings that the base calls otherwise, such as way_mm=travel_mm"
+    words = "name in files and findings that differs in the base: way_mm=travel_mm"
     parser.add_argument("--called", action="append", default=[], metavar="OLD=NEW", help=words)
     parser.add_argument("--messages", action="store_true", help="compare the words of messages too")
-    parser.add_argument("--limit", type=float, default=20.0, help="CPU seconds of a design")
-    parser.add_argument("--keep", type=Path, help="folder for designs that differ")
+    parser.add_argument("--limit", type=float, default=20.0, help="CPU time for a design, s")
+    parser.add_argument("--keep", type=Path, help="folder in which to keep designs that differ")
     return parser.parse_args()
 
 
 def main() -> int:
-    """Compare as the command line asks for; the exit status."""
+    """Run the command and return its exit code."""
     given = arguments()
     with tree_of(given.base) as base, tempfile.TemporaryDirectory(prefix="compare-") as folder:
         comparison = Comparison(given, (base, given.tree.resolve()), Path(folder).resolve())
@@ -320,7 +322,7 @@ def main() -> int:
     print("\nCPU seconds " + " | ".join(f"{side.seconds:.1f}" for side in comparison.sides))
     if report.found:
         print(
-            f"Repeat one by: tools/compare.py {given.base} --seed {given.seed} --only KIND/NUMBER"
+            f"Repeat one with: tools/compare.py {given.base} --seed {given.seed} --only KIND/NUMBER"
         )
     return 1 if report.found else 0
 

@@ -1,4 +1,4 @@
-"""How far the curves of two drawings lie apart: DXF files, and SVG files of arcs and lines."""
+"""Distances between the curves of two drawings: DXF files, or SVG files of arcs and lines."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _COMMAND = re.compile(r"([MLAZ]?)([^MLAZ]*)")
 
 
 def farthest(kind: str, before: bytes, after: bytes, fine: float) -> float:
-    """Return the largest distance of a curve of one drawing from the other's of its layer.
+    """Return the largest distance between the curves of two drawings, layer by layer.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ def farthest(kind: str, before: bytes, after: bytes, fine: float) -> float:
     before, after : bytes
         The files.
     fine : float, mm
-        How far the chords that stand for curves may lie from them.
+        Chord error with which curves are approximated.
 
     Returns
     -------
     float, mm
-        Infinite where one has a layer that the other has not, or what is no curve differs.
+        Infinite if the drawings have different layers, or other entities differ.
     """
     read: Callable[[str, float], dict[str, list[Array]]] = _dxf if kind == "dxf" else _svg
     one, two = (read(content.decode(), fine) for content in (before, after))
@@ -45,7 +45,7 @@ def farthest(kind: str, before: bytes, after: bytes, fine: float) -> float:
 
 
 def _apart(one: list[Array], two: list[Array]) -> float:
-    """Return how far the chains of one lie from those of the other at most."""
+    """Return the largest distance of the chains of `one` from those of `two`."""
     import shapely
 
     chains = [chain for chain in two if len(chain)]
@@ -61,7 +61,7 @@ def _apart(one: list[Array], two: list[Array]) -> float:
 
 
 def dxf_size(text: str) -> float:
-    """Return the largest coordinate of a DXF's entities."""
+    """Return the largest coordinate of the entities in a DXF file."""
     lines = text.partition("ENTITIES")[2].split("\n")[1:]
     pairs = zip(lines[::2], lines[1::2], strict=False)
     return max(
@@ -80,7 +80,7 @@ def _dxf(text: str, fine: float) -> dict[str, list[Array]]:
 
 
 def _flat(entity: Any, fine: float) -> Iterator[Any]:
-    """Yield points of an entity; none of a text."""
+    """Yield points on an entity; none for text."""
     if entity.dxftype() in ("LWPOLYLINE", "POLYLINE"):
         for part in entity.virtual_entities():
             yield from _flat(part, fine)
@@ -120,7 +120,7 @@ def _walked(data: str, fine: float) -> Iterator[complex]:
 def _arc(
     start: complex, end: complex, radius: float, left: bool, sweep: float, fine: float
 ) -> Iterator[complex]:
-    """Yield points of an arc after its start; its middle is to the left of the way, or not."""
+    """Yield points of an arc after its start; `left`: its centre is left of the chord."""
     chord = end - start
     if chord == 0:
         return

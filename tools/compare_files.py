@@ -1,8 +1,8 @@
-"""Compares what two programs have written and told of the same design.
+"""Compares the files and messages of two versions of gearcam for the same design.
 
-Numbers may differ by `RELATIVE` of their scale: of the column, of the part, of the numbers beside
-them. Rounded numbers may differ by one unit of the last place that their file shows. Arcs may lie
-elsewhere within their tolerance. Everything else is the same or a difference.
+Numbers may differ by `RELATIVE` of their scale: of the column, the part, or the numbers nearby.
+Rounded numbers may differ by one unit in the last place of the file. Arcs may differ within their
+tolerance. Everything else must be equal.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ from compare_curves import dxf_size, farthest
 Array = NDArray[np.float64]
 
 RELATIVE: Final = 1e-12
-"""Difference of numbers over their scale that is rounding."""
+"""Rounding errors of numbers relative to their scale."""
 
 SINGLE: Final = 1e-6
-"""The same for numbers of 32 bits."""
+"""The same for 32-bit numbers."""
 
 TOLD: Final = 1e-5
 """The same for numbers in texts, which have six digits."""
 
-MORE: Final = "told by tree only"
-"""Words of a difference that is more told."""
+MORE: Final = "in tree only"
+"""Description of a key that only the tree has."""
 
 _FINER: Final = 0.01
-"""How much finer than an outline's tolerance its curves are compared."""
+"""Chord error of the comparison relative to the tolerance of the outlines."""
 
 NOISE: Final = ("timings_s", "versions", "design", "hash", "files", "findings", "format")
-"""Keys of a summary that tell of the run, or that are compared elsewhere."""
+"""Keys of a summary that depend on the run, or that are compared elsewhere."""
 
 _COMPARED: Final = ("severity", "where", "value", "limit", "unit")
-"""What is told beside words."""
+"""Fields of a finding that are always compared."""
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _PLACES = re.compile(r"\.(\d+)(?![\deE])")
@@ -52,14 +52,14 @@ _PLACES = re.compile(r"\.(\d+)(?![\deE])")
 
 @dataclass(frozen=True)
 class Difference:
-    """Where two sides differ.
+    """A difference between the two sides.
 
     Parameters
     ----------
     place : str
-        A file with its key or column, or a finding.
+        A file with a key or column, or a finding.
     size : float
-        Over the scale; infinite where it is not of numbers.
+        Relative to the scale; infinite if it is not between numbers.
     words : str
         Both values.
     """
@@ -70,21 +70,21 @@ class Difference:
 
     @property
     def pattern(self) -> str:
-        """The place without numbers, to count what belongs together."""
+        """The place without numbers, to group differences."""
         return re.sub(r"\d+", "#", self.place)
 
 
 def folders(
     first: Path, second: Path, tolerance: float, names: Mapping[str, str] | None = None
 ) -> Iterator[Difference]:
-    """Yield where the files of two folders differ.
+    """Yield the differences between the files of two folders.
 
     Parameters
     ----------
     first, second : Path
-        Folders that both sides have written.
+        Output folders of both sides.
     tolerance : float, mm
-        How far arcs may lie from their curve.
+        Tolerance of arcs.
     names : mapping of str to str, optional
         Names of the first by those of the second (see `called`).
     """
@@ -100,33 +100,33 @@ def folders(
 
 
 def called(text: str, names: Mapping[str, str]) -> str:
-    """Return a `text` with other `names`, whole words, the old ones by the new ones."""
+    """Return a `text` in which old names are replaced; `names` maps new names to old ones."""
     for new, old in names.items():
         text = re.sub(rf"(?<![\w-]){re.escape(old)}(?![\w-])", new, text)
     return text
 
 
 def _names(folder: Path) -> dict[str, Path]:
-    """Return the files of a folder and of those in it, which bear the names of designs."""
+    """Return the files in a folder and its subfolders by name."""
     found = folder.rglob("*") if folder.exists() else ()
     return {path.name: path for path in found if path.is_file()}
 
 
 def files(name: str, before: bytes, after: bytes, tolerance: float) -> Iterator[Difference]:
-    """Yield where two files of the same name differ, by their kind (see `folders`).
+    """Yield the differences between two files of the same name (see `folders`).
 
     Parameters
     ----------
     name : str
-        With its ending.
+        File name with its extension.
     before, after : bytes
-        What they hold.
+        Contents.
     tolerance : float, mm
-        How far arcs may lie from their curve.
+        Tolerance of arcs.
     """
     kind = name.rpartition(".")[2]
     if kind == "html":
-        return  # a page draws and tells what the others hold, and how long it took
+        return  # a page shows what the other files contain, and run times
     if kind == "json":
         yield from summaries(name, json.loads(before), json.loads(after))
     elif kind == "csv":
@@ -141,7 +141,7 @@ def files(name: str, before: bytes, after: bytes, tolerance: float) -> Iterator[
             yield from _texts(f"{name}/{member}", *pair)
     elif kind in ("stl", "glb"):
         yield from _meshes(name, before, after)
-    elif kind == "step":  # its lines break where digits make them long
+    elif kind == "step":  # line breaks depend on the digits
         yield from _texts(name, *("".join(side.decode().split()) for side in (before, after)))
     else:
         found = [*_texts(name, before.decode(), after.decode())]
@@ -153,7 +153,7 @@ def files(name: str, before: bytes, after: bytes, tolerance: float) -> Iterator[
 
 
 def _numbers(place: str, one: Array, two: Array, scale: Any, allowed: Any) -> Iterator[Difference]:
-    """Yield the largest difference of numbers, over their scale, where one is above `allowed`."""
+    """Yield the largest relative difference of numbers if one exceeds `allowed`."""
     with np.errstate(invalid="ignore"):
         apart = np.where(one == two, 0.0, np.abs(one - two))
     apart = np.where(np.isnan(one) & np.isnan(two), 0.0, apart)
@@ -166,7 +166,7 @@ def _numbers(place: str, one: Array, two: Array, scale: Any, allowed: Any) -> It
 
 
 def _texts(name: str, before: str, after: str) -> Iterator[Difference]:
-    """Yield the largest difference of the numbers in two texts, or the first of their words."""
+    """Yield the largest difference between numbers in two texts, or the first between words."""
     words = [_NUMBER.sub("#", text) for text in (before, after)]
     if words[0] != words[1]:
         at = next((n for n, (a, b) in enumerate(zip(*words, strict=False)) if a != b), -1)
@@ -182,12 +182,12 @@ def _texts(name: str, before: str, after: str) -> Iterator[Difference]:
 
 
 def _parted(text: str) -> Iterator[float]:
-    """Yield the numbers of a text that are no whole ones: those may count things."""
+    """Yield the numbers of a text with a decimal point; others may be counts."""
     yield from (float(one) for one in _NUMBER.findall(text) if "." in one)
 
 
 def _tables(name: str, before: str, after: str) -> Iterator[Difference]:
-    """Compare columns; the scale is that of all columns of their unit."""
+    """Compare columns; all columns with the same unit have the same scale."""
     one, two = (text.splitlines() for text in (before, after))
     if one[0] != two[0] or len(one) != len(two):
         heads = "" if one[0] == two[0] else f": {one[0]} | {two[0]}"
@@ -197,7 +197,7 @@ def _tables(name: str, before: str, after: str) -> Iterator[Difference]:
     cells = [[line.split(",") for line in lines[1:]] for lines in (one, two)]
     numbers: dict[str, list[Array]] = {}
     columns = [zip(*rows, strict=True) for rows in cells]
-    for column, *pair in zip(head, *columns, strict=False):  # no columns where there are no rows
+    for column, *pair in zip(head, *columns, strict=False):  # a table may have no rows
         try:
             numbers[column] = [np.array([cell or "nan" for cell in side], float) for side in pair]
         except ValueError:
@@ -218,7 +218,7 @@ def _unit(column: str) -> str:
 
 
 def _meshes(name: str, before: bytes, after: bytes) -> Iterator[Difference]:
-    """Compare numbers of 32 bits; as such whole numbers are next to zero, and must be the same."""
+    """Compare 32-bit numbers; integers, read as floats, are tiny and must be equal."""
     if len(before) != len(after):
         yield Difference(name, math.inf, f"{len(before)} | {len(after)} bytes")
         return
@@ -232,28 +232,28 @@ def _meshes(name: str, before: bytes, after: bytes) -> Iterator[Difference]:
 def _singles(name: str, content: bytes) -> Array:
     if name.endswith(".stl"):
         facets = np.frombuffer(content[84:], dtype=[("corners", "<f4", 12), ("end", "<u2")])
-        return facets["corners"][:, 3:].astype(float).ravel()  # the normals follow from them
-    # GLB: the length of its JSON stands at byte 12; the numbers come after it and a head
+        return facets["corners"][:, 3:].astype(float).ravel()  # without normals
+    # GLB: byte 12 has the length of the JSON chunk; the numbers follow it and a chunk header
     start = 20 + int.from_bytes(content[12:16], "little") + 8
     return np.frombuffer(content[start:], dtype="<f4").astype(float)
 
 
-# --- what is told -----------------------------------------------------------------------------
+# --- summaries and messages --------------------------------------------------------------------
 
 
 def summaries(
     name: str, before: Mapping[str, Any], after: Mapping[str, Any], noise: Iterable[str] = NOISE
 ) -> Iterator[Difference]:
-    """Yield the keys in which two summaries differ, or which only one has.
+    """Yield the keys whose values differ in two summaries, or that only one has.
 
     Parameters
     ----------
     name : str
-        Of the file.
+        File name.
     before, after : mapping
-        What it holds.
+        Contents.
     noise : iterable of str
-        Keys at the top that are left out.
+        Top-level keys to ignore.
     """
     one, two = (dict(_leaves("", _plain(side), 0.0)) for side in (before, after))
     skipped = tuple(f".{key}" for key in noise)
@@ -262,7 +262,7 @@ def summaries(
             continue
         place = f"{name}:{key[1:]}"
         if key not in one or key not in two:
-            yield Difference(place, math.inf, "told by base only" if key in one else MORE)
+            yield Difference(place, math.inf, "in base only" if key in one else MORE)
             continue
         (a, near), (b, _) = one[key], two[key]
         if isinstance(a, float) and isinstance(b, float):
@@ -273,7 +273,7 @@ def summaries(
 
 
 def _plain(node: Any) -> Any:
-    """Write directions as vectors: that of nothing is any."""
+    """Return a tree with directions as vectors, since the direction of zero is arbitrary."""
     if isinstance(node, list):
         return [_plain(one) for one in node]
     if not isinstance(node, Mapping):
@@ -287,7 +287,7 @@ def _plain(node: Any) -> Any:
 
 
 def _leaves(path: str, node: Any, near: float) -> Iterator[tuple[str, tuple[Any, float]]]:
-    """Yield the values of a tree by their paths, with the largest number beside each."""
+    """Yield the values of a tree by their paths, with the largest number of their group."""
     if isinstance(node, Mapping):
         beside = [
             item for one in node.values() for item in (one if isinstance(one, list) else [one])
@@ -314,16 +314,16 @@ def told(
     *,
     messages: bool,
 ) -> Iterator[Difference]:
-    """Yield in what two lists of findings or refusals differ.
+    """Yield the differences between two lists of findings or refusals.
 
     Parameters
     ----------
     title : str
-        What they are.
+        Word for them in messages.
     before, after : sequence of mapping
-        Each with its value, limit, unit, place, and words.
+        Entries with value, limit, unit, place, and message.
     messages : bool
-        Whether words are compared too.
+        Whether to compare the words of messages.
     """
     sides = [defaultdict(list), defaultdict(list)]
     for side, entries in zip(sides, (before, after), strict=True):
@@ -337,7 +337,7 @@ def told(
             yield Difference(place, math.inf, f"{len(one)} ({shown[0]}) | {len(two)} ({shown[1]})")
             continue
         rest, alone = list(two), []
-        for a in one:  # in any order: each has its like, or what is left over differs
+        for a in one:  # the order does not matter
             like = (b for b in rest if not any(_entry(place, a, b, messages=messages)))
             found = next(like, None)
             (alone.append(a) if found is None else rest.remove(found))
@@ -361,7 +361,7 @@ def _entry(
 
 
 def _said_alike(one: str, two: str) -> bool:
-    """Whether two texts differ by the last digits of their numbers at most."""
+    """Return whether two texts are equal except for the last digits of numbers."""
     if _NUMBER.sub("#", one) != _NUMBER.sub("#", two):
         return False
     first, second = (np.array(_NUMBER.findall(text), dtype=float) for text in (one, two))

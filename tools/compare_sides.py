@@ -1,4 +1,4 @@
-"""The two sides of a comparison: a tree of source each, and a process that builds with it."""
+"""The sides of a comparison: a source tree, and a process that builds designs with it."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class Side:
     Parameters
     ----------
     tree : Path
-        With ``src``.
+        Folder that contains ``src``.
     folder : Path
-        Where its designs stand.
+        Folder of its designs.
     limit : float, s
-        CPU time of a design.
+        CPU time allowed for a design.
     """
 
     def __init__(self, tree: Path, folder: Path, limit: float) -> None:
@@ -72,13 +72,13 @@ class Side:
             self.process.stdin.flush()
 
     def ask(self, file: Path, out: Path) -> None:
-        """Give it a design to build: `file`, into `out`."""
+        """Send a design `file` to be built into the folder `out`."""
         self.pending.append({"file": file.name if file.parent == self.folder else str(file),
                              "out": str(out)})  # fmt: skip
         self._send(self.pending[-1])
 
     def answer(self) -> dict[str, Any]:
-        """Return how the oldest design ended; a process that broke down is started again."""
+        """Return the outcome of the oldest design; restart the process if it crashed."""
         found = self._line()
         self.pending.popleft()
         if found is None:
@@ -90,19 +90,19 @@ class Side:
 
     def stop(self) -> None:
         """End the process."""
-        with suppress(BrokenPipeError), self.process:  # what it was asked last goes nowhere
+        with suppress(BrokenPipeError), self.process:  # discard a pending request
             self.process.kill()
 
 
 def complain(words: str) -> NoReturn:
-    """Say why nothing can be compared, and end."""
+    """Print why nothing can be compared, and exit."""
     print(words, file=sys.stderr)
     raise SystemExit(2)
 
 
 @contextmanager
 def tree_of(base: str) -> Iterator[Path]:
-    """Yield a folder with the source of a commit, or the folder that is meant."""
+    """Yield a folder with the source of a commit, or the folder `base` itself."""
     if (Path(base) / "src").is_dir():
         yield Path(base).resolve()
         return

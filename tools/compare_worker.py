@@ -1,7 +1,7 @@
-"""Builds designs with the gearcam that Python finds, by its public interface only.
+"""Builds designs with the gearcam on the path of Python, by its public interface only.
 
-Reads lines of JSON from stdin, ``{"file": ..., "out": ...}``, and answers each with one line: how
-it ended, its findings, the CPU seconds it took. Run by ``compare.py``, once for each side.
+It reads lines of JSON from stdin, ``{"file": ..., "out": ...}``, and answers each with one line:
+outcome, findings and CPU time. ``compare.py`` runs one for each side.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from typing import Any, Final
 import gearcam
 
 MEMORY: Final = 6 << 30
-"""Bytes that a design may take: one that would take all must not end the others' programs."""
+"""Memory allowed for a design, bytes, so that none exhausts the machine."""
 
 STUCK: Final = 15.0
-"""Time by the clock, over the CPU time of a design, after which a library is stuck: the process
-ends, since no signal reaches Python there."""
+"""Limit of the elapsed time as a multiple of the CPU time: a library that is stuck lets no signal
+reach Python, so the process is ended."""
 
 _FINDING: Final = ("code", "severity", "value", "limit", "unit", "message")
 _REFUSAL: Final = ("what", "value", "limit", "unit", "nearest")
@@ -32,7 +32,7 @@ _PROBLEM: Final = ("message", "allowed", "hint")
 
 
 class OutOfTimeError(BaseException):
-    """A design has had its time; no ``except Exception`` may keep this."""
+    """A design exceeds its time; not an ``Exception``, so that no handler catches it."""
 
 
 def _stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
@@ -40,7 +40,7 @@ def _stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
 
 
 def build(file: str, out: str) -> dict[str, Any]:
-    """Load, build and write a design, with its study if it asks for one; tell how it ended."""
+    """Build and write a design, and its meshing study if it has one; return the outcome."""
     told: dict[str, Any] = {"end": "built"}
     try:
         result: Any = gearcam.build(gearcam.load(file))
@@ -55,7 +55,7 @@ def build(file: str, out: str) -> dict[str, Any]:
 
 
 def _meshed(result: Any, out: str) -> Any:
-    """Study and write: a study of earlier packages wrote by itself."""
+    """Run and write the meshing study, with the interface of older versions too."""
     if "directory" in inspect.signature(result.mesh).parameters:
         return result.mesh(out)
     return result.mesh().write(out)
@@ -70,7 +70,7 @@ def _where(found: Any) -> str:
 
 
 def _refusal(error: Exception) -> list[dict[str, Any]]:
-    """Return what an error tells: one entry, or one for each problem of a design file."""
+    """Return an error as a list: one entry, or one for each problem of a design file."""
     problems = getattr(error, "problems", None)
     if problems is None:
         return [{**_taken(error, _REFUSAL), "where": _where(error)}]
@@ -83,7 +83,7 @@ def _taken(owner: Any, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Answer the designs of stdin, each within the CPU seconds that the command line gives."""
+    """Build the designs from stdin, each within the CPU time given as argument."""
     limit = float(sys.argv[1])
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     signal.signal(signal.SIGPROF, _stop)
@@ -91,7 +91,7 @@ def main() -> None:
     for line in sys.stdin:
         start = time.process_time()
         try:
-            # again after a second: the first may come where Python drops what is raised
+            # repeated each second, since an exception may be lost inside a callback
             signal.setitimer(signal.ITIMER_PROF, limit, 1.0)
             faulthandler.dump_traceback_later(STUCK * limit, exit=True)
             told: dict[str, Any] = build(**json.loads(line))

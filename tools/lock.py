@@ -1,11 +1,11 @@
-"""Write requirements.lock: what the Makefile installs, each package with its version and hashes.
+"""Write requirements.lock: the packages that the Makefile installs, with versions and hashes.
 
-All packages are resolved together, for every supported Python and platform, and one version of
-each is taken, so that every machine reads the same stubs and computes with the same numpy. A
-section holds what its target needs beyond the sections before it. The section `lowest` stands
-alone: the lowest versions that pyproject.toml allows, with the tools of the tests.
+All packages are resolved together, for every supported Python and platform, with one version of
+each, so that all machines use the same type stubs and the same numpy. A section lists the packages
+that its target needs in addition to the sections before it. The section `lowest` is independent:
+the lowest versions that pyproject.toml allows, with the tools of the tests.
 
-Run by `make lock`. What cannot be resolved leaves the lock as it is.
+For `make lock`. If a package cannot be resolved, the file is not changed.
 """
 
 from __future__ import annotations
@@ -44,19 +44,19 @@ def resolve(*wanted: str) -> list[str]:
     command = [sys.executable, "-m", "uv", "pip", "compile", *told.split(), *wanted]
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode:
-        sys.exit(f"{LOCK.name} was not changed")  # uv has said why
+        sys.exit(f"{LOCK.name} was not changed")  # uv has printed the reason
     return re.split(r"^(?=\w)", done.stdout, flags=re.MULTILINE)[1:]
 
 
 def has(known: list[str], package: str) -> bool:
-    """Return whether a package is known already, on every machine that wants it."""
+    """Return whether a package is already listed for every platform that needs it."""
     pin, marked = package.split()[0], ";"
     same = [one for one in known if one.split()[0] == pin]
     return package in same or any(one.split()[1] != marked for one in same)
 
 
 def hold(folder: Path, packages: list[str]) -> list[str]:
-    """Return the options that hold a resolution to these versions."""
+    """Return the options that fix these versions in a resolution."""
     held = folder / "held.txt"
     held.write_text("".join(packages), encoding="utf-8")
     return ["--constraints", str(held)]
@@ -76,7 +76,7 @@ def sections(folder: Path) -> dict[str, list[str]]:
 
 
 def main() -> None:
-    """Write the lock whole, or not at all."""
+    """Write the complete file, or leave it unchanged."""
     with TemporaryDirectory() as folder:
         made = sections(Path(folder))
     parts = [f"\n# for {name}\n{''.join(packages)}" for name, packages in made.items()]

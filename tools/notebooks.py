@@ -1,8 +1,7 @@
-"""Run the notebooks of docs/notebooks and store what they show; `make notebooks` does it.
+"""Run the notebooks of docs/notebooks and store their output, for `make notebooks`.
 
-Each runs in an empty folder. What differs from run to run, times and numbers of runs, is left out.
-Of a result, which shows its page, the picture is stored: pages are large, and nothing moves where
-stored notebooks are only read.
+Each runs in an empty folder. Times and execution counts are not stored. The page of a result is
+replaced by its picture: pages are large, and do not move where stored notebooks are only read.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from nbclient import NotebookClient
 
 HOME = Path(__file__).resolve().parents[1] / "docs" / "notebooks"
 SECONDS = 300
-"""What a cell may take on a busy machine."""
+"""Time allowed for a cell on a busy machine."""
 
 
 def run(path: Path, folder: str | Path) -> nbformat.NotebookNode:
@@ -27,9 +26,9 @@ def run(path: Path, folder: str | Path) -> nbformat.NotebookNode:
         cell.metadata.pop("execution", None)
         for output in cell.get("outputs", ()):
             data = output.get("data", {})
-            if "<iframe" in data.get("text/html", ""):  # a page is large, and moves only where run
+            if "<iframe" in data.get("text/html", ""):  # a page is large, and static here
                 del data["text/html"]
-            elif "text/html" in data:  # which holds the picture too
+            elif "text/html" in data:  # contains the picture too
                 data.pop("image/svg+xml", None)
     made.metadata.language_info = {"name": "python"}
     return made

@@ -21,13 +21,13 @@ ROOT = Path(__file__).resolve().parents[1]
 PROFILE = ROOT / "profiles" / "nail_machine_two_phase.toml"
 PICTURE = ROOT / "docs" / "nail_machine_two_phase.png"
 SIZE = (1280, 900)
-"""Pixels."""
+"""Width and height, pixels."""
 PLACE = 118.0
-"""Driver angle that is shown, deg: both wheels turn fast there."""
+"""Driver angle in the picture, deg."""
 
 
 def taken(page: Path) -> bytes:
-    """Return parts and first charts of a page as PNG."""
+    """Return a screenshot of the parts and first charts of a page, PNG."""
     options = Options()
     options.binary_location = shutil.which("chromium") or sys.exit("there is no chromium")
     for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars"):
