@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import mpmath
@@ -50,9 +51,9 @@ def pressed(degrees: float) -> DiscCam:
     )
 
 
-def swung(degrees: float) -> DiscCam:
+def swung(degrees: float, prime: float = 60.0) -> DiscCam:
     """On an arm: ``tan(alpha) = (arm*(1 + s') - d*cos(Psi))/(d*sin(Psi))`` at the start."""
-    d, arm, prime = 100.0, 90.0, 60.0
+    d, arm = 100.0, 90.0
     psi = math.acos((d * d + arm * arm - prime * prime) / (2 * d * arm))
     speed = (math.tan(math.radians(degrees)) * math.sin(psi) + math.cos(psi)) * d / arm - 1.0
     lift = math.degrees(speed * math.radians(30.0))
@@ -98,6 +99,8 @@ def sharp(radius: float) -> DiscCam:
 EDGES: dict[str, Edge] = {
     "pressure-angle": Edge(pressed, 30.0, 1.0, "pressure_angle", "warning"),
     "pressure-angle swung": Edge(swung, 45.0, 1.0, "pressure_angle", "warning"),
+    "jamming": Edge(pressed, 65.0, 1.0, "jamming_angle", "error"),
+    "jamming swung": Edge(partial(swung, prime=20.0), 80.0, 1.0, "jamming_angle", "error"),
     "undercut": Edge(loses, 0.01, 1.0, "lost_lift", "error"),
 }
 
@@ -389,4 +392,6 @@ def test_every_check_of_cams_is_covered() -> None:
     }
     assert codes == tried
     limits = {check.limit[0] for (kind, _), check in CHECKS.items() if kind == KIND and check.limit}
-    assert limits == {"pressure_angle", "lost_lift", "profile_radius", "lost_motion"}
+    assert limits == {
+        *("pressure_angle", "jamming_angle", "lost_lift", "profile_radius", "lost_motion")
+    }

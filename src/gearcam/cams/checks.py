@@ -1,8 +1,8 @@
 """The checks of cams: pressure angles, undercut, shocks, sharp profiles, coarse rows.
 
-Importing this room registers them. A check sees a `Cam`, looks at all its motions or walls, and
-yields findings; where there are several, the place names which. That of a followed profile sees the
-wall that it was taken for, and what was found.
+Importing this module registers them. A check looks at all motions or walls of a `Cam` and yields
+findings; where there are several, the place of a finding names which. The check of a followed
+profile looks at the wall that it was taken for and at the motion that was found.
 """
 
 from __future__ import annotations
@@ -25,8 +25,18 @@ if TYPE_CHECKING:
     from gearcam.cams.follow import Followed
 
 PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
-"""Largest pressure angle by custom, rad: of translating followers, whose guides jam, and of
-oscillating ones."""
+"""Largest recommended pressure angle, rad: of translating and of oscillating followers."""
+
+JAMMING: Final = {False: math.radians(65.0), True: math.radians(80.0)}
+"""Pressure angle from which friction holds the follower, rad: of translating and oscillating ones.
+
+A stem in a guide of length b that overhangs it by a jams at ``tan(alpha + rho) = 1/(mu*(1 +
+2*a/b))``, an arm on a pin of radius r at ``cos(alpha + rho) = r/l*sin(arctan(mu))``; rho is the
+angle of friction at the cam, ``arctan(mu)`` of a contact that slides and nearly 0 of a roller.
+With ``mu = 0.15`` a stem jams from 65.8 deg with a roller and ``a = b``, from 64.8 deg with a
+sliding contact and ``a = b/2``; an arm with ``r = l/10`` and a sliding contact from 80.6 deg.
+Source: 000 eqs. (3.82), (3.84), (3.99).
+"""
 
 _MISSED: Final = 0.1
 """Part of the whole lift by which no wear makes a cam's own profile miss it."""
@@ -35,8 +45,27 @@ _TURN: Final = 2.0 * math.pi
 
 
 def pressure_limit(mechanism: Mechanism, given: float) -> float:
-    """Return the largest pressure angle of a `mechanism`, rad: as `given`, by custom where nan."""
+    """Return the largest pressure angle of a `mechanism`, rad: `given`, the default where nan."""
     return PRESSURE[mechanism.oscillating] if math.isnan(given) else given
+
+
+def driven(cam: Cam, motion: PitchMotion) -> tuple[str, ...]:
+    """Return the kinds of phases in which the walls of a motion push the follower.
+
+    Parameters
+    ----------
+    cam : Cam
+        With the walls.
+    motion : PitchMotion
+        One of its motions.
+
+    Returns
+    -------
+    tuple of str
+        ``rise``, ``return`` or both.
+    """
+    own = (wall for wall in cam.walls if motion in (wall, wall.of))
+    return tuple("rise" if wall.curve.mechanism.away > 0 else "return" for wall in own)
 
 
 def _at(motion: PitchMotion, place: str) -> str:
@@ -60,21 +89,52 @@ def _deg(theta: float) -> str:
 def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of large pressure angles on rises and returns.
 
-    Looks at: the pressure angle: beyond its limit a translating follower jams in its guide.
+    Looks at: the pressure angle: the larger it is, the more the follower is pressed aside.
     """
     for motion in cam.motions:
         largest = pressure_limit(motion.mechanism, limit)
-        for kind in ("rise", "return"):
-            found = motion.pressure(kind)
-            if found is None or found.largest <= largest:
-                continue
-            worst = max(found.low, found.high, key=lambda end: abs(end.value))
-            yield Remark(
-                f"The pressure angle on the {kind} reaches {_deg(abs(worst.value))}.",
-                _at(motion, f"{kind}, at {motion.mechanism.driver.told(worst.theta)}"),
-                math.degrees(abs(worst.value)),
-                limit=math.degrees(largest),
+        yield from _steep(motion, ("rise", "return"), largest)
+
+
+@check(
+    "jamming",
+    kind=KIND,
+    severity="error",
+    limit=(
+        "jamming_angle",
+        Param(ANGLE, gt=0, le=90, doc="pressure angle that jams; 65 translating, 80 oscillating"),
+        math.nan,
+    ),
+)
+def jamming(cam: Cam, limit: float) -> Iterator[Remark]:
+    """Find pressure angles at which friction holds a follower that the cam pushes.
+
+    Looks at: the pressure angle where the cam pushes: on rises, and on returns where a second wall
+    does. With friction 0.15 a stem that overhangs its guide by the guide's length jams from 65.8
+    degrees, an arm on a pin of a tenth of its length from 80.6.
+    """
+    for motion in cam.motions:
+        largest = JAMMING[motion.mechanism.oscillating] if math.isnan(limit) else limit
+        for remark in _steep(motion, driven(cam, motion), largest):
+            yield remark._replace(
+                message=f"{remark.message[:-1]}: friction can hold the follower, however large "
+                "the torque on the cam."
             )
+
+
+def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Iterator[Remark]:
+    """Yield the phases of some kinds whose pressure angle is beyond the largest, rad."""
+    for kind in kinds:
+        found = motion.pressure(kind)
+        if found is None or found.largest <= largest:
+            continue
+        worst = max(found.low, found.high, key=lambda end: abs(end.value))
+        yield Remark(
+            f"The pressure angle on the {kind} reaches {_deg(abs(worst.value))}.",
+            _at(motion, f"{kind}, at {motion.mechanism.driver.told(worst.theta)}"),
+            math.degrees(abs(worst.value)),
+            limit=math.degrees(largest),
+        )
 
 
 @check(

@@ -34,7 +34,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -239,8 +239,8 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
                     ),
                 ),
             )
-        height = math.sqrt((size - follower.offset) * (size + follower.offset))
-        return Mechanism(start=height, offset=follower.offset, **kind)
+        made = Mechanism(start=0.0, offset=follower.offset, **kind)
+        return replace(made, start=position_at(made, size))
     pivot = _given(follower.pivot_distance, "a pivot distance")
     if follower.flat:
         return _swinging_face(follower, size, pivot)
@@ -253,6 +253,27 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
         way = Way(near={key: near}, far={key: max(arm, size)})
         raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, way)
     return Mechanism(start=swing(pivot, arm, size), arm=arm, pivot=pivot, **kind)
+
+
+def position_at(mechanism: Mechanism, size: float) -> float:
+    """Return the position, mm or rad, at which a follower stands at a distance from the axis.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The follower on a cam that turns.
+    size : float, mm
+        From the axis to its centre, or to its flat face.
+
+    Raises
+    ------
+    ValueError
+        If it does not reach there.
+    """
+    m = mechanism
+    if not m.oscillating:
+        return size if m.flat else math.sqrt((size - m.offset) * (size + m.offset))
+    return math.asin((size + m.face_offset) / m.pivot) if m.flat else swing(m.pivot, m.arm, size)
 
 
 def swing(pivot: float, arm: float, size: float) -> float:

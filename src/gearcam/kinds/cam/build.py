@@ -291,6 +291,10 @@ class CamResult(Result):
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
+            if any(one.code in ("pressure-angle", "jamming") for one in found):
+                from gearcam.kinds.cam.pressed import explained
+
+                found = explained(self, found)
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):

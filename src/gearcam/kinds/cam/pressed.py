@@ -1,0 +1,226 @@
+"""The smallest radius of a cam with which a limit of its pressure angle is kept."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.cams.checks import KIND, driven
+from gearcam.cams.curve import CamCurve
+from gearcam.cams.mechanism import position_at
+from gearcam.designs.design import document_of, value_at
+from gearcam.errors import DesignError, InfeasibleError
+from gearcam.findings import CHECKS, Finding, limit_of
+from gearcam.numerals import shown
+
+if TYPE_CHECKING:
+    from gearcam.cams.cam import Cam
+    from gearcam.cams.wall import PitchMotion
+    from gearcam.kinds.cam.build import CamResult
+
+PRESSED: Final = ("pressure-angle", "jamming")
+"""Findings about pressure angles."""
+
+_MOST: Final = 100.0
+"""Largest radius that is tried, over what the follower needs: its lift, roller and offset."""
+
+_STEPS: Final = 8
+"""Radii that are tried from one to its double."""
+
+_CLOSE: Final = 1e-4
+"""Share of a radius to which it is found."""
+
+_DIGITS: Final = 3
+"""Digits after the first with which it is told."""
+
+
+def explained(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return findings; those about pressure angles name the smallest radius that lifts them.
+
+    Parameters
+    ----------
+    result : CamResult
+        Of the cam.
+    findings : tuple of Finding
+        Of its checks.
+    """
+    told: dict[tuple[str, int], str] = {}
+    made = []
+    for finding in findings:
+        if finding.code in PRESSED:
+            case = finding.code, _motion_of(result, finding)
+            if case not in told:
+                told[case] = _sentence(result, *case)
+            finding = replace(finding, message=f"{finding.message} {told[case]}")
+        made.append(finding)
+    return tuple(made)
+
+
+def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] | None:
+    """Return the smallest radius with which a motion has no finding of a code.
+
+    Parameters
+    ----------
+    result : CamResult
+        Of the cam.
+    code : str
+        One of `PRESSED`.
+    number : int
+        Which of the cam's motions.
+
+    Returns
+    -------
+    dict of str to float, or None
+        Changes of the design, followed on the exact curve; None where no radius up to a hundred
+        times what the follower needs does.
+    """
+    motion = result.cam.motions[number]
+    if motion.mechanism.slide or motion.mechanism.flat or not any(_steep(result, code, number)):
+        return None
+    limit = math.radians(next(_steep(result, code, number)).limit or 0.0)
+    found = _least(result, motion, code, limit)
+    for _ in range(_STEPS if found else 0):
+        digits = _DIGITS - math.floor(math.log10(found))
+        size = math.ceil(found * 10.0**digits - _CLOSE) / 10.0**digits
+        changes = resized(result, number, float(f"{size:.10g}"))
+        try:
+            # another size has the same lift
+            other = result.form.make(result.design.with_(changes), result.program)
+            if not any(_steep(result, code, number, other)):
+                return changes
+        except (DesignError, InfeasibleError):
+            return None
+        found *= 1.0 + 10.0 * _CLOSE
+    return None
+
+
+def resized(result: CamResult, number: int, size: float) -> dict[str, float]:
+    """Return the changes that give a motion another prime radius.
+
+    Parameters
+    ----------
+    result : CamResult
+        Of the cam.
+    number : int
+        Which of its motions.
+    size : float, mm
+        The radius; of the second of conjugate cams that at the highest lift.
+    """
+    document, motion = document_of(result.design), result.cam.motions[number]
+    mechanism = motion.mechanism
+    if number:
+        if value_at(document, "cam.prime_radius2_mm"):
+            return {"cam.prime_radius2_mm": size}
+        scale, _ = mechanism.outward
+        key = "follower.arms_angle_deg" if mechanism.oscillating else "follower.roller_distance_mm"
+        more = scale * (mechanism.start - _started(motion, size))
+        return {key: float(f"{value_at(document, key) + more:.8g}")}
+    base = value_at(document, "cam.base_radius_mm")
+    key = "cam.prime_radius_mm" if base is None else "cam.base_radius_mm"
+    own = size if base is None else float(f"{size - mechanism.radius:.10g}")
+    return grown(document, key, own)
+
+
+def grown(document: Mapping[str, Any], key: str, size: float) -> dict[str, float]:
+    """Return the changes that give a cam another radius, its blank as much metal around it.
+
+    Parameters
+    ----------
+    document : mapping
+        The design, as a file holds it.
+    key : str
+        Of the radius.
+    size : float, mm
+        The radius.
+    """
+    blank = value_at(document, "cam.outer_diameter_mm")
+    if not blank:
+        return {key: size}
+    wider = blank + 2.0 * (size - value_at(document, key))
+    return {key: size, "cam.outer_diameter_mm": float(f"{wider:.10g}")}
+
+
+def _sentence(result: CamResult, code: str, number: int) -> str:
+    """Return what keeps the limit of a check, in words."""
+    changes = gentler(result, code, number)
+    if changes is not None:
+        told = " and ".join(f"{key} = {shown(value, 10)}" for key, value in changes.items())
+        return f"The smallest cam that keeps the limit has {told}."
+    motion = result.cam.motions[number]
+    mechanism = motion.mechanism
+    if mechanism.slide or mechanism.flat:
+        smaller = "face offset" if mechanism.flat else "lift or a longer way"
+        return f"A smaller {smaller} reduces it."
+    unless = ", or another arm or pivot distance" if mechanism.oscillating else ""
+    unless = ", or a smaller offset" if mechanism.offset else unless
+    return (
+        f"No prime radius up to {shown(_MOST * _need(motion), 3)} mm keeps the limit: it takes a "
+        f"larger angle or a smaller lift{unless}."
+    )
+
+
+def _motion_of(result: CamResult, finding: Finding) -> int:
+    """Return which of a cam's motions a finding is about."""
+    keyed = (k for k, one in enumerate(result.cam.motions) if one.key)
+    motions = result.cam.motions
+    return next((k for k in keyed if finding.where.startswith(motions[k].called)), 0)
+
+
+def _steep(result: CamResult, code: str, number: int, cam: Cam | None = None) -> Iterator[Finding]:
+    """Yield the findings of a code about one motion of a result's cam, or of another `cam`."""
+    limit = limit_of(KIND, code, result.design.limits)
+    for finding in CHECKS[KIND, code].run(cam or result.cam, limit):
+        if _motion_of(result, finding) == number:
+            yield finding
+
+
+def _started(motion: PitchMotion, size: float) -> float:
+    """Return the position at zero lift of a follower that stands at a radius, mm."""
+    mechanism = motion.mechanism
+    place = position_at(mechanism, size)
+    # below the axis it stands nearest at the highest lift
+    return -place - motion.program.range[1] if mechanism.below else place
+
+
+def _need(motion: PitchMotion) -> float:
+    """Return what the size of a follower and its lift add up to, mm."""
+    m, (low, high) = motion.mechanism, motion.program.range
+    return m.lever * (high - low) + abs(m.offset) + m.radius
+
+
+def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> float | None:
+    """Return the least radius, mm, that keeps a limit, rad, at many cam angles."""
+    mechanism, survey = motion.mechanism, motion.program.survey
+    kinds = driven(result.cam, motion) if code == "jamming" else ("rise", "return")
+    middles = survey.places.mean(axis=1)
+    ends = [pair for kind in kinds for pair in motion.program.phases(kind)]
+    inside = np.any([(low < middles) & (middles < high) for low, high in ends], axis=0)
+    found = survey.found[:3, inside].reshape(3, -1)
+
+    def keeps(size: float) -> bool:
+        try:
+            other = replace(mechanism, start=_started(motion, size))
+        except ValueError:
+            return False  # out of reach
+        touch = CamCurve(program=motion.program, mechanism=other).contact_of(found, 0)
+        along = touch.along.c[0]
+        stands = bool(np.all(along > 0.0) or (mechanism.below and np.all(along < 0.0)))
+        return stands and bool(np.abs(touch.pressure.c[0]).max() <= limit)
+
+    need = _need(motion)
+    low = need / _MOST
+    for step in range(1, round(2.0 * _STEPS * math.log2(_MOST)) + 1):
+        high = need / _MOST * 2.0 ** (step / _STEPS)
+        if keeps(high):
+            break
+        low = high
+    else:
+        return None
+    while high > low * (1.0 + _CLOSE):
+        middle = math.sqrt(low * high)
+        low, high = (low, middle) if keeps(middle) else (middle, high)
+    return high
