@@ -93,7 +93,7 @@ CASES: dict[str, tuple[tuple[str, ...], str, int, str]] = {
     "accuracy, writing": (ACCURACY, WRITE, 2, BEFORE),
     "new": (("new", "cam", "new.toml"), "gearcam.designs.template.template", 1, BEFORE),
     "new, writing": (("new", "cam", "new.toml"), "pathlib.Path.open", 1, AFTER),
-    "laws": (("laws",), "gearcam.cli.law_lines", 2, BEFORE),
+    "laws": (("laws",), "gearcam.console._law_lines", 2, BEFORE),
     "schema": (("schema",), "gearcam.designs.schema.schema", 1, BEFORE),
 }
 EVERY = ("reading", "last write", "second move", "mesh, some steps")

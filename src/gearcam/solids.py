@@ -111,7 +111,7 @@ class Mesh:
 
 @contextmanager
 def libraries() -> Iterator[None]:
-    """Refuse solids where a library is missing that is imported within; also a decorator."""
+    """Raise `MissingExtraError` if an import in the block fails; also a decorator."""
     try:
         yield
     except ImportError as error:
