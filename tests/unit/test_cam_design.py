@@ -184,7 +184,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     refused("instance of FollowerSpec", follower=3)
     refused("instance of CamBlank", blank=None)
     refused("instance of CamOutputSpec", output=None)
-    refused("blank.stop_pin: a cam has none", blank=WheelBlank(stop_pin=2.0))
+    refused("blank.stop_pin: does not apply to a cam", blank=WheelBlank(stop_pin=2.0))
     refused("missing beside bolts", blank=WheelBlank(bolts=2))
     refused(r"limits\.no_such", limits={"no_such": 1.0})
     refused("out of range", cam=CamSpec(prime_radius=-1.0))

@@ -36,18 +36,42 @@ from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, probl
         ("angle_deg = 90", "angle_deg = 80", 4, "motion", "take 350 deg.*\n.*would take 100 deg"),
         (RISE, 'type = "dwell"\nangle_deg = 90\n', 10, "motion[2].lift_mm", "no lift to return"),
         ("roller_radius_mm = 6\n", "", 20, "follower.roller_radius_mm", "missing for a roller"),
-        ("_mm = 6", "_mm = 6\narm_mm = 9", 24, "follower.arm_mm", "translating follower has none"),
-        ("_mm = 6", "_mm = 6\ndome_radius_mm = 9", 24, "follower.dome_radius_mm", "roller fol.*no"),
+        (
+            "_mm = 6",
+            "_mm = 6\narm_mm = 9",
+            24,
+            "follower.arm_mm",
+            "does not apply to a translating",
+        ),
+        (
+            "_mm = 6",
+            "_mm = 6\ndome_radius_mm = 9",
+            24,
+            "follower.dome_radius_mm",
+            "does not apply to a roller fol",
+        ),
         ("offset_mm", "ofset_mm", 24, "follower.ofset_mm", "mean offset_mm"),
-        ("[cam]", "[cam]\nbase_radius_mm = 24", 27, "cam.base_radius_mm", "prime_radius_mm is giv"),
+        (
+            "[cam]",
+            "[cam]\nbase_radius_mm = 24",
+            27,
+            "cam.base_radius_mm",
+            "is given beside prime_radius_mm",
+        ),
         ("prime_radius_mm = 30", "", 26, "cam.prime_radius_mm", "is missing"),
-        ("prime_radius_mm = 30", "prime_radius_mm = 6", 28, "cam.prime_radius_mm", "leaves no cam"),
+        (
+            "prime_radius_mm = 30",
+            "prime_radius_mm = 6",
+            28,
+            "cam.prime_radius_mm",
+            "not larger than the follower",
+        ),
         (
             '"disc"',
             '"cylinder"',
             27,
             "cam.form",
-            "cylinder cams are not built by this version yet",
+            "cylinder cams are planned, but not available yet",
         ),
         ('"disc"', '"disk"', 27, "cam.form", "mean disc"),
         ('"stl"', '"dxf"', 32, "output.files[1]", "listed twice"),
@@ -89,8 +113,8 @@ def test_the_rest_of_the_turn_in_a_file() -> None:
 def test_lifts_are_of_the_followers_kind() -> None:
     found = problems(changed("lift_mm = 10", "lift_deg = 10"))
     assert [(one.line, one.key) for one in found] == [(8, "motion[0].lift_deg")]
-    assert "10: is of the wrong kind for a translating follower" in found[0].message
-    assert (found[0].value, found[0].allowed) == (10, "the key in _mm")
+    assert "10: wrong unit for the lift of a translating follower" in found[0].message
+    assert (found[0].value, found[0].allowed) == (10, "the key that ends in _mm")
     found = problems(changed("lift_deg", "lift_mm", SWINGING))
     assert "wrong kind for an oscillating follower" in found[-1].message
 
@@ -111,9 +135,9 @@ def test_a_program_that_ends_elsewhere_is_refused() -> None:
 @pytest.mark.parametrize(
     ("motion", "words"),
     [
-        ("", "there is no [[motion]]"),
+        ("", "is missing"),
         ("motion = []", "the list is empty"),
-        ("motion = 3", "3 is no list of tables"),
+        ("motion = 3", "3 is not a list of tables"),
         ("[motion]\ntype = 'dwell'", "single table"),
         ("motion = [3]", "3 is not a table"),
     ],
@@ -151,7 +175,7 @@ def test_flat_followers_have_a_base_radius_and_give_no_tool_radius() -> None:
         text = changed('"stl"', '"tool-path"', FLAT).replace('"flat"', f'"{kind}"')
         problem = only(text)
         assert (problem.key, problem.line) == ("output.tool_radius_mm", 29)
-        assert f"a {kind} follower gives a tool path no radius" in problem.message
+        assert f"a {kind} follower has no radius" in problem.message
         assert read(text + "tool_radius_mm = 4\n").output.tool_radius == 4.0
     assert "tool-path" in read(changed('"stl"', '"tool-path"')).output.files
 
@@ -224,4 +248,4 @@ def test_phases_that_can_be_read_are_judged_beside_those_that_cannot() -> None:
 def test_planned_forms_are_named_and_nothing_else_is_said(form: str) -> None:
     problem = only(changed('"disc"', f'"{form}"\nwidth_mm = 3').replace("rise", "raise"))
     assert problem.line == 27
-    assert f"{form} cams are not built by this version yet" in problem.message
+    assert f"{form} cams are planned, but not available yet" in problem.message

@@ -50,12 +50,17 @@ ROLLERS = "preload_mm = 0.02"
     [
         (FILE, PRIME2, "cam.prime_radius2_mm", "missing.*follower.arms_angle_deg"),
         (SLIDING, PRIME2, "cam.prime_radius2_mm", "missing.*follower.roller_distance_mm"),
-        (FILE, (ROLLERS, "arms_angle_deg = 65"), "follower.arms_angle_deg", "is given too"),
+        (FILE, (ROLLERS, "arms_angle_deg = 65"), "follower.arms_angle_deg", "is given beside"),
         (FILE, (ROLLERS, "roller_distance_mm = 9"), "follower.roller_distance_mm", "arms_angle_d"),
-        (SLIDING, (ROLLERS, "arms_angle_deg = 65"), "follower.arms_angle_deg", "has none"),
-        (SLIDING, (ROLLERS, "arm2_mm = 65"), "follower.arm2_mm", "translating follower has none"),
-        (FILE, ('"roller"\nmotion', '"point"\nmotion'), "follower.type", "move two rollers"),
-        (FILE, ('"conjugate"', '"disc"'), "cam.gap_mm", 'disc cam has none; with.*"conjugate"'),
+        (SLIDING, (ROLLERS, "arms_angle_deg = 65"), "follower.arms_angle_deg", "not apply"),
+        (SLIDING, (ROLLERS, "arm2_mm = 65"), "follower.arm2_mm", "not apply to a translating"),
+        (FILE, ('"roller"\nmotion', '"point"\nmotion'), "follower.type", "drive two rollers"),
+        (
+            FILE,
+            ('"conjugate"', '"disc"'),
+            "cam.gap_mm",
+            'not apply to a disc cam; with.*"conjugate"',
+        ),
     ],
 )
 def test_what_does_not_fit_is_told_by_reading(

@@ -340,7 +340,7 @@ def test_splines_are_refused_in_r12_only() -> None:
     assert loads(GOOD + 'dxf_curves = "splines"\n').output.dxf_curves == "splines"
     problem = only(GOOD + 'dxf_curves = "splines"\ndxf_version = "R12"\n')
     assert problem.key == "output.dxf_version"
-    assert "knows no splines" in problem.message
+    assert "does not support splines" in problem.message
 
 
 def test_a_tolerance_too_coarse_for_the_module_is_refused() -> None:

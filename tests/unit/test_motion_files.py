@@ -126,7 +126,12 @@ def test_rows_count_and_not_where_they_lie(tmp_path: Path) -> None:
         ("", "motion.theta_deg", 3, "is missing: a table has both, or a file"),
         ('file = "none.csv"', "motion.file", 4, "cannot be read"),
         (f"{BY_LISTS}\n{BY_FILE}", "motion.file", 6, "the rows are given twice"),
-        (BY_LISTS.replace("lift_mm", "lift_deg"), "motion.lift_deg", 5, "wrong kind for a transl"),
+        (
+            BY_LISTS.replace("lift_mm", "lift_deg"),
+            "motion.lift_deg",
+            5,
+            "wrong unit for the lift of a transl",
+        ),
         (f"{BY_LISTS}\nsmoothing_tolerance_deg = 1", "motion.smoothing_tolerance_deg", 6, "wrong"),
         (f"{BY_LISTS}\nsmoothing_tolerance_mm = 5", "motion.smoothing_tolerance_mm", 6, "no lift"),
         (f"{BY_LISTS}\nsmoothing_mm = 1", "motion.smoothing_mm", 6, "mean smoothing_tolerance_mm"),
@@ -151,7 +156,11 @@ def test_a_file_is_refused_with_its_line(tmp_path: Path) -> None:
     for old, new, words in (
         ("20.0,", "5.0,", "line 4: 5 deg follows 10 deg"),
         ("20.0,", "10.0,", "line 4: 10 deg stands twice"),
-        ("lift_mm", "lift_deg", "line 1: lift_deg is of the wrong kind for a translating"),
+        (
+            "lift_mm",
+            "lift_deg",
+            "line 1: lift_deg is of the wrong kind for a translating",
+        ),
         ("350.0,", "360.0,", "line 37: the lift after the turn is 0.07596123494 mm: it jumps by"),
     ):
         (tmp_path / "rows.csv").write_text(rows().replace(old, new, 1))
@@ -180,7 +189,7 @@ def test_a_file_with_semicolons_and_decimal_commas_is_told(tmp_path: Path) -> No
 def test_both_ways_to_give_a_motion_are_told_where_there_is_none() -> None:
     (problem,) = problems('kind = "cam"\nname = "x"\n' + ROLLER)
     assert "[[motion]] for each phase" in problem.allowed
-    assert "or [motion] with rows or a lift" in problem.allowed
+    assert "or one [motion] with rows or lift" in problem.allowed
     stray = problems(text(BY_LISTS, ROLLER.replace("[cam]", "[cam]\nsmoothing_tolerance_mm = 1")))
     assert "belongs under [motion]" in str(stray[0])
 

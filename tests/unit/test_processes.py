@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+import gearcam as gc
 from gearcam.cli import main
 from gearcam.designs import KINDS
+from gearcam.designs import template as template_room
 from gearcam.designs.template import template
+from gearcam.quantities import REQUIRED
 
-PROCESSES = [(kind, process) for kind in KINDS for process in KINDS[kind].processes]
+PROCESSES = [(kind, process) for kind in KINDS for process in ("", *KINDS[kind].processes)]
+FILES = {"": "report", "printing": "stl", "laser": "cut-svg", "wire": "dxf"}
+"""What each process cannot do without."""
 
 
 def test_every_kind_can_be_begun_for_each_process() -> None:
@@ -22,17 +29,51 @@ def test_every_kind_can_be_begun_for_each_process() -> None:
 
 
 @pytest.mark.parametrize(("kind", "process"), PROCESSES)
-def test_it_builds_with_nothing_to_find(
+def test_it_builds_without_warnings_at_a_size_that_people_make(
     kind: str, process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(["new", kind, "mine.toml", "--for", process]) == 0
+    assert main(["new", kind, "mine.toml", *(["--for", process] if process else [])]) == 0
     document = tomllib.loads(Path("mine.toml").read_text("utf-8"))
     assert main(["build", "mine.toml"]) == 0
     found = json.loads(Path("output/mine/summary.json").read_text("utf-8"))
-    assert found["findings"] == []
-    assert found.get("kerf_mm", 0.0) == document["output"].get("kerf_mm", 0.0)
-    assert (found.get("kerf_mm", 0.0) > 0.0) == (process != "printing")
+    # a pair without backlash is noted, where no process asks for some
+    noted = [("note", "no-backlash")] if kind == "gear-pair" and not process else []
+    assert [(one["severity"], one["code"]) for one in found["findings"]] == noted
+    output = document["output"]
+    assert {FILES[process], "report"} <= set(output["files"])
+    assert found.get("kerf_mm", 0.0) == output.get("kerf_mm", 0.0)
+    assert (found.get("kerf_mm", 0.0) > 0.0) == (process in ("laser", "wire"))
+    # a chord error disappears in the kerf, and fine cuts are drawn finely
+    assert output.get("chord_tolerance_mm", 0.0) <= 0.15 * output.get("kerf_mm", 0.1)
+    for part in gc.build(gc.load("mine.toml")).parts:
+        across = np.ptp(part.contour.vertices, axis=0)
+        assert (across > 70.0).all()
+        assert (across < 110.0).all()
+
+
+@pytest.mark.parametrize(("kind", "process"), PROCESSES)
+def test_optional_keys_show_their_default_or_say_that_they_show_an_example(
+    kind: str, process: str
+) -> None:
+    text, known = template(kind, "mine", process), KINDS[kind]
+    shown = {key for key, _ in re.findall(r"^# (\w+) = (.*?) +# \(example\)", text, re.MULTILINE)}
+    for title in (*known.tables, "limits"):
+        part = text.partition(f"[{title}]")[2].partition("\n\n")[0]
+        lines = re.findall(r"^# (\w+) = (.*?) +# (\(example\))?", part, re.MULTILINE)
+        for key, value, example in lines:
+            entry = known.table(title).entries[key]
+            if example:
+                assert entry.default in (None, REQUIRED), key
+                assert key in template_room._EXAMPLES
+            else:
+                default = entry.inward(tomllib.loads(f"x = {value}")["x"])
+                assert default == pytest.approx(entry.default), key
+    assert "module_mm" in shown if kind == "gear-pair" else "base_radius_mm" in shown
+
+
+def test_a_cam_is_described_in_words_of_cams() -> None:
+    assert not re.search(r"teeth|tooth|roots|wheel", template("cam", "mine", "laser"))
 
 
 def read(process: str) -> dict[str, Any]:

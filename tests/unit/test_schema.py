@@ -224,8 +224,8 @@ CAM_PLACES = st.sampled_from(
 )
 # relations between values: whether a schema refuses these files too is left open
 BEYOND_CAMS = (
-    *("wrong kind", "the phases take", "no lift to return", "never moves", "ends at a lift"),
-    *("follower", "leaves no cam", "b + c + d", "is missing beside"),
+    *("wrong unit", "the phases take", "no lift to return", "never moves", "ends at a lift"),
+    *("follower", "b + c + d", "is missing beside"),
 )
 
 

@@ -24,15 +24,15 @@ from helpers_step_read import read_step
         (FILE, "way_mm = 30\n", "", "motion[1].way_mm", "is missing"),
         (FILE, 'form = "translating"', 'form = "disc"', "motion[0].way_mm", "turns; angle_deg"),
         (ONE, 'type = "roller"\nroller_radius_mm = 6', 'type = "flat"', "follower.type",
-         "envelop no wall"),
+         "envelops no profile"),
         (FILE, "height_mm = 60\n", "", "blank.height_mm", "is missing for a translating cam"),
         (FILE, "height_mm = 60", "height_mm = 60\nbore_diameter_mm = 9", "blank.bore_diameter_mm",
-         "translating cam has none"),
-        (FILE, "u_mm = 80", "theta_deg = 80", "output.theta_deg", "translating cam has none"),
-        (FILE, "[cam]", "[cam]\nprime_radius_mm = 40", "cam.prime_radius_mm", "has none"),
+         "does not apply to a translating cam"),
+        (FILE, "u_mm = 80", "theta_deg = 80", "output.theta_deg", "not apply to a translating cam"),
+        (FILE, "[cam]", "[cam]\nprime_radius_mm = 40", "cam.prime_radius_mm", "does not apply to"),
         (FILE, DEEP, "groove_depth_mm = 12\n", "cam.groove_depth_mm", "no floor"),
         (FILE, DEEP, 'side = "front"\n', "cam.side", "goes through"),
-        (FILE, 'walls = "both"\n', "", "cam.groove_depth_mm", "one wall has none"),
+        (FILE, 'walls = "both"\n', "", "cam.groove_depth_mm", "not apply to a cam with one wall"),
         (FILE, "bolt_height_mm = 8\n", "", "blank.bolt_height_mm", "is missing beside bolts"),
         (FILE, "[output]", "[output]\nkerf_mm = 0.2", "output.kerf_mm", "milled"),
         (FILE, "density", "clearance_mm = 0.1\ndensity", "blank.clearance_mm", "roller_clearance"),
@@ -49,7 +49,7 @@ def test_what_is_wrong_by_reading(text: str, old: str, new: str, key: str, words
 
 def test_a_turn_is_no_way() -> None:
     text = ONE[: ONE.index("[[motion]]")] + ONE[ONE.index("[follower]") :]
-    with pytest.raises(DesignError, match="tells of a turn"):
+    with pytest.raises(DesignError, match="is given over a turn"):
         loads(text + '[motion]\nlift = "theta"\n')
 
 

@@ -1,11 +1,11 @@
-"""What a design says of a follower and its cam.
+"""Parameters of a cam and its follower as a design gives them.
 
-A *roller* turns on a pin, a *domed* follower has a fixed round face, a *point* is a dome of radius
-zero: all three are *round*. A *flat* follower has a straight face. A *translating* follower moves
-along ``+y`` at ``x = offset``; an *oscillating* one swings about a pivot on the ``x`` axis, and its
-lift turns the arm away from the cam.
+A *roller* turns on a pin, a *domed* follower has a fixed round face, a *point* (knife edge) is a
+dome of radius zero: all three are *round*. A *flat* follower has a straight face. A *translating*
+follower moves along ``+y`` at ``x = offset``; an *oscillating* one swings about a pivot on the
+``x`` axis, and its lift turns the arm away from the cam.
 
-Refused by reading: sizes that the kind of follower does not have, and missing ones.
+Refused when a design is read: sizes that such a follower does not have, and missing ones.
 
 Depends on quantities only.
 """
@@ -24,7 +24,7 @@ KIND: Final = "cams"
 """The checks of cams."""
 
 FOLLOWED: Final = "followed profiles"
-"""The checks of profiles that a follower was put on."""
+"""The checks of given profiles that a follower was put on."""
 
 Problem = tuple[str, int | None, str, str]
 """Field, number of an item, what is wrong, what is allowed."""
@@ -33,7 +33,7 @@ POINTED: Final = ("knife-edge", "point")
 """Two words for a follower without a radius."""
 
 _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
-"""The sizes of round followers."""
+"""The radii of round followers."""
 
 
 def _size(*, doc: str) -> Any:
@@ -42,7 +42,7 @@ def _size(*, doc: str) -> Any:
 
 
 def _run(*, doc: str) -> Any:
-    """Return a length of standstill."""
+    """Return a length before or after the motion."""
     return param(LENGTH, default=None, ge=0, le=1e6, doc=doc)
 
 
@@ -53,7 +53,7 @@ def _aside(*, doc: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class FollowerSpec(Brief):
-    """A follower: what touches the cam, and how it is guided.
+    """A follower: its contact element, and how it is guided.
 
     Examples
     --------
@@ -65,63 +65,72 @@ class FollowerSpec(Brief):
     type: str = param(
         TEXT,
         choices=(*POINTED, "roller", "flat", "domed"),
-        doc="what touches the cam; a knife edge is a point",
+        doc="contact element of the follower; a knife edge is the same as a point",
     )
     motion: str = param(
-        TEXT, default="translating", choices=("translating", "oscillating"), doc="how it moves"
+        TEXT,
+        default="translating",
+        choices=("translating", "oscillating"),
+        doc="motion of the follower",
     )
     roller_radius: float | None = _size(doc="radius of the roller")
     roller2_radius: float | None = _size(
-        doc="radius of a second roller: on the same pin, for the outer wall of a groove, or on the "
-        "second of conjugate cams; that of the first when left out"
+        doc="radius of the second roller: on the same pin, for the outer wall of a groove, or on "
+        "the second of conjugate cams; roller_radius_mm if left out"
     )
-    dome_radius: float | None = _size(doc="radius of a domed face")
+    dome_radius: float | None = _size(doc="radius of the face of a domed follower")
     offset: float = _aside(
-        doc="of a translating follower's axis from the cam's; positive makes the rise easier"
+        doc="offset of a translating follower's line of motion from the cam's axis; a positive one "
+        "lowers the pressure angle of the rise"
     )
-    arm: float | None = _size(doc="from the pivot to the roller's centre")
-    pivot_distance: float | None = _size(doc="from the cam's axis to the pivot")
+    arm: float | None = _size(
+        doc="distance from the pivot of an oscillating follower to its roller's centre"
+    )
+    pivot_distance: float | None = _size(
+        doc="distance from the cam's axis to the pivot of an oscillating follower"
+    )
     arm2: float | None = _size(
-        doc="from the pivot to the roller on the second of conjugate cams; as arm when left out"
+        doc="distance from the pivot to the roller on the second of conjugate cams; arm_mm if left "
+        "out"
     )
     roller_distance: float | None = _size(
-        doc="between both rollers of a translating follower on conjugate cams"
+        doc="distance of the two rollers of a translating follower on conjugate cams"
     )
     arms_angle: float | None = param(
         ANGLE,
         default=None,
         gt=0,
         lt=360,
-        doc="between both arms of an oscillating follower on conjugate cams",
+        doc="angle between the two arms of an oscillating follower on conjugate cams",
     )
     preload: float | None = param(
         LENGTH,
         default=None,
         ge=0,
         le=10,
-        doc="by how much conjugate cams press their rollers apart; 0 when left out",
+        doc="how far conjugate cams press their rollers apart; 0 if left out",
     )
     face_offset: float = _aside(
-        doc="of an oscillating flat follower: how far its face stands off the pivot to the cam"
+        doc="offset of the face of an oscillating flat follower from its pivot, towards the cam"
     )
 
     axis: float | None = param(
         ANGLE, default=None, ge=-80, le=80,
-        doc="of a translating follower over a translating cam: how far its way leans in the "
-        "direction in which the cam moves",
+        doc="inclination of a translating follower on a translating cam, towards the direction in "
+        "which the cam moves; 0 if left out",
     )  # fmt: skip
     pivot_height: float | None = param(
         LENGTH,
         default=None,
         ge=-1e6,
         le=1e6,
-        doc="of an oscillating follower over a translating cam: its pivot above the roller's "
-        "centre at zero lift",
+        doc="of an oscillating follower on a translating cam: height of its pivot above the "
+        "roller's centre at zero lift; 0 if left out",
     )
 
     @property
     def oscillating(self) -> bool:
-        """Whether it swings about a pivot; its lift is then an angle."""
+        """Whether it swings about a pivot; its lift is an angle then."""
         return self.motion == "oscillating"
 
     @property
@@ -135,27 +144,37 @@ class FollowerSpec(Brief):
         return self.roller_radius or self.dome_radius or 0.0
 
     def problems(self) -> Iterator[Problem]:
-        """Yield what is wrong by reading: field, index, message, allowed."""
+        """Yield contradictions: field, index, message, what is allowed."""
         for kind, name in _ROUND.items():
             given = getattr(self, name) is not None
             if given and self.type != kind:
-                yield name, None, f"a {self.type} follower has none", f'with type = "{kind}"'
+                yield (
+                    name,
+                    None,
+                    f"does not apply to a {self.type} follower",
+                    f'with type = "{kind}"',
+                )
             if not given and self.type == kind:
                 yield name, None, f"is missing for a {kind} follower", "a radius above 0"
         swinging = {"pivot_distance": True, "arm": not self.flat}
         for name, asked in swinging.items():
             given = getattr(self, name) is not None
             if given and not self.oscillating:
-                yield name, None, "a translating follower has none", 'with motion = "oscillating"'
+                yield (
+                    name,
+                    None,
+                    "does not apply to a translating follower",
+                    'with motion = "oscillating"',
+                )
             elif given and not asked:
-                yield name, None, "a flat face has none", "leave it out"
+                yield name, None, "does not apply to a flat follower", "leave it out"
             elif self.oscillating and asked and not given:
                 yield name, None, "is missing for an oscillating follower", "a length above 0"
         if self.offset and self.oscillating:
-            yield "offset", None, "an oscillating follower has none", "leave it out"
+            yield "offset", None, "does not apply to an oscillating follower", "leave it out"
         if self.face_offset and not (self.flat and self.oscillating):
             rule = "with an oscillating flat follower"
-            yield "face_offset", None, "only an oscillating flat follower has one", rule
+            yield "face_offset", None, "applies to an oscillating flat follower only", rule
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,56 +196,60 @@ class CamSpec(Brief):
         doc="the form of the cam",
     )
     prime_radius: float | None = _size(
-        doc="from the cam's axis to the centre of a round follower at zero lift"
+        doc="prime radius: from the cam's axis to the centre of a round follower at zero lift"
     )
     base_radius: float | None = _size(
-        doc="from the cam's axis to a flat face at zero lift; of round followers the prime "
-        "radius less the roller's"
+        doc="base radius: from the cam's axis to the profile at zero lift; give it instead of "
+        "prime_radius_mm, and always with a flat follower"
     )
-    thickness: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="of the plate")
+    thickness: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="thickness of the plate")
     rotation: str = param(
         TEXT,
         default="ccw",
         choices=("ccw", "cw"),
-        doc="direction in which the cam turns; cw gives the mirror image of ccw",
+        doc="direction in which the cam turns; cw is the mirror image of ccw",
     )
     prime_radius2: float | None = _size(
-        doc="from the axis to the second roller's centre at the highest lift, of conjugate cams"
+        doc="from the axis to the centre of conjugate cams' second roller, at the highest lift"
     )
     gap: float | None = param(
-        LENGTH, default=None, ge=0, le=1e5, doc="between conjugate cams; 0 when left out"
+        LENGTH, default=None, ge=0, le=1e5, doc="gap between conjugate cams; 0 if left out"
     )
-    outer_diameter: float | None = _size(doc="diameter of the disc that a groove is cut into")
-    groove_depth: float | None = _size(doc="depth of a groove, below the thickness")
+    outer_diameter: float | None = _size(doc="diameter of the disc of a groove cam")
+    groove_depth: float | None = _size(doc="depth of a groove, less than the thickness")
     roller_clearance: float | None = param(
         LENGTH, default=None, ge=0, le=100,
-        doc="width of a groove less the roller's diameter; 0 when left out",
+        doc="width of a groove minus the roller's diameter; 0 if left out",
     )  # fmt: skip
     side: str | None = param(
         TEXT, default=None, choices=("front", "back"),
-        doc="the face that a groove is cut into: front is +z, as when left out",
+        doc="face that a groove is cut into; front (+z) if left out",
     )  # fmt: skip
 
     walls: str | None = param(
         TEXT, default=None, choices=("lower", "both"),
-        doc="of a translating cam: the wall below the follower, as when left out, or a groove",
+        doc="walls of a translating cam: the lower one (if left out), or both walls of a groove",
     )  # fmt: skip
-    run_in: float | None = _run(doc="way of a translating cam before its motion, at zero lift")
-    run_out: float | None = _run(doc="way of a translating cam after its motion, at the last lift")
+    run_in: float | None = _run(
+        doc="length of a translating cam before its motion, at zero lift; 0 if left out"
+    )
+    run_out: float | None = _run(
+        doc="length of a translating cam after its motion, at the last lift; 0 if left out"
+    )
 
     @property
     def runs(self) -> tuple[float, float]:
-        """Ways of a translating cam before and after its motion, mm."""
+        """Lengths of a translating cam before and after its motion, mm."""
         return self.run_in or 0.0, self.run_out or 0.0
 
     @property
     def clockwise(self) -> bool:
-        """Whether it turns clockwise: everything is then mirrored at the y axis."""
+        """Whether it turns clockwise: everything is mirrored at the y axis then."""
         return self.rotation == "cw"
 
 
 def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
-    """Yield what is wrong with a cam's size for its follower.
+    """Yield what is wrong with the size of a cam for its follower.
 
     Parameters
     ----------
@@ -243,7 +266,12 @@ def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
     prime, base = cam.prime_radius, cam.base_radius
     if follower.flat:
         if prime is not None:
-            yield "prime_radius", None, "a flat follower has no centre", "base_radius_mm instead"
+            yield (
+                "prime_radius",
+                None,
+                "does not apply to a flat follower, which has no centre",
+                "base_radius_mm instead",
+            )
         elif base is None:
             yield "base_radius", None, "is missing for a flat follower", "a radius above 0"
     elif prime is None and base is None:
@@ -251,7 +279,7 @@ def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
         yield "prime_radius", None, "is missing", rule
     elif prime is not None and base is not None:
         rule = "one of prime_radius_mm and base_radius_mm"
-        yield "base_radius", None, "prime_radius_mm is given too", rule
+        yield "base_radius", None, "is given beside prime_radius_mm", rule
     elif prime is not None and prime <= follower.radius:
         rule = f"above the follower's radius of {shown(follower.radius)} mm"
-        yield "prime_radius", None, "leaves no cam below the follower", rule
+        yield "prime_radius", None, "is not larger than the follower's radius", rule

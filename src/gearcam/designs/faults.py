@@ -149,7 +149,7 @@ def _single(entry: Key) -> str:
 
 def _plural(entry: Key) -> str:
     if entry.param.choices:
-        return "words out of " + ", ".join(f'"{word}"' for word in entry.param.choices)
+        return "any of " + ", ".join(f'"{word}"' for word in entry.param.choices)
     text = " ".join(word for word in (f"{_KINDS[entry.base]}s", bounds(entry)) if word)
     return f'{text}, or "{entry.literal}"' if entry.literal else text
 

@@ -1,4 +1,4 @@
-"""The table ``[output]``: which files are wanted, and how exact."""
+"""The table ``[output]``: which files are written, and how exact."""
 
 from __future__ import annotations
 
@@ -14,35 +14,35 @@ FORMATS: Final = (
     "dxf", "cut-svg", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg",
     "inspection", "report",
 )  # fmt: skip
-"""What ``output.files`` of any kind may list."""
+"""Kinds of files that ``output.files`` may list."""
 
-_FILES: Final = "the files to write; summary.json always is"
+_FILES: Final = "files to write; summary.json is always written"
 
 
 def files_param(formats: tuple[str, ...]) -> Any:
-    """Return the field of the files that are wanted, out of some `formats`."""
+    """Return the field of the files to write, any of some `formats`."""
     return param(TEXT, default=("csv",), choices=formats, doc=_FILES)
 
 
 def pose_param(word: str, doc: str) -> Any:
-    """Return the field of the angle at which the machine is drawn: its key's `word`, its `doc`."""
+    """Return the field of the angle of the assembly drawing: the `word` of its key, its `doc`."""
     return param(ANGLE, default=0.0, ge=-36000, le=36000, word=word, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True)
 class OutputSpec(Brief):
-    """Which files are wanted, and how exact; each kind adds what its own files need.
+    """Which files are written, and how exact; each kind of design adds its own fields.
 
     Parameters
     ----------
     files : tuple of str
         Kinds of files.
     chord_tolerance : float, mm
-        Largest distance of an outline's chords from the true curve.
+        Largest distance of an outline from the true curve.
     kerf : float, mm
-        What the cutter burns away.
+        Width of the cut.
     dxf_curves, dxf_version : str
-        How outlines are drawn, and for which readers.
+        How outlines are drawn, and the version of the files.
     """
 
     files: tuple[str, ...] = files_param(FORMATS)
@@ -50,35 +50,39 @@ class OutputSpec(Brief):
         LENGTH,
         default=None,
         gt=0,
-        doc="largest distance of an outline's chords from the true curve; "
-        "the smaller of 0.001 mm and module/1000 when left out, never coarser than module/50",
+        doc="largest distance of an outline from the true curve, at most module/50; 0.001 mm or "
+        "module/1000 if left out, the smaller one",
     )
     kerf: float = param(
         LENGTH,
         default=0.0,
         ge=0,
         le=100,
-        doc="what the cutter burns away; the paths of dxf files to be cut and of cut-svg move by "
-        "half of it",
+        doc="width of the cut; cutting paths in dxf and cut-svg lie half of it beside the part",
     )
     dxf_curves: str = param(
-        TEXT, default="arcs", choices=("arcs", "splines", "lines"), doc="how dxf outlines are drawn"
+        TEXT,
+        default="arcs",
+        choices=("arcs", "splines", "lines"),
+        doc="how outlines are drawn in dxf files",
     )
     dxf_version: str | None = param(
         TEXT,
         default=None,
         choices=("R2010", "R12"),
-        doc="version of dxf files; R12, for old machines, with lines, R2010 else, when left out",
+        doc="version of dxf files; if left out R12 (for old machines) with lines, else R2010",
     )
 
 
 def output_faults(raw: Any) -> Iterator[Fault]:
-    """Yield what contradicts itself in a table ``[output]`` of any kind, as read."""
+    """Yield contradictions in a table ``[output]`` of any kind, as read."""
     if not isinstance(raw, Mapping):
         return
     if raw.get("dxf_curves") == "splines" and raw.get("dxf_version") == "R12":
         rule = '"arcs" or "lines" in R12, "splines" in R2010'
-        yield Fault(("output", "dxf_version"), '"R12": it knows no splines', "R12", rule)
+        yield Fault(
+            ("output", "dxf_version"), '"R12": DXF R12 does not support splines', "R12", rule
+        )
     files = raw.get("files")
     if isinstance(files, list):
         for index, name in enumerate(files):

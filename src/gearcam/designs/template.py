@@ -1,4 +1,4 @@
-"""A design file to start from: every key with its meaning, what may be left out as a comment."""
+"""A design file to start from: every key with its meaning, optional ones as comments."""
 
 from __future__ import annotations
 
@@ -16,30 +16,71 @@ _COLUMN: Final = 36
 _WIDTH: Final = 96
 
 _EXAMPLES: Final = {
+    "driven_travel_deg": 180,
+    "driver_travel_deg": 180,
     "module_mm": 2.5,
     "chord_tolerance_mm": 0.001,
-    "teeth": [1, 27],
-    "center_distance_mm": 120.1,
+    "teeth": [1, 2],
+    "center_distance_mm": 80.1,
     "density_kg_m3": 7850,
     "addendum": 1,
     "dedendum": 1.25,
     "tip_radius": 0.38,
-    "rim_mm": 10,
+    "rim_mm": 6,
     "outer_diameter_mm": 130,
     "cutter_teeth": 30,
-    "web_mm": 6,
+    "web_mm": 5,
+    "mark_diameter_mm": 1,
+    "offset_mm": 1.5,
     "angle_deg": 60,
+    "way_mm": 60,
     "lift_mm": 10,
     "lift_deg": 20,
     "to_mm": 4,
     "to_deg": 8,
+    "end_velocity_mm_per_rad": 5,
+    "end_velocity_deg_per_rad": 10,
+    "end_acceleration_mm_per_rad2": 0,
+    "end_acceleration_deg_per_rad2": 0,
+    "roller2_radius_mm": 6,
     "dome_radius_mm": 60,
-    "arm_mm": 90,
-    "pivot_distance_mm": 100,
-    "base_radius_mm": 32,
+    "arm_mm": 60,
+    "pivot_distance_mm": 70,
+    "arm2_mm": 60,
+    "roller_distance_mm": 85,
+    "arms_angle_deg": 80,
+    "preload_mm": 0.02,
+    "axis_deg": 10,
+    "pivot_height_mm": 0,
+    "base_radius_mm": 27,
+    "prime_radius2_mm": 45,
+    "gap_mm": 2,
+    "groove_depth_mm": 6,
+    "roller_clearance_mm": 0.05,
+    "side": "front",
+    "walls": "lower",
+    "run_in_mm": 10,
+    "run_out_mm": 10,
+    "length_mm": 150,
+    "height_mm": 40,
+    "bolt_spacing_mm": 60,
+    "bolt_height_mm": 10,
+    "dxf_version": "R2010",
+    "way_step_mm": 1,
+    "u_mm": 0,
     "tool_radius_mm": 8,
+    "pressure_angle_deg": 30,
+    "file": "motion.csv",
+    "smoothing_tolerance_mm": 0.01,
+    "smoothing_tolerance_deg": 0.01,
 }
-"""Values for comments where a key has no default."""
+"""Examples of keys that have no fixed default."""
+
+_HEADER: Final = """\
+# {doc}. Build it with: gearcam build FILE
+# Lengths are in mm, angles in degrees.
+# Keys and tables behind a # are optional: remove the # to use one. Each shows its default, unless
+# its comment begins with (example): then there is no fixed default, the value is an example."""
 
 
 def template(kind: str, name: str = "", process: str = "") -> str:
@@ -50,9 +91,9 @@ def template(kind: str, name: str = "", process: str = "") -> str:
     kind : str
         The kind of design.
     name : str
-        The design's name; ``my_`` and its kind where this cannot name one.
+        The design's name; ``my_`` and its kind if no folder can have this name.
     process : str
-        How the parts will be made, one of the kind's; the example as it is where left out.
+        How the parts will be made, one of the kind's processes; empty for the plain example.
 
     Returns
     -------
@@ -65,11 +106,9 @@ def template(kind: str, name: str = "", process: str = "") -> str:
 
 def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
     more = kind.processes[process] if process else {}
-    yield f"# {kind.doc[0].upper()}{kind.doc[1:]}. Build it with: gearcam build FILE"
-    yield "# Lengths are in mm and angles in degrees, as the keys say. What stands behind # is a"
-    yield "# comment: keys shown so may be left out; their defaults are given."
+    yield _HEADER.format(doc=f"{kind.doc[0].upper()}{kind.doc[1:]}")
     yield f'kind = "{kind.name}"'
-    yield key_line("name", name, "names the folder of the files")
+    yield key_line("name", name, "name of the output folder")
     yield ""
     if kind.main:
         yield from kind.room("describe").lines()
@@ -91,22 +130,23 @@ def entry_lines(known: Table, given: Mapping[str, Any]) -> Iterator[str]:
     for key, entry in known.entries.items():
         if key in given:
             yield key_line(key, given[key], description(entry))
-        elif known.title == "limits" and entry.default is None:  # the design decides
-            yield "# " + beside(key, description(entry), _COLUMN - 2)
         else:
-            yield key_line(key, _example(entry), description(entry), "# ")
+            yield comment_line(entry)
 
 
-def _example(entry: Key) -> Any:
+def comment_line(entry: Key) -> str:
+    """Return the line of an optional key: with its default, or with an example."""
     if entry.default in (None, REQUIRED):
-        made = entry.param
-        usual = made.choices[0] if made.choices else made.ge or made.gt or 1
-        return _EXAMPLES.get(entry.key, usual)
-    return entry.outward(entry.default)
+        words = f"(example) {description(entry)}"
+        return key_line(entry.key, _EXAMPLES.get(entry.key, 1), words, "# ")
+    value = entry.outward(entry.default)
+    if entry.param.both and len(set(value)) == 1:
+        value = value[0]
+    return key_line(entry.key, value, description(entry), "# ")
 
 
 def law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
-    """Yield comments on a law, by its first example: its `key`, `name`, `entry`, `known` table."""
+    """Yield comments on a law, with the values of an example: `key`, `name`, `entry`, `known`."""
     given = known.document(entry.example)
     yield "#"
     yield key_line(key, name, entry.doc, "# ")
@@ -118,7 +158,7 @@ def law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
 
 
 def key_line(key: str, value: Any, words: str, mark: str = "") -> str:
-    """Return ``key = value`` with `words` beside it, in a comment where a `mark` stands before."""
+    """Return ``key = value`` with `words` beside it, as a comment if its `mark` is ``# ``."""
     return mark + beside(f"{key} = {show(_short(value))}", words, _COLUMN - len(mark))
 
 

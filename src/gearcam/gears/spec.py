@@ -1,4 +1,4 @@
-"""What a design says of a gear pair: the pair, the rack and nothing computed."""
+"""Parameters of a gear pair as a design gives them: pair, rack, ring, steps; nothing computed."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from gearcam.display import Brief
 from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
 
 RIM = 2.7
-"""Rim beyond the roots, in modules, where the design gives none: 1.2 tooth depths."""
+"""Default rim beyond the roots, in modules: 1.2 tooth depths."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rack:
-    """The basic rack as it is asked for; heights in modules.
+    """The basic rack that a design asks for; heights in modules.
 
-    What is left out takes its default of `BasicRack`, or what fits to the values given (see
-    `settle_rack`).
+    A value that is None takes the default of `BasicRack`, or less if the given values leave no room
+    for it (see `settle_rack`).
 
     Examples
     --------
@@ -34,32 +34,32 @@ class Rack:
         default=None,
         gt=0.1,
         le=2,
-        doc="tooth height above the pitch curve, in modules; default 1, other where given values "
-        "leave no room for it",
+        doc="tooth height above the pitch curve, in modules; 1 if left out, or what the other "
+        "values leave room for",
     )
     dedendum: float | None = param(
         NUMBER,
         default=None,
         gt=0.1,
         le=2.5,
-        doc="depth below the pitch curve, in modules; default 1.25, other where given values leave "
-        "no room for it",
+        doc="tooth depth below the pitch curve, in modules; 1.25 if left out, or what the other "
+        "values leave room for",
     )
     tip_radius: float | None = param(
         NUMBER,
         default=None,
         ge=0,
         le=1,
-        doc="rounding of the cutter's tip, in modules; default 0.38, less where it does not fit",
+        doc="tip radius of the cutter, in modules; 0.38 if left out, or less where it does not fit",
     )
 
 
 @dataclass(frozen=True, kw_only=True)
 class BasicRack:
-    """The basic rack as it is used; the defaults are the common full-depth rack.
+    """The basic rack that is used; the defaults are the common full-depth rack.
 
-    The tip radius is the largest that leaves a land: 0.38 leaves a straight flank to 0.999968
-    modules.
+    A tip radius of 0.38 is the largest that leaves a land: the flank is straight to a depth of
+    0.999968 modules.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class BasicRack:
     tip_radius: float = 0.38
 
     def yielded(self, asked: Rack) -> dict[str, float]:
-        """Return the defaults that gave way to what is `asked` for: their values, by name."""
+        """Return the defaults that had to change beside the `asked` values: default by name."""
         return {
             name: default
             for name in ("addendum", "dedendum", "tip_radius")
@@ -86,11 +86,11 @@ class BasicRack:
 
 @dataclass(frozen=True, kw_only=True)
 class StepsSpec:
-    """Stepped wheels: each step is cut for itself, its teeth moved along the pitch curve.
+    """Stepped wheels: layers of equal width whose teeth are offset along the pitch curves.
 
-    The teeth of a non-circular wheel cannot follow a helix by twisting: every place of the
-    centrode bends differently. Steps of the same height, the teeth of each moved on by `offset`
-    along both centrodes, take turns in the mesh as those of a helical wheel do.
+    A non-circular wheel cannot be twisted into a helical one, because the curvature of its centrode
+    varies. In stepped wheels the teeth of each layer are moved by `offset` along both centrodes, so
+    that the layers mesh one after the other, as the teeth of helical wheels do.
 
     Examples
     --------
@@ -100,21 +100,21 @@ class StepsSpec:
     """
 
     count: int = param(
-        COUNT, default=1, ge=1, le=100, doc="steps over the width; 1 for spur wheels"
+        COUNT, default=1, ge=1, le=100, doc="number of steps over the width; 1 gives spur wheels"
     )
     offset: float | None = param(
         LENGTH,
         default=None,
         ge=-1e4,
         le=1e4,
-        doc="way of each step's teeth along the pitch curves against the one below; the pitch over "
-        "the steps if left out",
+        doc="offset of each step's teeth from those of the step below, along the pitch curves; the "
+        "pitch divided by the number of steps if left out",
     )
 
 
 @dataclass(frozen=True, kw_only=True)
 class PairSpec(Brief):
-    """Exactly one of centre distance and module is given; the other is solved.
+    """Size and teeth of a pair: centre distance or module is given, the other is solved.
 
     Examples
     --------
@@ -128,27 +128,42 @@ class PairSpec(Brief):
         TEXT,
         default="external",
         choices=("external", "internal"),
-        doc="whether wheel 2 is a wheel beside wheel 1, or a ring around it",
+        doc="external: wheel 2 is beside wheel 1; internal: it is a ring around wheel 1",
     )
-    center_distance: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, doc="distance of the shafts"
+    center_distance: float | None = param(LENGTH, default=None, gt=0, le=1e6, doc="centre distance")
+    module: float | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e4,
+        doc="module, L/(pi*z) with the length L of a pitch curve",
     )
-    module: float | None = param(LENGTH, default=None, gt=0, le=1e4, doc="module L/(pi*z)")
     teeth: tuple[int, int] = param(
-        COUNT, ge=3, le=10000, doc="tooth counts, driver first; a closed ring has the more"
+        COUNT,
+        ge=3,
+        le=10000,
+        doc="numbers of teeth, driver first; a ring that turns fully has more than its pinion",
     )
     x: float = param(
-        NUMBER, default=0.0, ge=-1, le=1, doc="profile shift in modules: + on wheel 1, - on wheel 2"
+        NUMBER,
+        default=0.0,
+        ge=-1,
+        le=1,
+        doc="profile shift in modules: +x on wheel 1, -x on wheel 2",
     )
     backlash: float = param(
-        LENGTH, default=0.0, ge=0, le=1e4, doc="backlash along the pitch curve, of both wheels"
+        LENGTH,
+        default=0.0,
+        ge=0,
+        le=1e4,
+        doc="backlash along the pitch curve, of both wheels together",
     )
-    face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="width of the wheels")
+    face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="face width of the wheels")
 
 
 @dataclass(frozen=True, kw_only=True)
 class RingSpec:
-    """The metal around the teeth of a ring, and the pinion cutter that cuts them.
+    """The rim of a ring, and the pinion cutter for its teeth.
 
     Examples
     --------
@@ -161,29 +176,29 @@ class RingSpec:
         TEXT,
         default="round",
         choices=("round", "follow"),
-        doc="outside of the ring: a circle, or parallel to the roots",
+        doc="outside of the ring: a circle (round), or parallel to the roots (follow)",
     )
     rim: float | None = param(
         LENGTH,
         default=None,
         gt=0,
         le=1e6,
-        doc="least metal outside the roots; 2.7 modules if left out",
+        doc="least rim outside the roots; 2.7 modules if left out",
     )
     outer_diameter: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, doc="diameter of a round outside, in place of the rim"
+        LENGTH, default=None, gt=0, le=1e6, doc="outer diameter of a round ring, instead of rim_mm"
     )
     cutter_teeth: float | None = param(
         NUMBER,
         default=None,
         ge=3,
         le=10000,
-        doc="teeth of the pinion cutter, whole or not; if left out, as many as leave room for the "
-        "mate's tips",
+        doc="teeth of the pinion cutter, not necessarily whole; if left out, a number that leaves "
+        "room for the tips of wheel 1",
     )
 
     def least_rim(self, roots: float, module: float) -> float:
-        """Return the least metal outside the roots.
+        """Return the least rim outside the roots.
 
         Parameters
         ----------
@@ -195,7 +210,7 @@ class RingSpec:
         Returns
         -------
         float, mm
-            Not positive where a round outside would reach the roots.
+            0 or less where a round ring of this diameter would cut into the roots.
         """
         if self.outer_diameter is not None:
             return 0.5 * self.outer_diameter - roots
@@ -204,14 +219,14 @@ class RingSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class Finish:
-    """What is taken off the toothed edge of a wheel as it is made.
+    """Clearance and rounding of the toothed edge of a wheel.
 
     Parameters
     ----------
     clearance : float, mm
-        Everywhere along the normal.
+        Taken off everywhere, along the normal.
     tip_rounding : float, mm
-        Radius of the rounded edges of the tips.
+        Radius of the rounded tip edges.
     """
 
     clearance: float = 0.0

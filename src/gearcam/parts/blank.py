@@ -65,43 +65,56 @@ class WheelBlank(Brief):
     """
 
     bore_diameter: float | None = param(
-        LENGTH, default=None, ge=0, le=1e6, doc="bores; none if left out"
+        LENGTH, default=None, ge=0, le=1e6, doc="diameter of the bore; no bore if left out"
     )
     keyway_width: float = _length(doc="width of the keyway")
-    keyway_depth: float = _length(doc="its depth from the bore's circle, at its middle")
-    keyway_angle: float = _angle(doc="its direction")
-    bore_flat: float = _length(doc="D-bore: from the flat to the far side")
-    bolts: int = _count(doc="bolt holes", le=100)
-    bolt_circle: float = _length(doc="diameter of their circle")
-    bolt_diameter: float = _length(doc="diameter of each")
-    bolt_angle: float = _angle(doc="direction of the first")
+    keyway_depth: float = _length(doc="depth of the keyway from the bore's circle, at its middle")
+    keyway_angle: float = _angle(doc="direction of the keyway")
+    bore_flat: float = _length(doc="D-shaped bore: from the flat to the opposite side")
+    bolts: int = _count(doc="number of bolt holes", le=100)
+    bolt_circle: float = _length(doc="diameter of the bolt circle")
+    bolt_diameter: float = _length(doc="diameter of each bolt hole")
+    bolt_angle: float = _angle(doc="direction of the first bolt hole")
     hub_diameter: float = _length(doc="diameter of the hub")
-    hub_front: float = _length(doc="how far the hub stands out in front (+z)", le=1e5)
-    hub_back: float = _length(doc="how far it stands out at the back", le=1e5)
-    lightening_holes: int = _count(doc="round holes that take weight off", le=36)
+    hub_front: float = _length(doc="height of the hub on the front face (+z)", le=1e5)
+    hub_back: float = _length(doc="height of the hub on the back face", le=1e5)
+    lightening_holes: int = _count(doc="number of round lightening holes", le=36)
     rim: float | None = param(
         LENGTH, default=None, gt=0, le=1e6,
-        doc="rim that they keep below the roots; 2.7 modules if left out",
+        doc="least metal between lightening holes and roots; 2.7 modules if left out",
     )  # fmt: skip
     web: float | None = param(
         LENGTH, default=None, gt=0, le=1e6,
-        doc="what they keep to one another, to bore, hub and bolts; as the rim if left out",
+        doc="least metal between lightening holes, and from them to bore, hub and bolt holes; the "
+        "rim if left out",
     )  # fmt: skip
-    stop_pin: float = _length(doc="diameter of the stop pin in the slot of an open wheel", le=1e5)
-    timing_marks: bool = param(TEXT, default=True, doc="dimples that face each other at phi1 = 0")
+    stop_pin: float = _length(
+        doc="diameter of the stop pin, which runs in a slot of an open wheel", le=1e5
+    )
+    timing_marks: bool = param(
+        TEXT, default=True, doc="whether timing marks face each other at phi1 = 0"
+    )
     mark_diameter: float | None = param(
-        LENGTH, default=None, gt=0, le=1e5, doc="their diameter; 0.4 modules if left out"
+        LENGTH,
+        default=None,
+        gt=0,
+        le=1e5,
+        doc="diameter of the timing marks; 0.4 modules if left out",
     )
     density: float | None = param(
-        DENSITY, default=None, gt=0, le=1e5, doc="for mass, centroid, unbalance and inertia"
+        DENSITY,
+        default=None,
+        gt=0,
+        le=1e5,
+        doc="density, for mass, centre of mass, unbalance and inertia",
     )
-    clearance: float = _length(doc="taken off the toothed edge, along its normal", le=100)
+    clearance: float = _length(doc="what is taken off the toothed edge, along its normal", le=100)
     clearance_bores: bool = param(
         TEXT,
         default=False,
-        doc="whether bores, bolt holes and stop slots are wider by it, all around",
+        doc="whether bores, bolt holes and stop slots are widened by the clearance too",
     )
-    tip_rounding: float = _length(doc="radius of the teeth's rounded tip edges", le=100)
+    tip_rounding: float = _length(doc="radius of the rounded tip edges of the teeth", le=100)
 
     @property
     def bore(self) -> float:

@@ -32,13 +32,17 @@ class CamBlank(WheelBlank):
 
     timing_marks: bool = field(default=False)
     length: float | None = _size(
-        doc="length of a translating cam's plate; as long as what is cut into it needs, if left out"
+        doc="length of a translating cam's plate; as long as its profile needs if left out"
     )
     height: float | None = _size(
-        doc="height of a translating cam's plate, with one wall up to the largest lift"
+        doc="height of a translating cam's plate; with one wall, up to the largest lift"
     )
-    bolt_spacing: float | None = _size(doc="from bolt to bolt of a row, about the plate's middle")
-    bolt_height: float | None = _size(doc="from the plate's lower edge to the row of bolts")
+    bolt_spacing: float | None = _size(
+        doc="distance of the bolts in the row of a translating cam, centred on the plate"
+    )
+    bolt_height: float | None = _size(
+        doc="from the lower edge of a translating cam's plate to the row of bolts"
+    )
 
     def problems(self) -> Iterator[Problem]:
         """Yield what is wrong by reading: field, None, message, allowed."""

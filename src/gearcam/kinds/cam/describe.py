@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from gearcam.designs.faults import description
 from gearcam.designs.listing import Listed, listed
 from gearcam.designs.schema import chosen, table_schema, told
 from gearcam.designs.table import Table
-from gearcam.designs.template import entry_lines, key_line, law_comment
+from gearcam.designs.template import comment_line, entry_lines, key_line, law_comment
 from gearcam.kinds.cam.design import KIND
 from gearcam.kinds.cam.motion import (
     LIFT,
@@ -28,7 +27,7 @@ _ROWS: Final = "motion-table"
 _FORMULA: Final = "motion-formula"
 """Names of the definitions of a motion over the whole turn."""
 
-_SHOWN: Final = {"file": "motion.csv", "smoothing_tolerance_mm": 0.01}
+_SHOWN: Final = ("file", "smoothing_tolerance_mm")
 """Its keys with values in the template."""
 
 
@@ -91,28 +90,28 @@ def known(raw: Mapping[str, Any]) -> Table:
 
 
 def lines() -> Iterator[str]:
-    """Yield the lines of the template: the example's phases, others and other laws as comments."""
+    """Yield the lines of the template: the example's phases; other phases and laws as comments."""
     example = KIND.example["motion"]
     yield f"# {KIND.notes['motion']}"
     for phase in example:
         yield from _phase(phase)
         yield ""
-    yield "# Other phases, to stand among those above:"
+    yield "# Other phases that can be used above:"
     for name in PHASES:
         if name not in (phase["type"] for phase in example):
             yield "#"
             yield from _phase({"type": name}, "# ")
     yield ""
-    yield "# Instead of all phases, the whole turn: by rows of angle and lift, or by a formula:"
+    yield "# Instead of phases, the whole turn as rows of angle and lift, or as a formula:"
     yield "#"
     yield "# [motion]"
     for key, entry in (item for known in turn_tables() for item in known.entries.items()):
         if key in _SHOWN:
-            yield key_line(key, _SHOWN[key], description(entry), "# ")
+            yield comment_line(entry)
         else:
             yield f"#   or {key}: {entry.param.doc}"
     yield ""
-    yield "# Other laws of rises and returns:"
+    yield "# Other laws of rises and returns, with example values:"
     used = {phase["law"] for phase in example if "law" in phase}
     for name, entry in RISES.items():
         if name not in used:
@@ -120,7 +119,7 @@ def lines() -> Iterator[str]:
 
 
 def _phase(given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
-    """Show a phase, or tell of one in comments where a mark stands before its lines."""
+    """Yield the lines of a phase, as comments if `mark` is ``# ``."""
     law = given.get("law", "")
     yield f"{mark}[[motion]]"
     yield key_line("type", given["type"], summary(PHASES[given["type"]]), mark)

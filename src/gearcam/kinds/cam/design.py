@@ -39,30 +39,32 @@ CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 
 LATER_FORMS: Final = ("cylinder",)
-"""Forms of cams that are planned."""
+"""Forms of cams that are planned but not available."""
 
 _OF_WHEELS: Final = ("stop_pin", "tip_rounding", "timing_marks", "mark_diameter")
-"""What a blank has for wheels only."""
+"""Keys of a blank for wheels only."""
 
 _BLANK_WORDS: Final = {
-    "bore_diameter": "bore; none if left out",
-    "keyway_angle": "its direction in the cam's frame",
-    "bolt_angle": "direction of the first in the cam's frame",
-    "rim": "rim that they keep below the profile",
+    "keyway_angle": "direction of the keyway in the cam's frame",
+    "bolt_angle": "direction of the first bolt hole in the cam's frame",
+    "rim": "least metal between lightening holes and profile; two thirds of the thickness if left "
+    "out",
+    "clearance": "what is taken off the profile, along its normal",
+    "clearance_bores": "whether bore and bolt holes are widened by the clearance too",
 }
-"""Meanings that are told of wheels otherwise."""
+"""Meanings of keys that differ from those of wheels."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CamOutputSpec(OutputSpec):
-    """Which files of a cam are wanted, and how exact (see `OutputSpec`).
+    """Which files of a cam are written, and how exact (see `OutputSpec`).
 
     Parameters
     ----------
     pose : float, rad
-        Cam angle of the assembled cam.
+        Cam angle of the assembly drawing.
     place : float or None, mm
-        Way of the assembled translating cam.
+        Travel of a translating cam in the assembly drawing.
 
     Examples
     --------
@@ -77,46 +79,50 @@ class CamOutputSpec(OutputSpec):
         default=None,
         gt=0,
         le=1,
-        doc="largest distance of an outline's chords from the true curve; 0.001 mm when left out",
+        doc="largest distance of an outline from the true curve; 0.001 mm if left out",
     )
-    pose: float = pose_param("theta", "cam angle at which the assembled cam is drawn")
+    pose: float = pose_param("theta", "cam angle of the assembly drawing")
     motion_step: float = param(
         ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
     )
     way_step: float | None = param(
         LENGTH, default=None, gt=0, le=1e6,
-        doc="step of a translating cam's way in motion.csv; 1 mm when left out",
+        doc="step of a translating cam's travel in motion.csv; 1 mm if left out",
     )  # fmt: skip
     place: float | None = param(
         LENGTH, default=None, ge=0, le=1e6, word="u",
-        doc="way at which a translating cam is drawn below its follower",
+        doc="travel of a translating cam in the assembly drawing; 0 if left out",
     )  # fmt: skip
     inspection_points: int = param(
-        COUNT, default=360, ge=8, le=100000, doc="points in inspection.csv, at even cam angles"
+        COUNT,
+        default=360,
+        ge=8,
+        le=100000,
+        doc="number of points in inspection.csv, at equal steps of the cam angle",
     )
     tool_radius: float | None = param(
         LENGTH,
         default=None,
         gt=0,
         le=1e6,
-        doc="radius of the cutter of the tool path; the follower's radius when left out",
+        doc="radius of the cutter of the tool path; the follower's radius if left out",
     )
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class CamDesign(Design):
-    """A cam with its follower as it is asked for (see `Design`).
+    """The design of a cam with its follower (see `Design`).
 
     Parameters
     ----------
     motion : sequence of Phase, MotionTable or MotionFormula
         The lift over a turn of the cam.
     follower : FollowerSpec
-        What touches the cam, and how it is guided.
+        The follower and its guide.
     cam : CamSpec
         Form, size, direction of turning.
     blank : CamBlank or WheelBlank
-        Bore, hub, holes, density; a cam has no timing marks.
+        Bore, hub, holes, density.
     output : CamOutputSpec
         Files and their tolerance.
 
@@ -159,10 +165,12 @@ class CamDesign(Design):
 
 
 def _unmarked(blank: WheelBlank, source: str) -> CamBlank:
-    """Return a blank as one of a cam, without timing marks; refuse what else only wheels have."""
+    """Return the blank of a cam, without timing marks; refuse other keys for wheels only."""
     plain = {item.name: item.default for item in dataclasses.fields(WheelBlank)}
     problems = [
-        Problem("a cam has none", file=source, key=f"blank.{name}", value=getattr(blank, name))
+        Problem(
+            "does not apply to a cam", file=source, key=f"blank.{name}", value=getattr(blank, name)
+        )
         for name in _OF_WHEELS
         if name != "timing_marks" and getattr(blank, name) != plain[name]
     ]
@@ -174,7 +182,7 @@ def _unmarked(blank: WheelBlank, source: str) -> CamBlank:
 
 @lru_cache(maxsize=1)
 def _blank_table() -> Table:
-    """Return the table of a cam's blank: the keys of a wheel's but for those of teeth."""
+    """Return the table of a cam's blank: the keys of a wheel's without those of teeth."""
     entries = {}
     for key, entry in table_of("blank", CamBlank).entries.items():
         if entry.name not in _OF_WHEELS:
@@ -194,7 +202,7 @@ def _later(document: Mapping[str, Any]) -> Fault | None:
     form = cam.get("form") if isinstance(cam, Mapping) else None
     if document.get("kind") != NAME or form not in LATER_FORMS:
         return None
-    message = f"{show(form)}: {form} cams are not built by this version yet"
+    message = f"{show(form)}: {form} cams are planned, but not available yet"
     rule = quoted(KINDS[NAME].table("cam").entries["form"].param.choices or ())
     return Fault(("cam", "form"), message, form, rule)
 
@@ -223,7 +231,7 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
     files, kind = output.get("files"), follower.get("type")
     asked = isinstance(files, list) and "tool-path" in files
     if asked and kind in ("flat", *POINTED) and "tool_radius_mm" not in output:
-        message = f"is missing: a {kind} follower gives a tool path no radius"
+        message = f"is missing: a {kind} follower has no radius that a cutter could have"
         yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
 
 
@@ -262,17 +270,30 @@ KIND: Final = DesignKind(
             {"type": "dwell", "angle_deg": "rest"},
         ],
         "follower": {"type": "roller", "motion": "translating", "roller_radius_mm": 8},
-        "cam": {"prime_radius_mm": 40, "thickness_mm": 12},
-        "blank": {"bore_diameter_mm": 16},
-        "output": {"files": ["dxf", "csv"]},
+        "cam": {"prime_radius_mm": 42, "thickness_mm": 10},
+        "blank": {"bore_diameter_mm": 8},
+        "output": {"files": ["dxf", "csv", "report"]},
     },
     processes={
-        "printing": {"output": {"files": ["3mf", "svg"]}},
-        "laser": {"output": {"files": ["cut-svg", "dxf"], "kerf_mm": 0.15}},
-        "wire": {"output": {"files": ["dxf"], "kerf_mm": 0.3}},
+        "printing": {
+            "cam": {"thickness_mm": 8},
+            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
+            "output": {"files": ["stl", "report"], "chord_tolerance_mm": 0.01},
+        },
+        "laser": {
+            "cam": {"thickness_mm": 4},
+            "output": {
+                "files": ["dxf", "cut-svg", "report"],
+                "kerf_mm": 0.15,
+                "chord_tolerance_mm": 0.02,
+            },
+        },
+        "wire": {
+            "output": {"files": ["dxf", "report"], "kerf_mm": 0.3, "chord_tolerance_mm": 0.002}
+        },
     },
     notes={
-        "motion": "The lift over a turn of the cam, 360 deg in all; one phase may take the rest.",
-        "cam": "prime_radius_mm or base_radius_mm; a flat follower has base_radius_mm",
+        "motion": "Phases of the motion, one after the other, 360 deg in all.",
+        "cam": "give prime_radius_mm or base_radius_mm; with a flat follower base_radius_mm",
     },
 )

@@ -1,8 +1,8 @@
 """The motion of a cam: an array ``[[motion]]`` of phases, or a table ``[motion]`` of the turn.
 
 Each phase has the keys of its type and of its law. A rise and a return have a ``law`` of the
-registry `gearcam.laws.rises.base.RISES`, whose parameters stand beside the keys of the phase. The
-whole turn is told by a formula, ``lift``, or by rows.
+registry `gearcam.laws.rises.base.RISES`, whose parameters are further keys of the phase. The whole
+turn is given by a formula, ``lift``, or by rows.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ WITH_LAW: Final = tuple(name for name, owner in PHASES.items() if issubclass(own
 """The phases that have a law."""
 
 LIFT: Final = {"rise": "lift", "segment": "to"}
-"""What a phase must give, as a length or as an angle, without the suffix of its unit."""
+"""Required key of a phase, a length or an angle, without the suffix of its unit."""
 
 SPAN: Final = "angle"
-"""What every phase gives: an angle, or a way where the cam slides."""
+"""Key of every phase: an angle, or a travel if the cam slides."""
 
 _UNREADABLE: Final = RisePhase(angle=1.0, law=None)
-"""Stands for a phase that cannot be read: without a lift, so that nothing is said of the sum."""
+"""Replaces a phase that cannot be read; as its lift is missing, sums are not checked."""
 
 
 @cache
@@ -69,7 +69,7 @@ def rise_table(law: str) -> Table:
 
 
 def twins(known: Table) -> dict[str, tuple[str, ...]]:
-    """Return the keys that say the same as a length and as an angle, by their field."""
+    """Return the keys of each field that can be a length or an angle."""
     words: dict[str, list[str]] = {}
     for key, entry in known.entries.items():
         words.setdefault(entry.name, []).append(key)
@@ -77,7 +77,7 @@ def twins(known: Table) -> dict[str, tuple[str, ...]]:
 
 
 def summary(phase: type) -> str:
-    """Return what a phase is, in a few words."""
+    """Return a short description of a phase."""
     first = (phase.__doc__ or "").partition("\n")[0].rstrip(".")
     return first[:1].lower() + first[1:]
 
@@ -98,21 +98,21 @@ def examine_motion(
     """
     raw = document.get(TITLE)
     types = quoted(PHASES)
-    rule = f"[[{TITLE}]] for each phase, with type = {types}; or [{TITLE}] with rows or a lift"
+    rule = f"[[{TITLE}]] for each phase, with type = {types}; or one [{TITLE}] with rows or lift"
     oscillating = _oscillating(document.get("follower", {}))
     sliding = _sliding(document.get("cam", {}))
     if TITLE not in document:
-        found.faults.append(Fault((TITLE,), f"there is no [[{TITLE}]]", allowed=rule))
+        found.faults.append(Fault((TITLE,), "is missing", allowed=rule))
     elif isinstance(raw, Mapping) and "type" in raw:
-        hint = f"write [[{TITLE}]] in double brackets"
+        hint = f"write phases with double brackets: [[{TITLE}]]"
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
     elif isinstance(raw, Mapping) and sliding:
-        message = "tells of a turn, and the cam has none"
+        message = "is given over a turn, but the cam slides"
         found.faults.append(Fault((TITLE,), message, raw, f"[[{TITLE}]] with way_mm"))
     elif isinstance(raw, Mapping):
         _examine_turn(raw, oscillating, found, home)
     elif not isinstance(raw, list) or not raw:
-        message = "the list is empty" if raw == [] else f"{show(raw)} is no list of tables"
+        message = "the list is empty" if raw == [] else f"{show(raw)} is not a list of tables"
         found.faults.append(Fault((TITLE,), message, raw, rule))
     else:
         before = len(found.faults)
@@ -124,13 +124,13 @@ def examine_motion(
 
 
 def _oscillating(follower: Any) -> bool | None:
-    """Return whether a follower oscillates; None where its table does not say."""
+    """Return whether a follower oscillates; None if its table does not say."""
     motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
     return motion == "oscillating" if motion in ("translating", "oscillating") else None
 
 
 def _sliding(cam: Any) -> bool:
-    """Return whether a cam slides; one of no known form turns."""
+    """Return whether a cam slides; False for unknown forms."""
     form = cam.get("form") if isinstance(cam, Mapping) else None
     return form in SLIDING
 
@@ -148,7 +148,7 @@ def _by_formula() -> type[MotionFormula]:
 
 
 def whole_turns() -> tuple[type[MotionTable], type[MotionFormula]]:
-    """Return the classes of motions that tell the whole turn."""
+    """Return the classes of motions that are given for the whole turn."""
     return _by_rows(), _by_formula()
 
 
@@ -184,7 +184,7 @@ def _phase(
     found: Examined,
     home: Callable[[str], str],
 ) -> Phase | None:
-    """Examine one phase; what can be read of it serves to judge the program.
+    """Examine one phase and return what can be read of it, to check the program.
 
     `kind` is whether the follower oscillates and whether the cam slides.
     """
@@ -205,7 +205,7 @@ def _phase(
     else:
         chose, _ = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
         rest.pop("law", None)
-        if not chose:  # whatever any law asks for may be meant
+        if not chose:  # it may be a key of any law
             rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
         known = phase_table(name, chose).of_cams(sliding=sliding)
         told = _told(known, oscillating, "law")
@@ -225,7 +225,7 @@ def _phase(
 
 
 def _told(known: Table, oscillating: bool | None, *chosen: str) -> list[str]:
-    """Return the keys of a phase that people are told of: lifts of its follower's kind only."""
+    """Return the keys of a phase for messages: lifts for its kind of follower only."""
     of_kind = [
         key
         for key, entry in known.entries.items()
@@ -235,7 +235,7 @@ def _told(known: Table, oscillating: bool | None, *chosen: str) -> list[str]:
 
 
 def _wrong_span(known: Table, raw: Mapping[str, Any], at: Path, sliding: bool) -> Iterator[Fault]:
-    """Yield the faults of angles where the cam slides, and of ways where it turns."""
+    """Yield the faults of angles if the cam slides, and of travels if it turns."""
     for key, entry in known.entries.items():
         if key not in raw:
             continue
@@ -243,19 +243,19 @@ def _wrong_span(known: Table, raw: Mapping[str, Any], at: Path, sliding: bool) -
             message, rule = ("turns", "angle_deg") if entry.slides else ("slides", "way_mm")
             yield Fault((*at, key), f"{show(raw[key])}: the cam {message}", raw[key], rule)
         elif sliding and "_per_rad" in key:
-            message = f"{show(raw[key])}: the cam slides, a segment on it ends at rest"
+            message = f"{show(raw[key])}: segments of a cam that slides end at rest"
             yield Fault((*at, key), message, raw[key], "leave it out")
 
 
 def _wrong_kind(
     known: Table, raw: Mapping[str, Any], at: Path, oscillating: bool | None
 ) -> Iterator[Fault]:
-    """Yield the faults of lifts that are lengths for a follower that oscillates, or angles."""
+    """Yield the faults of lengths for an oscillating follower, and of angles for a translating."""
     kind, unit = ("an oscillating", "_deg") if oscillating else ("a translating", "_mm")
     for key, entry in known.entries.items():
         if key in raw and oscillating is not None and entry.swings is (not oscillating):
-            message = f"{show(raw[key])}: is of the wrong kind for {kind} follower"
-            yield Fault((*at, key), message, raw[key], f"the key in {unit}")
+            message = f"{show(raw[key])}: wrong unit for the lift of {kind} follower"
+            yield Fault((*at, key), message, raw[key], f"the key that ends in {unit}")
 
 
 def _asked(key: str) -> bool:
@@ -328,7 +328,7 @@ def motion_of(
 
 
 def homes() -> dict[str, str]:
-    """Return where the keys of a motion belong, in words."""
+    """Return in words where the keys of a motion belong."""
     by_phase: dict[str, list[str]] = {"law": list(WITH_LAW)}
     for name in PHASES:
         for key in phase_table(name).entries:

@@ -38,7 +38,7 @@ def lines() -> Iterator[str]:
     yield key_line("type", example["type"], LAWS[example["type"]].doc)
     yield from entry_lines(law_table(example["type"]), example)
     yield ""
-    yield "# Other laws, to stand in place of the table above:"
+    yield "# Other laws that can replace the table above, with example values:"
     for name, entry in LAWS.items():
         if name != example["type"]:
             yield from law_comment("type", name, entry, law_table(name))

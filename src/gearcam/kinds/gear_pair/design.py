@@ -44,12 +44,12 @@ _COARSEST: Final = 50
 
 @dataclass(frozen=True, kw_only=True)
 class PairOutputSpec(OutputSpec):
-    """Which files of a gear pair are wanted, and how exact (see `OutputSpec`).
+    """Which files of a gear pair are written, and how exact (see `OutputSpec`).
 
     Parameters
     ----------
     pose : float, rad
-        Driver angle of the assembled pair.
+        Driver angle of the assembly drawing.
 
     Examples
     --------
@@ -58,9 +58,9 @@ class PairOutputSpec(OutputSpec):
     PairOutputSpec(files=('dxf', 'csv'), chord_tolerance=0.005)
     """
 
-    pose: float = pose_param("phi1", "driver angle at which the assembled pair is drawn")
+    pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
-        COUNT, default=9, ge=2, le=1000, doc="points on each flank in inspection.csv"
+        COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
     )
 
 
@@ -210,7 +210,7 @@ def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
 def _pair_faults(raw: Any) -> Iterator[Fault]:
     if not isinstance(raw, Mapping):
         return
-    rule = "exactly one of center_distance_mm and module_mm; the other is solved"
+    rule = "exactly one of center_distance_mm and module_mm; the other is computed"
     distance, module = raw.get("center_distance_mm"), raw.get("module_mm")
     if distance is not None and module is not None:
         message = (
@@ -323,24 +323,31 @@ KIND: Final = DesignKind(
             "knots_deg": [0, 160, 360],
             "ratios": [1.25, 0.75, 1.25],
         },
-        "pair": {"center_distance_mm": 120, "teeth": [48, 48], "face_width_mm": 10},
-        "blank": {"bore_diameter_mm": [16, 16]},
-        "output": {"files": ["dxf", "csv"]},
+        "pair": {"center_distance_mm": 80, "teeth": [32, 32], "face_width_mm": 10},
+        "blank": {"bore_diameter_mm": 8},
+        "output": {"files": ["dxf", "csv", "report"]},
     },
     processes={
         "printing": {
-            "pair": {"backlash_mm": 0.1},
+            "pair": {"backlash_mm": 0.1, "face_width_mm": 8},
             "blank": {"clearance_mm": 0.05, "clearance_bores": True},
-            "output": {"files": ["3mf", "svg"]},
+            "output": {"files": ["stl", "report"], "chord_tolerance_mm": 0.01},
         },
         "laser": {
-            "pair": {"backlash_mm": 0.1},
-            "output": {"files": ["cut-svg", "dxf"], "kerf_mm": 0.15},
+            "pair": {"backlash_mm": 0.1, "face_width_mm": 4},
+            "output": {
+                "files": ["dxf", "cut-svg", "report"],
+                "kerf_mm": 0.15,
+                "chord_tolerance_mm": 0.02,
+            },
         },
-        "wire": {"pair": {"backlash_mm": 0.03}, "output": {"files": ["dxf"], "kerf_mm": 0.3}},
+        "wire": {
+            "pair": {"backlash_mm": 0.03},
+            "output": {"files": ["dxf", "report"], "kerf_mm": 0.3, "chord_tolerance_mm": 0.002},
+        },
     },
     notes={
         "law": "the ratio i21 = dphi2/dphi1 over the driver's angle",
-        "pair": "exactly one of center_distance_mm and module_mm; the other is solved",
+        "pair": "give center_distance_mm or module_mm; the other is computed",
     },
 )

@@ -1,11 +1,11 @@
-"""What a form of cams is: which keys it takes, the cam it makes, its parts, drawings and facts.
+"""Forms of cams: the keys that a form takes, the cam it makes, its parts, drawings and facts.
 
-A *form* is an entry of `FORMS`, loaded when a design names it. It says what is its own; everything
-else looks at the walls and motions of the cam that it has made and at its parts, in their order,
-and asks for no form's name. The disc cam (`disc`) has what fits every cam whose walls are the
-outlines of plates.
+A *form* is an entry of `FORMS`, loaded when a design names it. It defines only what is special to
+it; all other code uses the walls, motions and parts of the cam that it has made, in their order,
+and never asks for the name of a form. The disc cam (`disc`) has what fits every cam whose walls are
+the outlines of plates.
 
-Refused by reading: keys of other forms, and missing ones.
+Refused when a design is read: keys of other forms, and missing ones.
 """
 
 from __future__ import annotations
@@ -47,13 +47,13 @@ PLATE: Final[Keys] = {
     ),
     "output": ("pose", "motion_step"),
 }  # fmt: skip
-"""What a plate that turns may be given."""
+"""Keys of a plate that turns."""
 
 SLIDING: Final = ("translating",)
-"""Names of the forms that slide: a design is read without loading them."""
+"""Names of the forms that slide, known without loading them."""
 
 OWN_OUTPUT: Final = ("pose", "place", "motion_step", "way_step")
-"""What output of some forms has and of others has not."""
+"""Keys of ``[output]`` that only some forms have."""
 
 
 def plate_keys(cam: tuple[str, ...] = (), follower: tuple[str, ...] = ()) -> Keys:
@@ -62,7 +62,7 @@ def plate_keys(cam: tuple[str, ...] = (), follower: tuple[str, ...] = ()) -> Key
 
 
 class Form(Protocol):
-    """A form of cams: its name, and what is its own."""
+    """A form of cams: its name, and what is special to it."""
 
     name: str
     """As in a design file."""
@@ -71,30 +71,30 @@ class Form(Protocol):
     """One line for people."""
 
     takes: ClassVar[Keys] = PLATE
-    """What it may be given."""
+    """Keys that it takes."""
 
     needs: ClassVar[Keys] = {}
-    """What it must be given besides what every cam must."""
+    """Keys that it needs, besides those that every cam needs."""
 
     half_turns: ClassVar[bool] = False
-    """Whether phases may fill half a turn, which their opposite follows."""
+    """Whether phases may fill half a turn; the other half is then its opposite."""
 
     assembly: ClassVar[str] = ""
-    """Stem of the files with all parts where they stand; empty of forms with one part."""
+    """Stem of the files of the assembly; empty for forms with one part."""
 
     @property
     def slides(self) -> bool:
-        """Whether it slides: its motion is told along a way, not about a turn."""
+        """Whether it slides: its motion is given over a travel, not over a turn."""
         return self.name in SLIDING
 
     rows: ClassVar[tuple[str, ...]] = ()
-    """Facts of its own that stand in the tables of its drawings."""
+    """Facts of its own in the tables of its drawings."""
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}()"
 
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG002
-        """Yield what else is wrong by reading with the `parts` of a design, by their titles."""
+        """Yield contradictions between the `parts` of a design, which are given by their titles."""
         yield from ()
 
     def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
@@ -113,30 +113,30 @@ class Form(Protocol):
 
     @abstractmethod
     def made(self, result: CamResult) -> tuple[Contour, ...]:
-        """Return the walls as made on the parts, in the walls' order."""
+        """Return the walls on the finished parts, in the order of the walls."""
 
     @abstractmethod
     def drawings(self, result: CamResult) -> tuple[Drawing, ...]:
-        """Return a drawing of each part in its own frame, as files of cutters have it."""
+        """Return a drawing of each part in its own frame, for cutting."""
 
     @abstractmethod
     def picture(self, result: CamResult) -> Drawing:
-        """Return the assembled cam with its follower, at the angle of the design."""
+        """Return the cam assembled with its follower, at the angle of the design."""
 
     @abstractmethod
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
-        """Return ways of the middle of a cutter of a `radius`, mm, by the stems of their files."""
+        """Return paths of the centre of a cutter of a `radius`, mm, by the stems of their files."""
 
     def rows_of(self, number: int, rows: tuple[str, ...]) -> tuple[str, ...]:  # noqa: ARG002
-        """Return the facts for the table of a part's drawing: `rows` of all forms, and its own."""
+        """Return the facts in the table of a part's drawing: `rows` of all forms, and its own."""
         return (*rows, *self.rows)
 
     def heights(self, result: CamResult) -> tuple[float, ...]:
-        """Return the heights at which the parts stand in the assembly, mm."""
+        """Return the height of each part in the assembly, mm."""
         return (0.0,) * len(result.parts)
 
     def leading(self, result: CamResult) -> str:
-        """Return which of its `sizes` stands in the headline."""
+        """Return the name of the size for the headline, one of its `sizes`."""
         return "base_radius_mm" if result.mechanism.flat else "prime_radius_mm"
 
     def sizes(self, result: CamResult) -> dict[str, Any]:
@@ -150,7 +150,7 @@ class Form(Protocol):
 
     @abstractmethod
     def facts(self, result: CamResult) -> dict[str, Any]:
-        """Return what is known of the cam beyond follower, size and pressure angles."""
+        """Return the facts of the cam beyond follower, size and pressure angles."""
 
 
 FORMS: Registry[Form] = Registry(
@@ -185,7 +185,7 @@ def _takes(form: Form, title: str, name: str) -> bool:
 
 
 def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type]) -> Iterator[Fault]:
-    """Yield what is wrong with the keys of a form, or else what the form itself finds.
+    """Yield what is wrong with the keys of a form, or else what the form itself finds wrong.
 
     Parameters
     ----------
@@ -222,11 +222,13 @@ def _key_faults(form: Form, title: str, known: Table, made: Any) -> Iterator[Fau
             value = entry.outward(value)
             owners = [one for one in FORMS if _takes(FORMS[one], title, entry.name)]
             rule = f"with cam.form = {quoted(owners)}"
-            yield Fault((title, key), f"{show(value)}: a {form.name} cam has none", value, rule)
+            yield Fault(
+                (title, key), f"{show(value)}: does not apply to a {form.name} cam", value, rule
+            )
 
 
 def form_schema(title: str, owner: type) -> dict[str, Any]:
-    """Return what a schema says of the keys of a table, which some forms have and some need.
+    """Return the JSON schema's rules for the keys of a table that depend on the form.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Conjugate cams: two plates on one shaft, each with a roller of its own on one follower."""
+"""Conjugate cams: two plates on one shaft, each driving its own roller of one follower."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _OF_SECOND = (
     "prime_radius_mm", "base_radius_mm", "roller_radius_mm", "arm_mm",
     "pressure_angle_deg.rise_max", "pressure_angle_deg.return_max",
 )  # fmt: skip
-"""Facts that stand for those of the first cam in the table of the second one's drawing."""
+"""Facts of the second cam that replace those of the first in the table of its drawing."""
 
 
 class Conjugate(Disc):
@@ -47,19 +47,19 @@ class Conjugate(Disc):
     rows = ("cam.roller_distance_mm", "cam.arms_angle_deg", "cam.preload_mm")
 
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield faults of a follower that has no two rollers, or not their places."""
+        """Yield what is wrong with the two rollers of the follower."""
         follower, cam = parts["follower"], parts["cam"]
         if follower.type != "roller":
-            message = f"{show(follower.type)}: conjugate cams move two rollers"
+            message = f"{show(follower.type)}: conjugate cams drive two rollers"
             yield Fault(("follower", "type"), message, follower.type, '"roller"')
         own, other = ("arms_angle", "roller_distance")[:: 1 if follower.oscillating else -1]
         keys = {"arms_angle": "arms_angle_deg", "roller_distance": "roller_distance_mm"}
         article = "an oscillating" if follower.oscillating else "a translating"
         if getattr(follower, other) is not None:
-            message = f"{article} follower has none"
+            message = f"does not apply to {article} follower"
             yield Fault(("follower", keys[other]), message, allowed=f"{keys[own]} instead")
         if follower.arm2 is not None and not follower.oscillating:
-            message = "a translating follower has none"
+            message = "does not apply to a translating follower"
             yield Fault(("follower", "arm2_mm"), message, allowed='with motion = "oscillating"')
         yield from _place_faults(cam.prime_radius2, getattr(follower, own), keys[own])
 
@@ -75,7 +75,7 @@ class Conjugate(Disc):
         )
 
     def parts(self, result: CamResult) -> tuple[Part, ...]:
-        """Return both plates in one frame; a hub stands on their outer faces only."""
+        """Return both plates in one frame, with hubs on their outer faces only."""
         thickness = result.design.cam.thickness
         blank = result.design.blank
         hubs = ({"hub_front": 0.0}, {"hub_back": 0.0})
@@ -93,7 +93,7 @@ class Conjugate(Disc):
         )
 
     def heights(self, result: CamResult) -> tuple[float, ...]:
-        """Return 0, and where the second plate stands: beyond the first one and the gap."""
+        """Return 0 and the height of the second plate, which is above the first one and the gap."""
         cam = result.design.cam
         return 0.0, cam.thickness + (cam.gap or 0.0)
 
@@ -123,7 +123,7 @@ class Conjugate(Disc):
         return Drawing(name=self.assembly, features=(*plates, *others))
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
-        """Return the way around each plate; a cutter is as large as its roller if none is given."""
+        """Return the path around each plate; the cutter's default `radius` is the roller's."""
         from gearcam.kinds.cam.drawn import cutter_way
 
         return {
@@ -167,7 +167,7 @@ class Conjugate(Disc):
         }
 
     def rows_of(self, number: int, rows: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the facts for the table of a plate's drawing, the second one's as its own."""
+        """Return the facts in the table of a plate's drawing."""
         cam, own = f"cam.cam{number + 1}.", [f"cam.{name}" for name in _OF_SECOND]
         found = [
             name.replace("cam.", cam) if name in own and number else name
@@ -182,7 +182,7 @@ def _place_faults(prime: float | None, apart: float | None, key: str) -> Iterato
         yield Fault(("cam", "prime_radius2_mm"), "is missing for a conjugate cam", allowed=rule)
     elif prime is not None and apart is not None:
         rule = f"one of cam.prime_radius2_mm and follower.{key}"
-        yield Fault(("follower", key), "cam.prime_radius2_mm is given too", allowed=rule)
+        yield Fault(("follower", key), "is given beside cam.prime_radius2_mm", allowed=rule)
 
 
 def _second(follower: FollowerSpec, cam: CamSpec) -> SecondRoller:
@@ -200,7 +200,7 @@ def _cam(result: CamResult) -> ConjugateCam:
     """Return the cams, which are of this form."""
     cam = result.cam
     if not isinstance(cam, ConjugateCam):
-        raise TypeError(f"{cam!r} is no pair of conjugate cams")
+        raise TypeError(f"{cam!r} is not a pair of conjugate cams")
     return cam
 
 

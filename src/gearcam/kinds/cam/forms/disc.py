@@ -1,4 +1,4 @@
-"""The disc cam: a plate that is touched at its edge."""
+"""The disc cam: a plate whose edge is the profile."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ STEM: Final = "cam"
 """Stem of its files."""
 
 TOOL_PATH: Final = "tool_path"
-"""Stem of the files of a cutter's way."""
+"""Stem of the files of a cutter's path."""
 
 _RIM_PART: Final = 2.0 / 3.0
-"""Rim that lightening holes keep where the design gives none, in thicknesses."""
+"""Default rim outside lightening holes, in thicknesses."""
 
 
 def disc_cam(design: CamDesign, program: Program) -> DiscCam:
@@ -45,7 +45,7 @@ def disc_cam(design: CamDesign, program: Program) -> DiscCam:
 
 
 def workpiece(name: str, thickness: float, within: str = "the outline") -> Workpiece:
-    """Return what a blank becomes: its `name`, `thickness`, mm, what openings keep `within`."""
+    """Return the workpiece: `name`, `thickness` in mm, and the edge that openings stay `within`."""
     from gearcam.parts.openings import Workpiece
 
     return Workpiece(name=name, rim=_RIM_PART * thickness, within=within)
@@ -88,7 +88,7 @@ class Disc(Form):
     """A plate with one wall, its profile."""
 
     name = "disc"
-    doc = "a plate that is touched at its edge"
+    doc = "a plate whose edge is the profile"
 
     def make(self, design: CamDesign, program: Program) -> Cam:
         """Return the cam."""
@@ -119,7 +119,7 @@ class Disc(Form):
         return plate(part, wall, follower(wall, pose, reach), angle=side * pose)
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
-        """Return the way around the plate."""
+        """Return the path around the plate."""
         from gearcam.kinds.cam.drawn import cutter_way
 
         return {TOOL_PATH: cutter_way(result.part.contour, radius or result.mechanism.radius)}

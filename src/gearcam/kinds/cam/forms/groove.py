@@ -43,30 +43,30 @@ class Groove(Form):
     )  # fmt: skip
 
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield faults of what a groove cannot have."""
+        """Yield what a groove cam cannot have."""
         follower, cam = parts["follower"], parts["cam"]
         if follower.type != "roller":
             message = f"{show(follower.type)}: a groove holds a roller"
             yield Fault(("follower", "type"), message, follower.type, '"roller"')
         if follower.roller2_radius == follower.roller_radius:
-            message = f"{show(follower.roller2_radius)}: is that of the first roller: each of two "
-            message += "needs its own room in the groove"
-            rule = "another radius, or one roller"
+            message = f"{show(follower.roller2_radius)}: both rollers have this radius, but run in "
+            message += "steps of the groove of different width"
+            rule = "a different radius, or a single roller"
             yield Fault(("follower", "roller2_radius_mm"), message, follower.roller_radius, rule)
         if cam.groove_depth >= cam.thickness:
-            message = f"{show(cam.groove_depth)}: the groove has no floor"
+            message = f"{show(cam.groove_depth)}: the groove would have no floor"
             rule = f"below the thickness of {shown(cam.thickness)} mm"
             yield Fault(("cam", "groove_depth_mm"), message, cam.groove_depth, rule)
         blank, output = parts.get("blank"), parts.get("output")
         if blank is not None and blank.clearance:
-            message = f"{show(blank.clearance)}: walls of a groove are moved by their clearance"
-            rule = "cam.roller_clearance_mm"
+            message = f"{show(blank.clearance)}: the clearance of a groove is that of its roller"
+            rule = "cam.roller_clearance_mm instead"
             yield Fault(("blank", "clearance_mm"), message, blank.clearance, rule)
         if output is not None and output.kerf:
-            message = f"{show(output.kerf)}: a groove is milled, not cut through"
+            message = f"{show(output.kerf)}: not for a groove, which is milled"
             yield Fault(("output", "kerf_mm"), message, output.kerf, "leave it out")
         if output is not None and "cut-svg" in output.files:
-            message = "a groove is milled, not cut through"
+            message = "not for a groove, which is milled"
             rule = "other files, such as dxf and tool-path"
             yield Fault(("output", "files"), message, "cut-svg", rule)
 
@@ -126,7 +126,7 @@ class Groove(Form):
         return grooved(result.part, result.cam.walls, shapes, angle=side * pose)
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
-        """Return the pitch curve for a tool as wide as the groove, else a way along each wall."""
+        """Return the pitch curve for a tool as wide as the groove, else a path along each wall."""
         from gearcam.kinds.cam.drawn import TOOL_RADIUS, cutter_way
 
         cam = _cam(result)
@@ -179,7 +179,7 @@ def _cam(result: CamResult) -> GrooveCam:
     """Return the cam, which is one of this form."""
     cam = result.cam
     if not isinstance(cam, GrooveCam):
-        raise TypeError(f"{cam!r} is no groove cam")
+        raise TypeError(f"{cam!r} is not a groove cam")
     return cam
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from gearcam.tolerances import Tolerances
 
 _ROUNDING = 1e-9
-"""Part of the groove's half width by which a cutter's radius may differ from it: typed digits."""
+"""Relative difference of a cutter's radius from half the groove that is rounding of digits."""
 
 
 class Translating(Form):
@@ -63,14 +63,16 @@ class Translating(Form):
     )  # fmt: skip
 
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield faults of what a translating cam cannot have."""
+        """Yield what a translating cam cannot have."""
         follower, cam = parts["follower"], parts["cam"]
         blank, output = parts.get("blank"), parts.get("output")
         if follower.flat:
-            message = '"flat": the places of a flat face over a sliding cam envelop no wall'
-            yield Fault(("follower", "type"), message, "flat", "a round follower")
+            message = '"flat": over a translating cam a flat face envelops no profile'
+            yield Fault(("follower", "type"), message, "flat", '"roller", "domed" or "point"')
         if follower.oscillating and follower.axis:
-            message = f"{show(math.degrees(follower.axis))}: an arm has no way that leans"
+            message = (
+                f"{show(math.degrees(follower.axis))}: does not apply to an oscillating follower"
+            )
             yield Fault(("follower", "axis_deg"), message, follower.axis, "leave it out")
         if not follower.oscillating and follower.pivot_height:
             message = f"{show(follower.pivot_height)}: a translating follower has no pivot"
@@ -153,7 +155,7 @@ class Translating(Form):
         return _drawing(result, shapes, place)
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
-        """Return the way around the plate, or through the groove."""
+        """Return the path around the plate, or through the groove."""
         from gearcam.drawings import Path
         from gearcam.kinds.cam.drawn import cutter_way
 
@@ -220,34 +222,34 @@ def _groove_faults(follower: Any, cam: Any, blank: Any, output: Any) -> Iterator
         for name in ("groove_depth", "roller_clearance", "side"):
             value, key = getattr(cam, name), name if name == "side" else f"{name}_mm"
             if value is not None:
-                message = f"{show(value)}: a cam with one wall has none"
+                message = f"{show(value)}: does not apply to a cam with one wall"
                 yield Fault(("cam", key), message, value, 'with walls = "both"')
         return
     if follower.type != "roller":
         message = f"{show(follower.type)}: a groove holds a roller"
         yield Fault(("follower", "type"), message, follower.type, '"roller"')
     if cam.groove_depth is not None and cam.groove_depth >= cam.thickness:
-        message = f"{show(cam.groove_depth)}: the groove has no floor"
-        rule = f"below the thickness of {shown(cam.thickness)} mm; left out, it goes through"
+        message = f"{show(cam.groove_depth)}: the groove would have no floor"
+        rule = f"below the thickness of {shown(cam.thickness)} mm; a through slot if left out"
         yield Fault(("cam", "groove_depth_mm"), message, cam.groove_depth, rule)
     if cam.side is not None and cam.groove_depth is None:
-        message = f"{show(cam.side)}: the groove goes through"
+        message = f"{show(cam.side)}: the groove goes through the plate"
         yield Fault(("cam", "side"), message, cam.side, "with groove_depth_mm")
     if blank is not None and blank.clearance:
-        message = f"{show(blank.clearance)}: walls of a groove are moved by their clearance"
-        rule = "cam.roller_clearance_mm"
+        message = f"{show(blank.clearance)}: the clearance of a groove is that of its roller"
+        rule = "cam.roller_clearance_mm instead"
         yield Fault(("blank", "clearance_mm"), message, blank.clearance, rule)
     if output is not None and cam.groove_depth is not None:
         yield from _milled_faults(output)
 
 
 def _milled_faults(output: Any) -> Iterator[Fault]:
-    """Yield the faults of files for cutters where a groove has a floor."""
+    """Yield what is wrong with files for cutters if the groove has a floor."""
     if output.kerf:
-        message = f"{show(output.kerf)}: a groove with a floor is milled, not cut through"
+        message = f"{show(output.kerf)}: not for a groove with a floor, which is milled"
         yield Fault(("output", "kerf_mm"), message, output.kerf, "leave it out")
     if "cut-svg" in output.files:
-        message = "a groove with a floor is milled, not cut through"
+        message = "not for a groove with a floor, which is milled"
         rule = "other files, such as dxf and tool-path"
         yield Fault(("output", "files"), message, "cut-svg", rule)
 
@@ -256,7 +258,7 @@ def _phases(design: CamDesign) -> list[Phase]:
     """Return the phases of a design with its run before and after."""
     motion = design.motion
     if not isinstance(motion, Sequence):
-        raise TypeError("a translating cam is told by phases")
+        raise TypeError("the motion of a translating cam is given by phases")
     before, after = ([DwellPhase(angle=run)] if run else [] for run in design.cam.runs)
     return [*before, *motion, *after]
 
@@ -265,7 +267,7 @@ def _blank(design: CamDesign) -> CamBlank:
     """Return the blank, which is one of a cam."""
     blank = design.blank
     if not isinstance(blank, CamBlank):
-        raise TypeError(f"{blank!r} is no blank of a cam")
+        raise TypeError(f"{blank!r} is not the blank of a cam")
     return blank
 
 
@@ -273,12 +275,12 @@ def _cam(result: CamResult) -> SlidingCam:
     """Return the cam, which is one of this form."""
     cam = result.cam
     if not isinstance(cam, SlidingCam):
-        raise TypeError(f"{cam!r} is no translating cam")
+        raise TypeError(f"{cam!r} is not a translating cam")
     return cam
 
 
 def _made(result: CamResult) -> SlidingCam:
-    """Return the cam as made: the wall of a cam with one stands back by the blank's clearance."""
+    """Return the finished cam: a single wall is moved back by the clearance of the blank."""
     cam, clearance = _cam(result), result.design.blank.clearance
     if not clearance:
         return cam
@@ -288,7 +290,7 @@ def _made(result: CamResult) -> SlidingCam:
 
 
 def _bolts(result: CamResult) -> Iterator[Opening]:
-    """Yield the bolt holes: a row about the middle of the plate's length."""
+    """Yield the bolt holes, a row centred on the length of the plate."""
     from gearcam.parts.body import Opening
     from gearcam.parts.shapes import Circle
 
@@ -301,7 +303,7 @@ def _bolts(result: CamResult) -> Iterator[Opening]:
 
 
 def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0) -> Drawing:
-    """Return the plate with its pitch curve, moved by its way below a follower."""
+    """Return the plate with its pitch curve, moved by `way` below a follower."""
     from gearcam.drawings import (
         BLANK,
         CENTER,
@@ -334,15 +336,15 @@ def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0
 
 
 def _demand_reached(place: float, way: float) -> None:
-    """Refuse to draw a cam at a place, mm, that it never reaches."""
+    """Refuse a place of the assembly drawing, mm, beyond the travel of the cam."""
     if place > way:
         raise InfeasibleError(
-            "the cam does not slide so far",
+            "the assembly drawing is beyond the travel of the cam",
             where="output.u_mm",
             value=place,
             limit=way,
             unit="mm",
-            nearest="the limit is its whole way, included",
+            nearest="the limit is its whole travel, included",
             ways=(Way(near={"output.u_mm": way}),),
         )
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from gearcam.tolerances import Tolerances
 
 _MISS: Final = 1e-6
-"""Largest miss of two half turns from being opposite, mm: typed digits."""
+"""Largest deviation of two half turns from being opposite, mm: rounding of typed digits."""
 
 
 class Yoke(Disc):
@@ -37,7 +37,7 @@ class Yoke(Disc):
 
     name = "yoke"
     doc = "a plate between two faces or rollers, of constant breadth or diameter"
-    # aside of its axis one cam cannot carry two rollers, and of faces an offset moves nothing
+    # with an offset one cam cannot drive two rollers, and offset faces change nothing
     takes: ClassVar[Keys] = {
         **PLATE, "follower": tuple(name for name in PLATE["follower"] if name != "offset")
     }  # fmt: skip
@@ -45,10 +45,10 @@ class Yoke(Disc):
     rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
 
     def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield faults of a follower that one cam cannot move from both sides."""
+        """Yield what is wrong with the follower of a yoke cam."""
         follower = parts["follower"]
         if follower.oscillating:
-            message = f"{show(follower.motion)}: a yoke slides"
+            message = f"{show(follower.motion)}: a yoke is a translating follower"
             rule = '"translating"'
             yield Fault(("follower", "motion"), message, follower.motion, rule)
 
@@ -66,7 +66,7 @@ class Yoke(Disc):
         return make_yoke(disc_cam(design, program))
 
     def picture(self, result: CamResult) -> Drawing:
-        """Return the plate, turned, between both sides of its follower."""
+        """Return the plate, turned, between the two sides of its follower."""
         from gearcam.kinds.cam.drawn import follower
 
         (wall,), pose = result.cam.walls, result.design.output.pose
@@ -79,10 +79,10 @@ class Yoke(Disc):
         return replace(drawing, features=(*drawing.features, *second))
 
     def facts(self, result: CamResult) -> dict[str, Any]:
-        """Return those of a disc cam, and what is between both sides of the follower."""
+        """Return the facts of a disc cam, and the distance of both sides of the follower."""
         cam, flat = result.cam, result.mechanism.flat
         if not isinstance(cam, YokeCam):
-            raise TypeError(f"{cam!r} is no yoke cam")
+            raise TypeError(f"{cam!r} is not a yoke cam")
         return {
             **super().facts(result),
             "breadth_mm": Fact(cam.breadth, "from face to face", shown=True) if flat else None,
@@ -99,8 +99,8 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
     off = miss(program)
     if abs(off.value) <= _MISS:
         return
-    rule = "half a turn on, a yoke stands as far below its highest place as it stood above its "
-    rule += "lowest; phases of half a turn, 180 deg, are enough"
+    rule = "half a turn later the lift must be the total lift less the present one; phases of half "
+    rule += "a turn, 180 deg, are enough"
     ways: tuple[Way, ...] = ()
     half = agreeing(motion) if isinstance(motion, Sequence) else ()
     if half:
@@ -108,10 +108,10 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
 
         phases: Any = motion_of(half, oscillating=False)
         told = ", ".join(f"{one['type']} {shown(one['angle_deg'])} deg" for one in phases)
-        rule += f", and these agree with the first half as far as they can: {told}"
+        rule += f", and these agree best with the first half: {told}"
         ways = (Way(near={"motion": phases}),)
     raise InfeasibleError(
-        "a yoke cannot follow both half turns: their lifts do not add up",
+        "the two half turns of a yoke's lift are not opposite to each other",
         where=f"motion, at {shown(math.degrees(off.theta))} deg",
         value=off.value,
         limit=_MISS,
