@@ -116,7 +116,7 @@ def test_lifts_are_of_the_followers_kind() -> None:
     assert "10: wrong unit for the lift of a translating follower" in found[0].message
     assert (found[0].value, found[0].allowed) == (10, "the key that ends in _mm")
     found = problems(changed("lift_deg", "lift_mm", SWINGING))
-    assert "wrong kind for an oscillating follower" in found[-1].message
+    assert "wrong unit for the lift of an oscillating follower" in found[-1].message
 
 
 def test_of_an_unknown_kind_no_lift_is_wrong() -> None:
