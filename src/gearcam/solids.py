@@ -111,7 +111,13 @@ class Mesh:
 
 @contextmanager
 def libraries() -> Iterator[None]:
-    """Raise `MissingExtraError` if an import in the block fails; also a decorator."""
+    """Name the command that installs the libraries if importing them fails; also a decorator.
+
+    Raises
+    ------
+    MissingExtraError
+        If an import in the block fails.
+    """
     try:
         yield
     except ImportError as error:
