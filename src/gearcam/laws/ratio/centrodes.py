@@ -6,25 +6,40 @@ The radius is given at any scale; the centre distance over it follows from closu
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final, TypeVar
 
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
-from gearcam.laws.entry import LawEntry
+from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import LOBES, demand_lobes, law_of_centrode
 from gearcam.laws.ratio.span import (
+    ONE_LOBE,
     RING,
+    WHEEL,
     Lobes,
     Travel,
     demand_below_one,
     demand_equal,
+    open_travel,
     spiral,
 )
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
+from gearcam.numeric.roots import newton_in_bracket
 from gearcam.quantities import ANGLE, COUNT, NUMBER, param
 from gearcam.tolerances import Tolerances
+
+_LARGEST: Final = 1e3
+"""Largest ratio of a closed spiral, so that 1 - h' keeps 13 digits."""
+
+_ROUNDING: Final = 1e-15
+"""To which places on a return are solved, rad."""
+
+T = TypeVar("T", Array, Jet)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,18 +135,51 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
 
 @dataclass(frozen=True, kw_only=True)
 class LogSpiral(Brief):
-    """``r1 = r1(0)*exp(k*phi1)``; its mate is a spiral of the same k.
+    """``r1 = r1(0)*exp(c*phi1)``; its mate is a spiral of the same c.
 
-    An external wheel's grows the other way, a ring's the same way.
-    With ``u = r1/A = i/(1 + w*i)`` at both ends (w = 1 for a wheel as mate, -1 for a ring), the
-    driven wheel turns by ``w*ln((1 - w*u0)/(1 - w*u1))/k`` and the driver by ``ln(u1/u0)/k``, so
-    that its travel gives k.
+    The driver and an external wheel, each turning, show the mesh one a growing, the other a
+    shrinking radius; a ring's grows with the driver's.
+
+    *Open pair*, with `driven_travel`: with ``u = r1/A = i/(1 + w*i)`` at both ends (w = 1 for a
+    wheel as mate, -1 for a ring), the driven wheel turns by ``w*ln((1 - w*u0)/(1 - w*u1))/c`` and
+    the driver by ``ln(u1/u0)/c``, so that its travel gives c.
+
+    *Closed pair*, with `return_angle`: two equal external wheels. From phi1 = 0 the ratio rises
+    from 1/k to k on the spiral; over the last `return_angle` it returns, C2 at both joints. With t
+    from the middle of the return both angles are ``t + h(t)`` and ``t - h(t)``. An even h makes
+    both centrodes equal: ``i = (1 - h')/(1 + h')`` at -t is 1/i at t. On the spiral, which is as
+    long on both wheels, ``h' = -tanh(c*(t - pi))``, ``c = ln(k)/(2*pi - return_angle)``; on the
+    return h' is the odd polynomial of degree 5 that continues it up to its second derivative.
     """
 
     ratios: tuple[float, float] = param(
-        NUMBER, ge=1e-10, le=1e10, doc="i21 at the start and at the end"
+        NUMBER,
+        ge=1e-10,
+        le=1e10,
+        doc="i21 at the start and at the end of the spiral; of a closed pair 1/k and k",
     )
-    driven_travel: float = param(ANGLE, gt=0, le=360, doc="how far the driven wheel turns")
+    driven_travel: float | None = open_travel("driven wheel")
+    return_angle: float | None = param(
+        ANGLE,
+        default=None,
+        ge=1,
+        le=180,
+        word="return",
+        doc="closed pair: driver angle of the smooth return to the first ratio",
+    )
+
+    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+        """Yield what is wrong by reading: field, index, message, allowed."""
+        rule = "one of driven_travel_deg (an open pair) and return_deg (a closed one)"
+        if (self.driven_travel is None) == (self.return_angle is None):
+            word = "neither" if self.return_angle is None else "both"
+            yield "return_angle", None, f"{word} of driven_travel_deg and return_deg is given", rule
+        if self.return_angle is not None:
+            low, high = 1.0 / _LARGEST, _LARGEST
+            for index, ratio in enumerate(self.ratios):
+                if not low <= ratio <= high:
+                    rule = f"a number from {low:g} to {high:g} for a closed pair"
+                    yield "ratios", index, f"{ratio!r} is out of range", rule
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -139,18 +187,22 @@ class LogSpiral(Brief):
         Raises
         ------
         InfeasibleError
-            For unequal tooth counts or equal ratios, or ratios of a ring that are not below 1.
+            For unequal tooth counts or equal ratios, or ratios of a ring that are not below 1; for
+            a closed pair in a ring, or whose ratios are not 1/k and k.
         """
-        demand_equal(lobes)
         start, end = self.ratios
         if start == end:
             raise InfeasibleError(
-                "a spiral's ratio changes from start to end",
+                "the ratio of a spiral changes from start to end",
                 where="law.ratios",
                 value=end,
                 limit=start,
-                nearest='other ratios; a constant one is the law "constant"',
+                nearest='a constant ratio is the law "constant"',
             )
+        if self.return_angle is not None:
+            return _closed(self.ratios, self.return_angle, lobes, tolerances)
+        demand_equal(lobes)
+        driven = self.driven_travel or 0.0  # given where no return is
         w = lobes.mate
         if w == RING:
             key = f"law.ratios[{int(end > start)}]"
@@ -158,12 +210,82 @@ class LogSpiral(Brief):
             demand_below_one(max(start, end), key, ways=ways)
         first, rise = start / (1.0 + w * start), end - start
         # logarithms of (1 + w*u)'s and of u's quotient, exact for nearly equal ratios too
-        growth = w * math.log1p(w * rise / (1.0 + w * start)) / self.driven_travel
+        growth = w * math.log1p(w * rise / (1.0 + w * start)) / driven
         travel = math.log1p(rise / (start * (1.0 + w * end))) / growth
 
         solved = {"growth_per_rad": growth, "driver_travel_deg": math.degrees(travel)}
-        span = Travel(travel, self.driven_travel, w)
+        span = Travel(travel, driven, w)
         return make_law(span, [0.0, travel], [spiral(first, growth, w)], tolerances, solved)
+
+
+def _closed(
+    ratios: tuple[float, float], turn: float, lobes: Lobes, tolerances: Tolerances
+) -> RatioLaw:
+    """Return the law of two equal wheels; `turn` is the driver angle of the return, rad."""
+    start, end = ratios
+    if lobes != ONE_LOBE:
+        raise InfeasibleError(
+            "a closed spiral makes two equal external wheels",
+            where="pair.teeth",
+            value=lobes.n1 / lobes.n2,
+            limit=1.0,
+            nearest="this is the ratio of the tooth counts",
+        )
+    if abs(start * end - 1.0) > TYPED:
+        raise InfeasibleError(
+            "a closed spiral makes two equal wheels: its ratios are 1/k and k",
+            where="law.ratios",
+            value=start * end,
+            limit=1.0,
+            nearest="this is the product of both ratios",
+            ways=[
+                Way(near={"law.ratios[0]": 1.0 / end}),
+                Way(near={"law.ratios[1]": 1.0 / start}),
+            ],
+        )
+    half, joint = 0.5 * turn, 2.0 * math.pi - turn
+    k = math.sqrt(end / start)
+    growth = math.log(k) / joint
+    pieces = [spiral(1.0 / (1.0 + k), growth, WHEEL), _return(k, growth, half)]
+    solved = {"growth_per_rad": growth}
+    return make_law(lobes, [0.0, joint, 2.0 * math.pi], pieces, tolerances, solved)
+
+
+def _return(k: float, growth: float, half: float) -> Piece:
+    """Return the ratio over the last two times `half` of a turn, from k back to 1/k."""
+    # h' at s = t/half is p1*s + p3*s^3 + p5*s^5, at s = 1 with the spiral's derivatives by s
+    value = (k - 1.0) / (k + 1.0)
+    slope = -growth * half * (1.0 - value) * (1.0 + value)
+    p5 = (2.0 * growth * half * value * slope - 3.0 * (slope - value)) / 8.0
+    p3 = 0.5 * (slope - value) - 2.0 * p5
+    p1 = value - p3 - p5
+    middle = 2.0 * math.pi - half * (1.0 + 0.5 * p1 + p3 / 4.0 + p5 / 6.0)
+
+    def h(t: T) -> T:
+        q = (t / half) * (t / half)
+        return (half * q) * (p1 / 2.0 + q * (p3 / 4.0 + q * (p5 / 6.0)))
+
+    def rate(t: T) -> T:
+        s = t / half
+        return s * (p1 + s * s * (p3 + s * s * p5))
+
+    def place(x: Jet) -> Jet:
+        """Return t, which phi1 = middle + t + h(t) gives."""
+        goal = x.c[0] - middle
+        found = newton_in_bracket(
+            lambda t: (t + h(t) - goal, 1.0 + rate(t)), -half, half, 0.0 * goal, _ROUNDING
+        )
+        over = 1.0 + rate(found)
+        t = Jet([found, *[0.0] * x.order])
+        for _ in range(x.order):  # each step makes one more derivative exact
+            t = t - (t + h(t) - (x - middle)) / over
+        return t
+
+    def ratio(x: Jet) -> Jet:
+        slope = rate(place(x))
+        return (1.0 - slope) / (1.0 + slope)
+
+    return Piece(ratio, lambda x: x - 2.0 * h(place(x)))
 
 
 def _demand_one_lobe(lobes: Lobes, name: str) -> None:
