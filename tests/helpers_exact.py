@@ -126,6 +126,39 @@ def spiral(law: LogSpiral, mate: int) -> Callable[[Any], Exact]:
     return lambda _: Exact(whole(ratio, travel), mate)
 
 
+def nautilus(law: LogSpiral) -> Callable[[Any], Exact]:
+    """A closed spiral: phi1 = t + h and phi2 = t - h, t from the middle of the return."""
+    k, turn = mp.sqrt(of(law.ratios[1]) / of(law.ratios[0])), of(law.return_angle)
+    joint, half = 2 * mp.pi - turn, turn / 2
+    c = mp.log(k) / joint
+    # h' = a*t + b*t^3 + e*t^5 meets -tanh(c*(t - pi)) at the end, up to the second derivative
+    v = mp.tanh(c * (mp.pi - half))
+    rows = [[half, half**3, half**5], [1, 3 * half**2, 5 * half**4], [0, 6 * half, 20 * half**3]]
+    d = -c * (1 - v * v)
+    a, b, e = mp.lu_solve(mp.matrix(rows), mp.matrix([v, d, 2 * c * v * d]))
+
+    def h(t: Number) -> Number:
+        return a * t**2 / 2 + b * t**4 / 4 + e * t**6 / 6
+
+    def slope(t: Any) -> Any:
+        return a * t + b * t**3 + e * t**5
+
+    def falling(x: Slope) -> Slope:
+        t, goal = mp.mpf(0), x.v - (2 * mp.pi - half - h(half))
+        for _ in range(40):
+            t -= (t + h(t) - goal) / (1 + slope(t))
+        here = slope(Slope(t, x.d / (1 + slope(t))))
+        return (1 - here) / (1 + here)
+
+    def rising(x: Slope) -> Slope:
+        share = exact.exp(c * x) / (1 + k)
+        return share / (1 - share)
+
+    pieces = [*whole(rising, joint), *((joint + turn * j / 8, joint + turn * (j + 1) / 8, falling)
+                                       for j in range(8))]  # fmt: skip
+    return lambda _: Exact(pieces, WHEEL)
+
+
 Shape = tuple[Callable[[Slope], Slope], Number]
 """What rises from 0 to 1 over the unit interval, and its mean."""
 

@@ -29,6 +29,7 @@ from helpers_exact import (
     fourier,
     lobed,
     multispeed,
+    nautilus,
     of,
     phases,
     polygon,
@@ -110,6 +111,9 @@ def _phases(add: Add) -> None:
     ):
         law = LogSpiral(ratios=ratios, driven_travel=travel)
         add("log-spiral", law, (30, 30), spiral(law, mate), mate)
+    for ratios, degrees in (((0.5, 2.0), 95.386), ((1.5, 1 / 1.5), 120.0)):
+        law = LogSpiral(ratios=ratios, return_angle=math.radians(degrees))
+        add("log-spiral", law, (48, 48), nautilus(law))
     for shape in ("cosine", "cubic", "quintic"):
         for knot in (120, 160):
             two = Phases(

@@ -64,6 +64,29 @@ def spiral_distance() -> float:
     return math.pi * 48 / (math.sqrt(1 + k * k) / (3 * k))
 
 
+def nautilus_distance() -> float:
+    """The spiral's length as above; on the return over t, with r1/A = u = (1 - h')/2.
+
+    Written as h' = s*(p1 + p3*s^2 + p5*s^4), s = t/half, with the conditions at s = 1 solved by
+    elimination: value v, slope d, second derivative b.
+    """
+    with mp.workdps(25):
+        half = mp.mpf("95.386") * DEGREE / 2
+        c = mp.log(2) / (2 * mp.pi - 2 * half)
+        v, d = mp.mpf(1) / 3, -c * half * 8 / 9
+        b = 2 * c * half * v * d
+        p5 = (b - 3 * d + 3 * v) / 8
+        p3 = (d - v) / 2 - 2 * p5
+        p1 = v - p3 - p5
+
+        def speed(s: Any) -> Any:
+            g, slope = s * (p1 + s * s * (p3 + s * s * p5)), p1 + 3 * p3 * s**2 + 5 * p5 * s**4
+            return mp.sqrt(((1 - g * g) / 2) ** 2 + (slope / (2 * half)) ** 2)
+
+        turn = half * mp.quadgl(speed, mp.linspace(-1, 1, 5))
+        return float(mp.pi * mp.mpf("76.8") / (mp.sqrt(1 + c * c) / (3 * c) + turn))
+
+
 def spline_ratio(phi: Any) -> Any:
     """The spline rises by (3*t - t^3)/15 over a quarter; c by 30-digit quadrature."""
     t = phi / (mp.pi / 2)
@@ -215,6 +238,10 @@ NUMBERS: dict[str, dict[str, Number]] = {
     "log_spiral": {
         "pair.center_distance_mm": (spiral_distance(), 1e-10),
         "pair.solved.growth_per_rad": (math.log(2) / math.radians(200), 1e-13),
+    },
+    "nautilus": {
+        "pair.center_distance_mm": (nautilus_distance(), 1e-10),
+        "pair.solved.growth_per_rad": (math.log(2) / math.radians(360 - 95.386), 1e-13),
     },
     "bspline": {
         "pair.center_distance_mm": (

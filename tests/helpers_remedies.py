@@ -246,6 +246,18 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
         pair({"type": "log-spiral", "ratios": [0.3, 3], "driven_travel_deg": 350}, [40, 40]),
         {"law.driven_travel_deg"},
     ),
+    "ratios of a closed spiral": (
+        pair({"type": "log-spiral", "ratios": [0.5, 2.2], "return_deg": 90}, [48, 48]),
+        {"law.ratios[0]", "law.ratios[1]"},
+    ),
+    "teeth of a closed spiral": (
+        pair({"type": "log-spiral", "ratios": [0.8, "solve"], "return_deg": 90}, [40, 60]),
+        {"pair.teeth"},
+    ),
+    "a concave return": (
+        pair({"type": "log-spiral", "ratios": [2, 0.5], "return_deg": 40}, [36, 36]),
+        {"law.ratios", "law.return_deg", "pair.teeth"},
+    ),
     "teeth of an open pair": (pair(DOOR, [30, 36]), {"pair.teeth"}),
     "a long way": (pair(DOOR | {"driven_travel_deg": 300, "ratios": [1, 0.6, 0.6]}, [40, 40]),
                    {"law.driven_travel_deg"}),
@@ -305,6 +317,11 @@ ERRORS: dict[str, tuple[dict[str, Any], set[str], set[str]]] = {
         ),
         {"contact-ratio"},
         {"blank.tip_rounding_mm"},
+    ),
+    "a steep return": (
+        pair({"type": "log-spiral", "ratios": [0.5, 2], "return_deg": 60}, [30, 30]),
+        {"contact-ratio", "undercut"},
+        {"law.ratios", "law.return_deg", "pair.teeth"},
     ),
     "a kerf too wide for flanks": (
         pair(CIRCLE, [18, 18], output={"kerf_mm": 2.9}, blank={"bore_diameter_mm": 8}),

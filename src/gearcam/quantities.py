@@ -135,6 +135,7 @@ _ALIASES: Final = {
     r" \| None$": "",
     r"^RowOfSome$": 'row of float or "solve"',
     r"^Row$": "row of float",
+    r"float \| Solve": 'float or "solve"',
     r"^Given$": "str, function, or tuple of function and derivatives",
 }
 """What types are called in docstrings."""

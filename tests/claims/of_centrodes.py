@@ -139,6 +139,10 @@ def rounded_polygon() -> tuple[LawClaim, ...]:
     )
 
 
+MIDDLE = (5.302807344706602278429696138, 5.69276694285767405618955570348)
+"""phi1 and phi2 in the middle of a quarter turn's return from 2 to 1/2, by 30 digits."""
+
+
 def log_spiral() -> tuple[LawClaim, ...]:
     # from u = 1/3 to 2/3 both wheels turn alike: r1 doubles while r2 halves
     k = math.log(2.0) / 2.0
@@ -155,7 +159,21 @@ def log_spiral() -> tuple[LawClaim, ...]:
             driven={math.log(1.5) / math.log(2): 1.0},
             continuity=3,
         ),
-    )
+        LawClaim(
+            # closed: from 1/k to k while both wheels turn by 1.5*pi; the return by 30-digit Newton
+            parameters=LogSpiral(ratios=(0.5, 2.0), return_angle=math.pi / 2),
+            ratio={0.0: 0.5, 0.75 * math.pi: 1 / (3 / math.sqrt(2) - 1), 1.5 * math.pi: 2.0,
+                   MIDDLE[0]: 1.0},
+            driven={1.5 * math.pi: 1.5 * math.pi, 2 * math.pi: 2 * math.pi, MIDDLE[0]: MIDDLE[1]},
+            continuity=2,
+        ),
+        LawClaim(
+            parameters=LogSpiral(ratios=("solve", 0.5), return_angle=math.pi / 2),
+            ratio={0.0: 2.0, 1.5 * math.pi: 0.5, MIDDLE[1]: 1.0},
+            driven={1.5 * math.pi: 1.5 * math.pi, MIDDLE[1]: MIDDLE[0]},
+            continuity=2,
+        ),
+    )  # fmt: skip
 
 
 def rack() -> tuple[LawClaim, ...]:

@@ -171,6 +171,11 @@ FAMILIES: dict[str, tuple[st.SearchStrategy[Any], st.SearchStrategy[tuple[int, i
             rounded(0.6, 1.2),
             rounded(1.2, 3),
             degrees(60, 200),
+        )
+        | st.builds(
+            lambda k, t: LogSpiral(ratios=(1 / k, k), return_angle=t),
+            rounded(1.05, 1.4),
+            degrees(90, 170),
         ),
         equal(8),
     ),

@@ -52,7 +52,7 @@ def errors(document: Mapping[str, Any], folder: Path) -> set[str]:
 
 OTHER_RATIO = {
     *("one lobe", "a crank's teeth", "teeth of an open pair", "the ring first", "an equal ring"),
-    "one lobe in a ring",
+    *("one lobe in a ring", "teeth of a closed spiral"),
 }
 """Designs whose tooth counts are refused for their ratio."""
 

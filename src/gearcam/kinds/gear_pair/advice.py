@@ -31,6 +31,9 @@ _USUAL: Final = 1.5
 _TIMES: Final = (1, 2, 4)
 """How many times the wheel's teeth are tried with a larger ring, if fewer do not do."""
 
+_EVEN: Final = 0.05
+"""Power of the ratios of a closed spiral that is the mildest one tried: 1 itself is no spiral."""
+
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges as they are cut."""
 
@@ -144,7 +147,13 @@ def _milder(search: Search) -> Iterator[Way]:
     for key in ("eccentricity", "cosines", "sines"):
         if key in law:
             far[f"law.{key}"] = 0.0
-    if "ratios" in law and "driven_travel_deg" not in law:
+    if "return_deg" in law:  # a spiral: its ratios are k and 1/k
+        first, last = law["ratios"]
+        near = 1.0 / last if first == "solve" else first
+        even = {"law.ratios": [near**_EVEN, "solve"]}
+        yield Way(near={"law.ratios": [near, "solve"]}, far=even)
+        yield Way(far={"law.return_deg": 180.0})
+    elif "ratios" in law and "driven_travel_deg" not in law:
         # arcs that close, mixed with the even turn, which closes, close
         far["law.ratios"] = mean
     if far:

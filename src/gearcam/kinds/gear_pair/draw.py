@@ -164,6 +164,9 @@ def _polygon(d: Draw) -> tuple[Law, Counts]:
 
 
 def _spiral(d: Draw) -> tuple[Law, Counts]:
+    if d.chance(0.3):
+        ratios = [d.even(1.05, 1.6), "solve"]
+        return {"ratios": ratios[:: d.sign()], "return_deg": d.even(90, 170)}, _equal(d, 30)
     first, growth = d.even(0.5, 1.2), d.log(1.05, 3)
     ratios = [first, short(first * growth)]
     return {"ratios": ratios[:: d.sign()], "driven_travel_deg": d.even(60, 220)}, _equal(d)

@@ -30,7 +30,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
 from gearcam.numeric.roots import newton_in_bracket
-from gearcam.quantities import ANGLE, COUNT, NUMBER, param
+from gearcam.quantities import ANGLE, COUNT, NUMBER, Solve, param
 from gearcam.tolerances import Tolerances
 
 _LARGEST: Final = 1e3
@@ -152,11 +152,12 @@ class LogSpiral(Brief):
     return h' is the odd polynomial of degree 5 that continues it up to its second derivative.
     """
 
-    ratios: tuple[float, float] = param(
+    ratios: tuple[float | Solve, float | Solve] = param(
         NUMBER,
         ge=1e-10,
         le=1e10,
-        doc="i21 at the start and at the end of the spiral; of a closed pair 1/k and k",
+        doc="i21 at the start and at the end of the spiral; of a closed pair k and 1/k, of which "
+        'one may be "solve"',
     )
     driven_travel: float | None = open_travel("driven wheel")
     return_angle: float | None = param(
@@ -170,16 +171,20 @@ class LogSpiral(Brief):
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        rule = "one of driven_travel_deg (an open pair) and return_deg (a closed one)"
-        if (self.driven_travel is None) == (self.return_angle is None):
-            word = "neither" if self.return_angle is None else "both"
-            yield "return_angle", None, f"{word} of driven_travel_deg and return_deg is given", rule
-        if self.return_angle is not None:
-            low, high = 1.0 / _LARGEST, _LARGEST
-            for index, ratio in enumerate(self.ratios):
-                if not low <= ratio <= high:
-                    rule = f"a number from {low:g} to {high:g} for a closed pair"
-                    yield "ratios", index, f"{ratio!r} is out of range", rule
+        closed = self.return_angle is not None
+        if (self.driven_travel is None) != closed:
+            words = "driven_travel_deg and return_deg are both" if closed else "neither is"
+            rule = "driven_travel_deg for an open pair, or return_deg for a closed one"
+            yield "return_angle", None, f"{words} given", rule
+        low, high = 1.0 / _LARGEST, _LARGEST
+        for index, ratio in enumerate(self.ratios):
+            if ratio == "solve":
+                if not closed or (index and self.ratios[0] == "solve"):
+                    rule = "a number; one of the two ratios of a closed pair is solved at most"
+                    yield "ratios", index, '"solve" is not possible here', rule
+            elif closed and not low <= ratio <= high:
+                rule = f"a number from {low:g} to {high:g} for a closed pair"
+                yield "ratios", index, f"{ratio!r} is out of range", rule
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -190,7 +195,9 @@ class LogSpiral(Brief):
             For unequal tooth counts or equal ratios, or ratios of a ring that are not below 1; for
             a closed pair in a ring, or whose ratios are not 1/k and k.
         """
-        start, end = self.ratios
+        first, last = self.ratios
+        start = 1.0 / float(last) if first == "solve" else first
+        end = 1.0 / start if last == "solve" else last
         if start == end:
             raise InfeasibleError(
                 "the ratio of a spiral changes from start to end",
@@ -200,7 +207,7 @@ class LogSpiral(Brief):
                 nearest='a constant ratio is the law "constant"',
             )
         if self.return_angle is not None:
-            return _closed(self.ratios, self.return_angle, lobes, tolerances)
+            return _closed(start, end, self.return_angle, lobes, tolerances)
         demand_equal(lobes)
         driven = self.driven_travel or 0.0  # given where no return is
         w = lobes.mate
@@ -219,10 +226,9 @@ class LogSpiral(Brief):
 
 
 def _closed(
-    ratios: tuple[float, float], turn: float, lobes: Lobes, tolerances: Tolerances
+    start: float, end: float, turn: float, lobes: Lobes, tolerances: Tolerances
 ) -> RatioLaw:
     """Return the law of two equal wheels; `turn` is the driver angle of the return, rad."""
-    start, end = ratios
     if lobes != ONE_LOBE:
         raise InfeasibleError(
             "a closed spiral makes two equal external wheels",
@@ -233,7 +239,7 @@ def _closed(
         )
     if abs(start * end - 1.0) > TYPED:
         raise InfeasibleError(
-            "a closed spiral makes two equal wheels: its ratios are 1/k and k",
+            "a closed spiral makes two equal wheels: its ratios are k and 1/k",
             where="law.ratios",
             value=start * end,
             limit=1.0,
@@ -324,8 +330,8 @@ LAWS.register(
     LawEntry(
         name="log-spiral",
         example=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
-        doc="logarithmic spirals on an open pair, from one ratio to another",
-        continuity="analytic",
+        doc="logarithmic spirals: an open pair, or two equal closed wheels (nautilus)",
+        continuity="analytic; closed: C2 at both ends of the return",
         source="Niculescu, fig. 1.9",
     ),
 )
