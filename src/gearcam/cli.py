@@ -100,9 +100,7 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 def _dispatch(words: list[str]) -> None:
     """Run the command named by the first word with the other words."""
-    functions = (_build, _check, _compare, _view, _laws, _new, _schema, _fuzz)
-    own = {function.__name__.lstrip("_"): function for function in functions}
-    word = words[0] if words else ""
+    own, word = _functions(), words[0] if words else ""
     if word in own:
         formats = all_formats() if {"-h", "--help"} & set(words) else FORMATS
         parser = _parser(word, own[word], formats)
@@ -132,6 +130,18 @@ def _dispatch(words: list[str]) -> None:
         raise SystemExit(WRONG)
     else:
         _refuse([unknown_word(word, "is not a command", docs)])
+
+
+def _functions() -> dict[str, Callable[..., None]]:
+    functions = (_build, _check, _compare, _view, _laws, _new, _schema, _fuzz)
+    return {function.__name__.lstrip("_"): function for function in functions}
+
+
+def parsers() -> Iterator[argparse.ArgumentParser]:
+    """Yield the argument parser of every command; its description says what the command does."""
+    for name, function in _functions().items():
+        yield _parser(name, function, all_formats())
+    yield from map(_kind_parser, _commands_of_kinds())
 
 
 def _commands_of_kinds() -> Iterator[Command]:
@@ -213,8 +223,7 @@ def _fuzz(debug: bool, **options: Any) -> None:
     _each(["fuzz"], "tried", lambda _: GOOD if fuzz(**options) else FINDINGS, debug=debug)
 
 
-def _of_kind(command: Command, words: list[str]) -> None:
-    """Run a `command` with the words that follow its name."""
+def _kind_parser(command: Command) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=f"gearcam {command.name}", description=command.doc)
     if command.many:
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
@@ -222,7 +231,12 @@ def _of_kind(command: Command, words: list[str]) -> None:
         parser.add_argument("file", metavar="FILE", help="design file (TOML)")
     _add_common(parser)
     command.arguments(parser)
-    options = vars(parser.parse_intermixed_args(words))
+    return parser
+
+
+def _of_kind(command: Command, words: list[str]) -> None:
+    """Run a `command` with the words that follow its name."""
+    options = vars(_kind_parser(command).parse_intermixed_args(words))
     files = options.pop("files") if command.many else [options.pop("file")]
     output, debug = options.pop("output"), options.pop("debug")
 

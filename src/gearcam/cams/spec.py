@@ -32,6 +32,14 @@ Problem = tuple[str, int | None, str, str]
 POINTED: Final = ("knife-edge", "point")
 """Two words for a follower without a radius."""
 
+FOLLOWERS: Final = {
+    **dict.fromkeys(POINTED, "a point: it wears fast, so for light loads and slow cams"),
+    "roller": "a roller on a pin: the usual one",
+    "flat": "a straight face; only a convex profile is touched everywhere",
+    "domed": "a fixed round face",
+}
+"""What touches the cam."""
+
 _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
 """The radii of round followers."""
 
@@ -64,7 +72,7 @@ class FollowerSpec(Brief):
 
     type: str = param(
         TEXT,
-        choices=(*POINTED, "roller", "flat", "domed"),
+        choices=tuple(FOLLOWERS),
         doc="contact element of the follower; a knife edge is the same as a point",
     )
     motion: str = param(

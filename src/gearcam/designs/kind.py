@@ -6,9 +6,9 @@ names it, and only that of a file is loaded. Its modules:
 - `design`: ``KIND``, a `DesignKind`: the tables of a file, their rules, the design they make;
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
 - `facts`: ``facts(result, measured)`` returns what is known of it;
-- `files`: ``FILES``, what makes each kind of file; where it has ``report`` among them,
-  ``assembled(result)`` returns its solids where they stand and ``framed(result)`` what
-  a notebook shows;
+- `files`: ``FILES``, a `gearcam.export.shared.FileFormat` for each kind of file; where ``report``
+  is among them, ``assembled(result)`` returns its solids where they stand and ``framed(result)``
+  what a notebook shows;
 - `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
 - `advice`: ``seek(search, refusal)`` leads the search for changes that help where it is refused
   or has errors, ``hopeless(result)`` tells what need not be built to its end, ``FILE_DEMANDS`` by

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.export.shared import (
     STEP_PART,
+    FileFormat,
     Files,
     cut_files,
     drawn,
@@ -15,8 +16,8 @@ from gearcam.export.shared import (
     mesh_files,
     sheet_files,
 )
+from gearcam.report.file import REPORT_DOC, report_files
 from gearcam.report.file import framed as framed
-from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
@@ -161,18 +162,79 @@ def _curvature(result: CamResult, measured: Measured) -> Files:
     return {"curvature.csv": table_bytes(columns)}
 
 
-FILES: Final[Mapping[str, Callable[..., Files]]] = {
-    "csv": _tables,
-    "dxf": _dxf,
-    "cut-svg": _cut_svg,
-    "svg": _picture,
-    **{kind: partial(_mesh, kind) for kind in ("stl", "3mf", "glb")},
-    "step": _step,
-    "drawing-dxf": partial(_sheet, "dxf"),
-    "drawing-svg": partial(_sheet, "svg"),
-    "inspection": _inspection,
-    "report": report_files,
-    "tool-path": _tool_path,
-    "curvature": _curvature,
+def _plates(ending: str, *, whole: bool = True) -> str:
+    together = f", cams{ending}" if whole else ""
+    return f"cam{ending}; of conjugate cams cam1{ending}, cam2{ending}{together}"
+
+
+def _walls(stem: str, ending: str = ".csv") -> str:
+    pairs = (("groove", "inner", "outer"), ("sliding groove", "lower", "upper"))
+    names = [f"of a {form} {stem}_{a}{ending}, {stem}_{b}{ending}" for form, a, b in pairs]
+    conjugate = f"of conjugate cams {stem}_1{ending}, {stem}_2{ending}"
+    return "; ".join([f"{stem}{ending}", *names, conjugate])
+
+
+_SOLIDS: Final = "closed solids in mm, of conjugate cams also both as they stand on the shaft"
+_SHEETS: Final = "workshop drawings with dimensions and a table of data"
+
+
+FILES: Final[Mapping[str, FileFormat]] = {
+    "csv": FileFormat(
+        _tables,
+        _walls("profile") + "; motion.csv",
+        "vertices of the profile; lift, velocity, acceleration, jerk, pressure angle and radii of"
+        " curvature over the cam angle or travel",
+    ),
+    "dxf": FileFormat(
+        _dxf,
+        _plates(".dxf", whole=False),
+        "outlines in mm in the cam's frame: layers PROFILE, PITCH, PRIME, BORE, HOLE and CENTER; of"
+        " a groove BLANK, OUTER and INNER, or GROOVE, in place of PROFILE. With `kerf_mm` paths of"
+        " the cutter, on layers whose names end in _KERF",
+    ),
+    "cut-svg": FileFormat(
+        _cut_svg,
+        _plates("_cut.svg", whole=False) + "; cut.svg",
+        "for laser programs, 1:1 in mm: inner edges, then outlines in red; one file for each part,"
+        " and cut.svg with all parts side by side and labelled",
+    ),
+    "svg": FileFormat(
+        _picture,
+        "cam.svg; of conjugate cams cams.svg",
+        "a picture of the cam below its follower, not for cutting",
+    ),
+    **{
+        kind: FileFormat(partial(_mesh, kind), _plates(f".{kind}"), _SOLIDS)
+        for kind in ("stl", "3mf", "glb")
+    },
+    "step": FileFormat(
+        _step, _plates(".step"), 'exact solids for CAD; needs `pip install "gearcam[step]"`'
+    ),
+    "drawing-dxf": FileFormat(
+        partial(_sheet, "dxf"), _plates("_drawing.dxf", whole=False), _SHEETS
+    ),
+    "drawing-svg": FileFormat(
+        partial(_sheet, "svg"), _plates("_drawing.svg", whole=False), _SHEETS
+    ),
+    "inspection": FileFormat(
+        _inspection,
+        _walls("inspection"),
+        "points of the profile at even cam angles with their outward normals, where trimming has"
+        " left them",
+    ),
+    "report": FileFormat(report_files, "report.html", REPORT_DOC),
+    "tool-path": FileFormat(
+        _tool_path,
+        f"{_walls('tool_path')}; tool_path_relief.csv; the same names with .dxf",
+        "the path of the centre of a cutter of `tool_radius_mm`; in a groove along the pitch curve"
+        " for a cutter as wide as the groove, else along each wall, and for two rollers along the"
+        " relief",
+    ),
+    "curvature": FileFormat(
+        _curvature,
+        "curvature.csv",
+        "the error of the curvature from three neighbouring points over their spacing; of conjugate"
+        " cams of the first",
+    ),
 }
-"""What makes each kind of file: contents by name; what is measured on them is written down."""
+"""What each word of ``output.files`` makes."""

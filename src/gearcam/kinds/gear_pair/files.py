@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from gearcam.export.shared import (
     STEP_PART,
+    FileFormat,
     Files,
     cut_files,
     drawn,
@@ -18,8 +19,8 @@ from gearcam.export.shared import (
     sheet_files,
 )
 from gearcam.kinds.gear_pair.columns import POINTS
+from gearcam.report.file import REPORT_DOC, report_files
 from gearcam.report.file import framed as framed
-from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
     from gearcam.drawings import Placement
@@ -108,16 +109,53 @@ def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
     return sheet_files(result.sheets, _style(result), ending)
 
 
-FILES: Final[Mapping[str, Callable[..., Files]]] = {
-    "dxf": _dxf,
-    "cut-svg": _cut,
-    "svg": _picture,
-    **{kind: partial(_meshes, kind) for kind in ("stl", "3mf", "glb")},
-    "step": _steps,
-    "csv": _tables,
-    "drawing-dxf": partial(_sheets, "dxf"),
-    "drawing-svg": partial(_sheets, "svg"),
-    "inspection": _inspection,
-    "report": report_files,
+_SOLIDS: Final = "closed solids in mm: each wheel, and the assembled pair as two named bodies"
+_SHEETS: Final = "workshop drawings with views, dimensions and a table of data"
+
+
+def _each(ending: str) -> str:
+    return f"gear1{ending}, gear2{ending}, pair{ending}"
+
+
+FILES: Final[Mapping[str, FileFormat]] = {
+    "dxf": FileFormat(
+        _dxf,
+        _each(".dxf") + "; of stepped wheels gear1_step1.dxf and so on",
+        "outlines in mm. A wheel lies in its own frame, on the layers OUTLINE, BORE, HOLE, SLOT and"
+        " MARK; the assembled pair has the same layers with GEAR1_ or GEAR2_ before their names,"
+        " CENTRODE and CENTER. With `kerf_mm` the files of the wheels hold paths of the cutter, on"
+        " layers whose names end in _KERF",
+    ),
+    "cut-svg": FileFormat(
+        _cut,
+        "gear1_cut.svg, gear2_cut.svg, cut.svg; of stepped wheels gear1_step1_cut.svg and so on",
+        "for laser programs, 1:1 in mm: marks to engrave in blue, then inner edges, then outlines"
+        " in red; one file for each part, and cut.svg with all parts side by side and labelled",
+    ),
+    "svg": FileFormat(_picture, "pair.svg", "a picture of the assembled pair, not for cutting"),
+    **{
+        kind: FileFormat(partial(_meshes, kind), _each(f".{kind}"), _SOLIDS)
+        for kind in ("stl", "3mf", "glb")
+    },
+    "step": FileFormat(
+        _steps,
+        _each(".step"),
+        "exact solids for CAD: one spline face for each flank, fillet, land and tip, planes and"
+        ' cylinders elsewhere; needs `pip install "gearcam[step]"`',
+    ),
+    "csv": FileFormat(
+        _tables,
+        "gear1_outline.csv, gear2_outline.csv, centrodes.csv",
+        "vertices of the outlines; angles, ratio, radii, arc lengths and radii of curvature of both"
+        " centrodes",
+    ),
+    "drawing-dxf": FileFormat(partial(_sheets, "dxf"), _each("_drawing.dxf"), _SHEETS),
+    "drawing-svg": FileFormat(partial(_sheets, "svg"), _each("_drawing.svg"), _SHEETS),
+    "inspection": FileFormat(
+        _inspection,
+        "inspection.csv",
+        "points on every flank with their normals, for a measuring machine",
+    ),
+    "report": FileFormat(report_files, "report.html", REPORT_DOC),
 }
-"""What makes each kind of file: contents by name; what is measured on them is written down."""
+"""What each word of ``output.files`` makes."""
