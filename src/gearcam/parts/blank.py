@@ -217,7 +217,7 @@ else:
 
 
 class Blank(Brief, _BothWheels):
-    """Bores, hubs, holes, marks and edges of both wheels: `WheelBlank`'s fields, driver first.
+    """Bores, hubs, holes, marks and edges of both wheels, each value given once or driver first.
 
     Examples
     --------
