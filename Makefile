@@ -3,6 +3,7 @@
 # make slow       run the slow tests
 # make lint       check style, types and import contracts
 # make matrix     run the tests with each Python found, and with the lowest and newest packages
+# make docs       write docs/reference and build the site of docs/ in build/docs
 # make notebooks  run the notebooks of docs/notebooks and store their output
 # make bench      measure run times; write benchmarks/results/performance.md
 # make needs      measure the cost of each kind of file; update performance.md
@@ -29,7 +30,7 @@ RUN    := run install
 TEST   := $(RUN) step plot test
 
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench needs growth peers accuracy compare matrix notebooks lock clean help
+.PHONY: demo test lint slow bench needs growth peers accuracy compare matrix docs notebooks lock clean help
 
 help:
 	@sed -n '/^$$/q; s/^# \{0,1\}//p' Makefile
@@ -71,6 +72,10 @@ compare: $(VENV)/.test
 
 matrix:
 	@MAKE="$(MAKE)" tools/matrix
+
+docs: $(VENV)/.docs
+	$(BIN)/python tools/reference.py
+	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet docs build/docs
 
 notebooks: $(VENV)/.test
 	$(BIN)/python tools/notebooks.py
@@ -122,6 +127,10 @@ $(VENV)/.lint: $(VENV)/.test
 
 $(VENV)/.bench: $(VENV)/.test
 	$(call locked,$(TEST) bench)
+	@touch $@
+
+$(VENV)/.docs: $(VENV)/.test
+	$(call locked,$(TEST) docs)
 	@touch $@
 
 $(VENV)/.lock: requirements.lock $(VENV)/.made

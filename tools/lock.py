@@ -28,6 +28,7 @@ SECTIONS = {
     "test": ["--group", "test"],
     "lint": ["--group", "lint"],
     "bench": ["--group", "bench"],
+    "docs": ["--group", "docs"],
     "lock": ["--group", "lock"],
 }
 TOOLS = ["--group", "install", "--group", "test"]

@@ -124,8 +124,10 @@ def test_each_target_takes_its_sections_and_no_other() -> None:
     assert taken("test") == ["run", "install", "step", "plot", "test"]
     assert taken("lint") == [*taken("test"), "lint"]
     assert taken("bench") == [*taken("test"), "bench"]
+    assert taken("docs") == [*taken("test"), "docs"]
     assert taken("lock") == ["lock"]
-    assert set(SECTIONS) == {*taken("lint"), *taken("bench"), *taken("lock"), "lowest"}
+    ends = ("lint", "bench", "docs", "lock")
+    assert set(SECTIONS) == {"lowest"}.union(*map(taken, ends))
 
 
 def test_types_are_checked_for_the_oldest_python() -> None:

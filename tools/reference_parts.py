@@ -1,0 +1,130 @@
+"""Parts of the pages of docs/reference: fixed words, tables, keys of design files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Final
+
+from gearcam.designs.faults import allowed, show
+from gearcam.designs.table import Key, Table
+from gearcam.numerals import shown
+from gearcam.quantities import ANGLE, LENGTH, REQUIRED
+
+NONE: Final = "-"
+"""Where there is nothing."""
+
+KEY_HEADS: Final = ("key", "value", "default", "meaning")
+"""Heads of a table of keys."""
+
+TITLES: Final = {"gear-pair": "Gear pairs", "cam": "Cams"}
+GROUPS: Final = {
+    "teeth": "Law, centrodes and teeth",
+    "meshing": "Meshing study (`gearcam mesh`)",
+    "parts": "Parts",
+    "cams": "Motion and profile",
+    "followed profiles": "Followed profile (`gearcam follow`)",
+}
+"""Headings of groups of checks, by what they examine."""
+
+KEYS_INTRO: Final = f"""\
+A design file is TOML in UTF-8. An unknown key, a value of the wrong type or one out of range is
+refused. Whole numbers may be written as 2 or 2.0 where a number is asked for. A length above 0 is
+at least {shown(LENGTH.least)} mm, an angle above 0 at least {shown(ANGLE.least)} degrees. A dash
+under "default" means that there is no fixed one: the meaning then says what holds where the key
+is left out; otherwise the key is optional, or another one is given in its place.
+"""
+
+COMMANDS_INTRO: Final = """\
+Files go to `DIR/NAME/`, where `DIR` is `output` or what `--output` says and `NAME` is the name of
+the design. Several design files may be given to most commands. What the exit codes mean is in
+[exit-codes.md](exit-codes.md).
+"""
+
+CODES_OUTRO: Final = """\
+Given several files, a command works on all of them and returns the largest code. However a
+command ends, the files of a design are either all the old ones or all the new ones.
+"""
+
+CHECKS_INTRO: Final = """\
+A check examines a design that has been built. A note is good to know, a warning asks you to look
+before you cut, an error means: do not cut this. Limits are set in the table `[limits]` of a
+design. Designs that cannot be made at all are refused instead.
+"""
+
+FILES_INTRO: Final = """\
+`files` in the table `[output]` lists what is written beside `summary.json`, which always is.
+`gearcam build --only A,B` writes other files once. What to send to whom, and what the files look
+like inside, is in [files.md](../files.md).
+"""
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a Markdown table."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join(f"| {' | '.join(map(_cell, line))} |" for line in lines)
+
+
+def _cell(text: str) -> str:
+    return plain(" ".join(text.split())).replace("|", "\\|")
+
+
+def plain(text: str) -> str:
+    """Return text in which stars are stars; outside of code Markdown would take them for marks."""
+    parts = text.split("`")
+    return "`".join(
+        part.replace("*", "\\*") if k % 2 == 0 else part for k, part in enumerate(parts)
+    )
+
+
+def sentence(doc: str) -> str:
+    """Return words as a sentence; a symbol at their beginning stays as it is."""
+    first = doc[0].upper() if doc.partition(" ")[0].isalpha() else doc[0]
+    return f"{first}{plain(doc[1:])}."
+
+
+def code(word: object) -> str:
+    """Return a word as it stands in a file."""
+    return f"`{word}`"
+
+
+def listed(words: Iterable[object]) -> str:
+    """Return words in a row, or a dash."""
+    return ", ".join(map(code, words)) or NONE
+
+
+def default(entry: Key) -> str:
+    """Return the default of a key as a file would hold it."""
+    if entry.default is REQUIRED:
+        return "required" if entry.required else "one of the two"
+    if entry.default is None:
+        return NONE
+    value = _short(entry.outward(entry.default))
+    if entry.param.both and len(set(value)) == 1:
+        value = value[0]
+    return code(show(value))
+
+
+def key_rows(entries: Mapping[str, Key]) -> Iterator[tuple[str, ...]]:
+    """Yield the row of each key."""
+    for key, entry in entries.items():
+        yield code(key), allowed(entry).removeprefix("a "), default(entry), entry.param.doc
+
+
+def keys_of(known: Table) -> str:
+    """Return the table of keys, or that there are none."""
+    return table(KEY_HEADS, key_rows(known.entries)) if known.entries else "It has no keys."
+
+
+def toml(title: str, values: Mapping[str, Any]) -> str:
+    """Return an example of a table of a design file."""
+    lines = [f"{key} = {json.dumps(_short(value))}" for key, value in values.items()]
+    return "\n".join(["```toml", title, *lines, "```"])
+
+
+def _short(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_short(item) for item in value]
+    if isinstance(value, float):
+        return int(value) if value.is_integer() else float(f"{value:.6g}")
+    return value
