@@ -111,7 +111,7 @@ class Mesh:
 
 @contextmanager
 def libraries() -> Iterator[None]:
-    """Name the command that installs the libraries if importing them fails; also a decorator.
+    """Yield, and name the command that installs a library if importing it fails; also a decorator.
 
     Raises
     ------
