@@ -113,6 +113,10 @@ class Mesh:
 def libraries() -> Iterator[None]:
     """Yield, and name the command that installs a library if importing it fails; also a decorator.
 
+    Yields
+    ------
+    None
+
     Raises
     ------
     MissingExtraError
