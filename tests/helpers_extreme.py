@@ -1,13 +1,13 @@
-"""The catalogue of stiff and extreme cases: what must happen is told in each file.
+"""The stiff and extreme cases: each file states the expected outcome.
 
-The last of the comments that a file begins with is one of::
+The last comment at the top of a file is one of::
 
-    # must: be built
-    # must: be found tips-collide, contact-ratio
-    # must: be refused pair.teeth [41, 41]
-    # must: be refused by reading law.formula
+    # expected: built
+    # expected: errors tips-collide, contact-ratio
+    # expected: refused, pair.teeth = [41, 41]
+    # expected: invalid, law.formula
 
-A value is the nearest feasible one: it stands in the message, and with it the design is built.
+A value is the nearest feasible one: the message contains it, and with it the design is built.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from helpers_pairs import PROFILES
 EXTREME = PROFILES / "extreme"
 
 _MUST = re.compile(
-    r"# must: be (?:(built)|(found) ([a-z-]+(?:, [a-z-]+)*)"
-    r"|(refused(?: by reading)?) (\S+)(?: (.+))?)"
+    r"# expected: (?:(built)|(errors) ([a-z-]+(?:, [a-z-]+)*)"
+    r"|(refused|invalid), (\S+)(?: = (.+))?)"
 )
 
 
 class Must(NamedTuple):
-    """What must happen to a design: how it ends, findings at error level, key and value."""
+    """The expected outcome of a design: its end, codes of error findings, key and value."""
 
     ending: str
     codes: frozenset[str] = frozenset()
@@ -43,7 +43,7 @@ class Must(NamedTuple):
 
 
 def must_of(text: str) -> Must:
-    """What a design file says of itself."""
+    """The expected outcome that a design file states."""
     comments = []
     for line in text.splitlines():
         if not line.startswith("#"):
@@ -51,7 +51,7 @@ def must_of(text: str) -> Must:
         comments.append(line)
     told = _MUST.fullmatch(comments[-1]) if comments else None
     if told is None:
-        raise ValueError(f"what must happen is not told after {comments[-1:]}")
+        raise ValueError(f"no expected outcome in {comments[-1:]}")
     built, found, codes, refused, key, value = told.groups()
     if refused:
         return Must(refused, key=key, value=value or "")
@@ -59,15 +59,15 @@ def must_of(text: str) -> Must:
 
 
 def misses(path: Path, *, searched: bool = False) -> list[str]:
-    """What does not happen to the design of a file as it tells (see `outcome`)."""
+    """How the outcome of a design file differs from the expected one (see `outcome`)."""
     return outcome(path, searched=searched)[0]
 
 
 def outcome(path: Path, *, searched: bool = False) -> tuple[list[str], Any]:
-    """What does not happen to the design of a file as it tells, and its result, None if refused.
+    """How the outcome differs from the expected one, and the result, None if refused.
 
-    What a refusal does not tell itself stands among the remedies that the command searches and
-    tells after it: looked at only if they are to be `searched`.
+    A value that is not in the message of a refusal is among the remedies that the command prints;
+    these are computed only if `searched`.
     """
     must = must_of(path.read_text())
     result: Any = None
@@ -76,7 +76,7 @@ def outcome(path: Path, *, searched: bool = False) -> tuple[list[str], Any]:
         codes = whole(result)
     except DesignError as error:
         words = str(error).replace(str(path), "")  # whose digits are no value
-        return _untold(must, "refused by reading", words), None
+        return _untold(must, "invalid", words), None
     except InfeasibleError as error:
         wrong = _untold(must, "refused", str(error))
         if must.ending == "refused" and wrong:
@@ -85,17 +85,17 @@ def outcome(path: Path, *, searched: bool = False) -> tuple[list[str], Any]:
             found = "".join(f"; {one.text}" for one in gearcam.remedies(result, error).found)
             wrong = _untold(must, "refused", str(error) + found)
         return wrong, None
-    ending = "found" if codes else "built"
+    ending = "errors" if codes else "built"
     wrong = [] if ending == must.ending else [f"{ending}, not {must.ending}"]
     wrong += [] if codes == must.codes else [f"{sorted(codes)}, not {sorted(must.codes)}"]
     return wrong, result
 
 
 def _untold(must: Must, ending: str, message: str) -> list[str]:
-    """What a refusal should tell and does not."""
+    """What is missing in the message of a refusal."""
     wrong = [] if ending == must.ending else [f"{ending}, not {must.ending}: {message}"]
     told = (must.key, must.value)
-    return wrong + [f"{text} is not told: {message}" for text in told if text not in message]
+    return wrong + [f"{text} is missing: {message}" for text in told if text not in message]
 
 
 def whole(result: Any) -> frozenset[str]:
@@ -107,7 +107,7 @@ def whole(result: Any) -> frozenset[str]:
 
 
 def with_nearest(path: Path) -> Any:
-    """The result of a refused design with the nearest feasible value that it names."""
+    """The result of a refused design with the nearest feasible value of its message."""
     text = path.read_text()
     must = must_of(text)
     document = {"name": path.stem} | tomllib.loads(text)
