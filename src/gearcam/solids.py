@@ -111,7 +111,7 @@ class Mesh:
 
 @contextmanager
 def libraries() -> Iterator[None]:
-    """Yield, and name the command that installs a library if importing it fails; also a decorator.
+    """Yield once; name the command that installs a library if importing it fails. Also a decorator.
 
     Yields
     ------
