@@ -24,12 +24,24 @@ SHOWN = [page for page in PAGES if "\n```console\n" in page.read_text("utf-8")]
 
 def like(shown: str, printed: str) -> bool:
     """Whether a text is as shown; a line of dots stands for any lines, times may differ."""
-    wanted = ["%DOTS%" if line.strip() == "..." else line for line in shown.splitlines()]
-    pattern = re.escape("\n".join(line.rstrip() for line in wanted))
-    pattern = re.sub(r"\d+\\\.\d+\\ s\b", r"[\\d.]+ s", pattern)
-    pattern = pattern.replace(re.escape("%DOTS%"), r"(?:.*\n?)*?.*")
-    text = "\n".join(line.rstrip() for line in printed.splitlines())
-    return re.fullmatch(pattern, text) is not None
+    lines = [line.rstrip() for line in printed.splitlines()]
+    pieces: list[list[str]] = [[]]
+    for line in shown.splitlines():
+        if line.strip() == "...":
+            pieces.append([])
+        else:
+            timed = re.sub(r"\d+\\\.\d+\\ s\b", r"[\\d.]+ s", re.escape(line.rstrip()))
+            pieces[-1].append(timed)
+    at = 0
+    for number, piece in enumerate(pieces):
+        last = len(lines) - len(piece)
+        first = last if number and number == len(pieces) - 1 else at
+        starts = range(first, last + 1 if number else 1)
+        found = [k for k in starts if all(map(re.fullmatch, piece, lines[k : k + len(piece)]))]
+        if not found or last < at:
+            return False
+        at = found[0] + len(piece)
+    return at == len(lines)
 
 
 def commands(block: str) -> list[tuple[str, str]]:
