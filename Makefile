@@ -10,6 +10,7 @@
 # make growth     measure time and memory against the size of designs; write growth.md
 # make accuracy   measure error against run time of several methods; write accuracy.md
 # make peers      compare tooth flanks with those of another package
+# make fuzz       test with random designs: MORE="--count N --seed N ..." (--help lists more)
 # make compare    compare random designs with those of an older commit: BASE=COMMIT [N=50] [SEED=1]
 # make lock       renew requirements.lock
 # make clean      remove environments, caches and output
@@ -30,7 +31,7 @@ RUN    := run install
 TEST   := $(RUN) step plot test
 
 .DELETE_ON_ERROR:
-.PHONY: demo test lint slow bench needs growth peers accuracy compare matrix docs notebooks lock clean help
+.PHONY: demo test lint slow bench needs growth peers accuracy fuzz compare matrix docs notebooks lock clean help
 
 help:
 	@sed -n '/^$$/q; s/^# \{0,1\}//p' Makefile
@@ -67,8 +68,11 @@ peers: $(VENV)/.bench
 accuracy: $(VENV)/.bench
 	$(BIN)/python benchmarks/accuracy/run.py
 
+fuzz: $(VENV)/.test
+	PYTHONPATH=tests $(BIN)/python -m fuzz $(MORE)
+
 compare: $(VENV)/.test
-	$(BIN)/python tools/compare.py $(BASE) --count $(or $(N),50) --seed $(or $(SEED),1) $(MORE)
+	PYTHONPATH=tests $(BIN)/python tools/compare.py $(BASE) --count $(or $(N),50) --seed $(or $(SEED),1) $(MORE)
 
 matrix:
 	@MAKE="$(MAKE)" tools/matrix

@@ -6,8 +6,8 @@ import os
 import time
 from pathlib import Path
 
-from gearcam.fuzz.outcome import BUILT, FAILED, Failure, Outcome, Task
-from gearcam.fuzz.pool import MEMORY
+from fuzz.outcome import BUILT, FAILED, Failure, Outcome, Task
+from fuzz.pool import MEMORY
 
 
 def text_of(task: Task) -> str:

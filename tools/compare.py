@@ -25,8 +25,8 @@ from typing import Any, Final
 
 from compare_files import MORE, Difference, called, folders, told
 from compare_sides import GALLERY, ROOT, Side, tree_of
-from gearcam.draws.designs import design, drawn_kinds
-from gearcam.draws.toml import toml
+from random_designs.designs import MAKERS, design
+from random_designs.toml import toml
 
 SHOWN: Final = 30
 """Largest number of places listed."""
@@ -218,7 +218,7 @@ class Comparison:
         try:
             if not self.given.only and not self.given.no_gallery:
                 self._each(self._gallery())
-            for kind in self.given.kind or drawn_kinds():
+            for kind in self.given.kind or MAKERS:
                 self.built = 0
                 self._each(self._drawn(kind))
         finally:
@@ -291,7 +291,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Compare a commit with this tree.")
     parser.add_argument("base", help="a commit, or a folder with src and profiles")
     parser.add_argument("--tree", type=Path, default=ROOT, help="tree instead of this one")
-    parser.add_argument("--kind", action="append", choices=drawn_kinds())
+    parser.add_argument("--kind", action="append", choices=[*MAKERS])
     parser.add_argument("--count", type=int, default=50, help="designs built of each kind")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(

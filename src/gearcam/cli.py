@@ -133,7 +133,7 @@ def _dispatch(words: list[str]) -> None:
 
 
 def _functions() -> dict[str, Callable[..., None]]:
-    functions = (_build, _check, _compare, _view, _laws, _new, _schema, _fuzz)
+    functions = (_build, _check, _compare, _view, _laws, _new, _schema)
     return {function.__name__.lstrip("_"): function for function in functions}
 
 
@@ -160,9 +160,9 @@ def _parser(
     parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
     if command in (_build, _check):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
-    if command in (_build, _check, _compare, _fuzz):
+    if command in (_build, _check, _compare):
         _add_common(parser)
-    if command in (_compare, _view, _fuzz):
+    if command in (_compare, _view):
         import_module(f"gearcam.{name}.command").arguments(parser)
     if command is _build:
         words = f"write these files instead of output.files: {', '.join(formats)}"
@@ -215,12 +215,6 @@ def _compare(files: list[str], debug: bool, **options: Any) -> None:
         return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(compare(files, **options), GOOD)
 
     _each([" ".join(files)], "compared", work, debug=debug)
-
-
-def _fuzz(debug: bool, **options: Any) -> None:
-    """Test gearcam with random designs; write those that reveal a bug into DIR."""
-    fuzz = import_module("gearcam.fuzz.command").fuzz
-    _each(["fuzz"], "tried", lambda _: GOOD if fuzz(**options) else FINDINGS, debug=debug)
 
 
 def _kind_parser(command: Command) -> argparse.ArgumentParser:

@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.draws.draw import Draw
-from gearcam.draws.toml import toml
 from gearcam.kinds.cam.accuracy import error_rows
-from gearcam.kinds.cam.draw import design as cam
 from helpers_cam_truth import faults, judged, rows
+from random_designs.cam import design as cam
+from random_designs.draw import Draw
+from random_designs.toml import toml
 from witness.lifts import formula
 
 mp: Any = mpmath.mp

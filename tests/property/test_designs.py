@@ -15,12 +15,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import gearcam
+from fuzz.cross_checks_pair import doubts
 from gearcam.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.gears.outline import Outline
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.kinds.gear_pair.doubts import doubts
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula

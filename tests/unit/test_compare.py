@@ -17,8 +17,8 @@ import pytest
 import compare
 from compare_files import called, files, folders, summaries, told
 from compare_sides import Side
-from gearcam.draws.designs import design, drawn_kinds
-from gearcam.draws.documented import known_keys, schema
+from random_designs.designs import MAKERS, design
+from random_designs.documented import known_keys, schema
 
 DRAWN = 400
 """Designs of each kind within which everything is drawn."""
@@ -41,7 +41,7 @@ def choices(kind: str, title: str, key: str) -> set[str]:
 # --- the generator ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", drawn_kinds())
+@pytest.mark.parametrize("kind", MAKERS)
 def test_a_design_is_told_by_its_seed_and_number(kind: str) -> None:
     first = [design(kind, 7, index) for index in range(20)]
     assert [design(kind, 7, index) for index in (19, 3)] == [first[19], first[3]]
@@ -49,7 +49,7 @@ def test_a_design_is_told_by_its_seed_and_number(kind: str) -> None:
 
 
 def test_every_kind_of_the_program_is_drawn() -> None:
-    assert set(drawn_kinds()) == set(schema()["properties"]["kind"]["enum"])
+    assert set(MAKERS) == set(schema()["properties"]["kind"]["enum"])
 
 
 def test_every_law_and_rise_and_follower_is_drawn() -> None:
@@ -74,7 +74,7 @@ def test_every_law_and_rise_and_follower_is_drawn() -> None:
     assert guided >= {(kind, motion) for kind in kinds for motion in (None, "oscillating")}
 
 
-@pytest.mark.parametrize("kind", drawn_kinds())
+@pytest.mark.parametrize("kind", MAKERS)
 def test_every_key_and_file_that_the_program_documents_is_drawn(kind: str) -> None:
     drawn: dict[str, set[str]] = {}
     made = documents(kind)

@@ -18,10 +18,7 @@ names it, and only that of a file is loaded. Its modules:
 - `describe`: what schema, template and list of laws say of its main part, and the table of each
   of its items;
 - `commands`, where it has any: ``COMMANDS`` of the command line;
-- `ladder`, where it has any: ``LADDERS``, stages at rising resolution (see `gearcam.ladders`);
-- `draw`, where it has any: ``design(d, index)`` returns a random design as a file holds it;
-- `doubts`, where it has any: ``doubts(result)`` yields places and words of what a study by other
-  means says against a result.
+- `ladder`, where it has any: ``LADDERS``, stages at rising resolution (see `gearcam.ladders`).
 """
 
 from __future__ import annotations

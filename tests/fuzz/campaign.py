@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
-from gearcam.draws.designs import Drawn, design
-from gearcam.draws.draw import Draw
+from fuzz.outcome import BUILT, FAILED, LATE, REFUSED, WRONG, Failure, Outcome, Task
+from fuzz.pool import Pool
+from fuzz.shrink import Files, shrunk
 from gearcam.facts import lined_up
-from gearcam.fuzz.outcome import BUILT, FAILED, LATE, REFUSED, WRONG, Failure, Outcome, Task
-from gearcam.fuzz.pool import Pool
-from gearcam.fuzz.shrink import Files, shrunk
+from random_designs.designs import Drawn, design
+from random_designs.draw import Draw
 
 DOUBTED: Final = 0.1
 """Share of designs whose results are compared with those of other methods."""
@@ -48,7 +48,8 @@ class Case:
     @property
     def command(self) -> str:
         """The command that tries this design alone."""
-        return f"gearcam fuzz --kind {self.kind} --seed {self.seed} --only {self.index}"
+        words = f"--kind {self.kind} --seed {self.seed} --only {self.index}"
+        return f"make fuzz MORE='{words}'"
 
     @cached_property
     def drawn(self) -> Drawn:

@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
-from gearcam.draws.toml import toml
+from random_designs.toml import toml
 
 Files = Mapping[str, str]
 

@@ -10,9 +10,9 @@ import math
 from collections.abc import Callable
 from typing import Any, Final
 
-from gearcam.draws.blank import blank
-from gearcam.draws.draw import Draw, short
-from gearcam.draws.output import asked
+from random_designs.blank import blank
+from random_designs.draw import Draw, short
+from random_designs.output import asked
 
 Law = dict[str, Any]
 Counts = tuple[int, int]

@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from gearcam.draws.draw import Draw, short
-from gearcam.draws.toml import toml
+from random_designs.draw import Draw, short
+from random_designs.toml import toml
 
 Document = dict[str, Any]
 Place = tuple[dict[str, Any] | list[Any], Any]
@@ -54,7 +54,7 @@ def broken(d: Draw, document: Document, tables: Mapping[str, str]) -> dict[str, 
     Returns
     -------
     dict
-        ``files`` and ``broken``, the arguments of `gearcam.draws.designs.Drawn`.
+        ``files`` and ``broken``, the arguments of `random_designs.designs.Drawn`.
     """
     made, ways = copy.deepcopy(document), [*_WAYS, *_OF_TEXTS]
     weights = [_WAYS.get(way, 1) for way in ways]

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any, Final
 
 from gearcam.designs import schema as schemas
-from gearcam.draws.draw import Draw
+from random_designs.draw import Draw
 
 _NARROWEST, _WIDEST = 1e-9, 1e6
 """For ranges without an end: the smallest value relative to the largest, and the largest."""

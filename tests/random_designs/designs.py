@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from gearcam.designs.kind import KINDS, find_room
-from gearcam.draws.broken import broken
-from gearcam.draws.documented import places, value
-from gearcam.draws.draw import Draw
-from gearcam.draws.output import limits, tables_as_files
-from gearcam.draws.toml import toml
+from random_designs import cam, gear_pair
+from random_designs.broken import broken
+from random_designs.documented import places, value
+from random_designs.draw import Draw
+from random_designs.output import limits, tables_as_files
+from random_designs.toml import toml
 
 BROKEN: Final = 0.1
 """Share of designs with an error, which may be refused."""
@@ -26,6 +26,9 @@ _ANYWHERE: Final = 0.15
 
 _LIMITED: Final = 0.15
 """Share of designs that set limits of checks."""
+
+MAKERS: Final = {"cam": cam.design, "gear-pair": gear_pair.design}
+"""What makes a random design of each kind, as the tables of its file."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,24 +54,19 @@ class Drawn:
         return folder / next(iter(self.files))
 
 
-def drawn_kinds() -> tuple[str, ...]:
-    """Return the kinds of design with a module ``draw``."""
-    return tuple(kind for kind in KINDS if find_room(kind, "draw") is not None)
-
-
 def design(kind: str, seed: int, index: int) -> Drawn:
     """Return a random design.
 
     Parameters
     ----------
     kind : str
-        One of `drawn_kinds`.
+        One of `MAKERS`.
     seed, index : int
         Seed, and number of the design.
     """
     d = Draw(f"{kind} {seed} {index}")
     name = f"{kind}-{seed}-{index}"
-    document = {"kind": kind, "name": name, **KINDS[kind].room("draw").design(d, index)}
+    document = {"kind": kind, "name": name, **MAKERS[kind](d, index)}
     if d.chance(_LIMITED):
         document["limits"] = limits(d, document)
     tables = tables_as_files(d, document, name)

@@ -19,8 +19,8 @@ from multiprocessing import connection
 from pathlib import Path
 from typing import Final, Self
 
+from fuzz.outcome import FAILED, LATE, Failure, Outcome, Task
 from gearcam.console import quieten
-from gearcam.fuzz.outcome import FAILED, LATE, Failure, Outcome, Task
 
 SECONDS: Final = 30.0
 """Processor time allowed for a trial, s."""

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
-from gearcam.draws.documented import known_keys, schema
-from gearcam.draws.draw import Draw, short
+from random_designs.documented import known_keys, schema
+from random_designs.draw import Draw, short
 
 _CHEAP: Final = ("svg", "inspection")
 """Kinds of files that are cheap for any number of vertices."""

@@ -17,8 +17,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from fuzz.outcome import Failure
 from gearcam.errors import GearcamError, InfeasibleError
-from gearcam.fuzz.outcome import Failure
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Layer, Part
 from gearcam.written import Written

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from gearcam.draws.draw import Draw, short
+from random_designs.draw import Draw, short
 
 
 def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:

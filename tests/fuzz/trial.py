@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+import gearcam
+from fuzz import cross_checks_cam, cross_checks_pair
+from fuzz.oracles import look_at
+from fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 from gearcam import build, load, remedies
 from gearcam.console import all_lines, refusal_text, remedy_lines
-from gearcam.designs.kind import find_room
 from gearcam.errors import DesignError, InfeasibleError
-from gearcam.fuzz.oracles import look_at
-from gearcam.fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 
 SEARCH: Final = 0.6
 """Patience of the search for remedies, s: enough for a few designs."""
@@ -23,7 +24,10 @@ SEARCH: Final = 0.6
 _SHOWN: Final = 500
 """Characters of an exception that are reported."""
 
-_PACKAGE: Final = f"{Path(__file__).parents[1].name}/"
+_HOMES: Final = {Path(gearcam.__file__).parent, Path(__file__).parent}
+
+_CROSS_CHECKS: Final = {"cam": cross_checks_cam.doubts, "gear-pair": cross_checks_pair.doubts}
+"""What other methods say against the result of a design, by its kind."""
 
 
 class FaultError(Exception):
@@ -110,13 +114,11 @@ class Trial:
             raise FaultError(failure)
 
     def _doubt(self, result: Any) -> None:
-        room = find_room(result.design.kind, "doubts")
-        if room is not None:
-            self.doubted = True
-            self._hold(
-                Failure(kind="contradiction", words=words, place=place)
-                for place, words in room.doubts(result)
-            )
+        self.doubted = True
+        self._hold(
+            Failure(kind="contradiction", words=words, place=place)
+            for place, words in _CROSS_CHECKS[result.design.kind](result)
+        )
 
     def _follow(self, result: Any, refusal: InfeasibleError | None) -> None:
         """Build the remedies, with all their files."""
@@ -152,6 +154,6 @@ def _told(error: DesignError | InfeasibleError, file: str, words: str) -> str:
 def _place(error: BaseException) -> str:
     """Return the type of an exception and the innermost function of gearcam in its traceback."""
     frames = traceback.extract_tb(error.__traceback__)
-    own = [one for one in frames if _PACKAGE in one.filename.replace("\\", "/")]
+    own = [one for one in frames if _HOMES & {*Path(one.filename).parents}]
     last = own[-1] if own else frames[-1]
     return f"{type(error).__name__} in {Path(last.filename).name}, {last.name}"
