@@ -14,7 +14,7 @@ import gearcam
 from arch import rules
 from gearcam.cli import main
 
-PAGES = sorted((rules.ROOT / "docs").glob("*.md"))
+PAGES = [rules.ROOT / "README.md", *sorted((rules.ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 SUMMARY = (rules.ROOT / "docs" / "summary.md").read_text("utf-8")
 NAMED = ("design", "files", "how", "solved", "stale", "timings_s", "versions")

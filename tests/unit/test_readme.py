@@ -11,13 +11,14 @@ import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
 import pytest
 
 import gearcam
 import picture
 from gearcam.designs import document_of, loads
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.rises.base import RISES
 from gearcam.parts.mass import mass_properties
 
 ROOT = Path(__file__).parents[2]
@@ -105,20 +106,6 @@ def test_the_example_is_about_ten_lines() -> None:
     assert 8 <= len(block("python").strip().splitlines()) <= 14
 
 
-def test_the_law_by_a_function_prints_what_is_shown() -> None:
-    """The centre distance is ``module*pi*z`` over the length of the centrode for distance 1."""
-    stream = io.StringIO()
-    with contextlib.redirect_stdout(stream):
-        exec(compile(block("python", 1), "README.md", "exec"), {})
-    assert stream.getvalue() == block("text", 1)
-    phi, weights = np.polynomial.legendre.leggauss(200)
-    phi = math.pi * (1.0 + phi)
-    ratio, slope = 1.0 - 0.3 * np.cos(phi), 0.3 * np.sin(phi)
-    length = math.pi * weights @ (np.hypot(ratio, slope / (1.0 + ratio)) / (1.0 + ratio))
-    shown = float(block("text", 1).split()[2])
-    assert shown == pytest.approx(2.0 * math.pi * 40 / length, abs=5e-7)
-
-
 def test_the_design_file_shown_is_the_profile() -> None:
     shown = tomllib.loads(block("toml"))
     assert shown == tomllib.loads(PROFILE.read_text(encoding="utf-8"))
@@ -131,7 +118,9 @@ def test_the_cam_shown_is_the_profile() -> None:
 
 
 def test_the_blank_shown_is_one_that_can_be_made() -> None:
-    text = block("toml").replace("[blank]\nbore_diameter_mm = [40, 40]\n", block("toml", 2))
+    page = (ROOT / "docs" / "gear-pairs.md").read_text(encoding="utf-8")
+    (blank,) = re.findall(r"^```toml\n(\[blank\]\n.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    text = block("toml").replace("[blank]\nbore_diameter_mm = [40, 40]\n", blank)
     assert text != block("toml")
     design = loads(text)
     assert isinstance(design, GearPairDesign)
@@ -139,6 +128,18 @@ def test_the_blank_shown_is_one_that_can_be_made() -> None:
     heavy, light = (mass_properties(part, 7850.0).mass for part in job.parts)
     assert 0.0 < heavy < light  # the driver has holes
     assert not [finding for finding in job.findings if finding.severity == "error"]
+
+
+def test_the_readme_is_short_and_in_order() -> None:
+    assert len(README.encode()) <= 9000
+    titles = re.findall(r"^## (.+)$", README, re.MULTILINE)
+    assert titles == ["Start", "A pair of gears", "In Python", "A cam", "What works", "Read on"]
+
+
+def test_the_numbers_of_laws_are_those_of_the_registries() -> None:
+    words = {16: "sixteen", 17: "seventeen", 19: "nineteen", 20: "twenty"}
+    assert f"{words[len(LAWS)]} ratio laws" in README
+    assert f"{words[len(RISES)]} motion laws" in README
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
