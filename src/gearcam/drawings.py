@@ -8,8 +8,8 @@ groove has its walls on INNER and OUTER, one with ends on GROOVE, and the edge o
 into on BLANK.
 *Placing* turns and shifts shapes without changing them otherwise.
 
-What a cutter burns away, its *kerf*, is nothing of the part's: it moves the paths of a drawing to
-be cut, whose layers then end in ``_KERF``.
+The *kerf*, the width of a cut, is not part of the geometry: it moves the paths of a drawing for
+cutting, whose layers then end in ``_KERF``. Such a drawing holds only what is cut or engraved.
 
 Refused: a pair of other than two parts; a kerf that an edge leaves no room for.
 
@@ -54,6 +54,9 @@ LABEL: Final = "LABEL"
 OUTER: Final = (OUTLINE, PROFILE, BLANK)
 THROUGH: Final = (BORE, HOLE, SLOT, INNER, GROOVE)
 """Kinds that are cut: around the part, and right through it."""
+
+ENGRAVED: Final = (MARK, LABEL)
+"""Kinds that are marked on a part before it is cut."""
 
 DASHED: Final = (CENTRODE, PITCH, PRIME)
 """Kinds that are drawn dashed."""
@@ -219,26 +222,26 @@ def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Fe
 
 
 def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
-    """Return a drawing with the paths of a cutter in place of the edges that it cuts.
+    """Return a drawing with the paths of a cutter instead of the edges that it cuts.
 
     Parameters
     ----------
     drawing : Drawing
         Of one part.
     kerf : float, mm
-        Width of what the cutter burns away; 0 leaves the drawing as it is.
+        Width of the cut; 0 leaves the drawing as it is.
 
     Returns
     -------
     Drawing
         Outlines moved outwards and openings inwards by half the kerf, true parallels, on layers
-        that end in ``_KERF``; the rest as it is.
+        that end in ``_KERF``, and what is engraved; nothing else, as a machine may cut all lines.
 
     Raises
     ------
     InfeasibleError
-        If an opening, or its keyway, is no wider than the kerf, or if no way around an outline is
-        left by it. A path that cannot follow an outline into every place is one nevertheless.
+        If an opening, or its keyway, is not wider than the kerf, or if no path around an outline
+        is left. A path that cannot follow an outline into every corner is allowed.
     """
     if not kerf:
         return drawing
@@ -247,16 +250,17 @@ def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
     return replace(
         drawing,
         features=tuple(
-            Feature(layer=one.layer + KERF, shape=_path(one, kerf, tolerance, where))
-            if one.kind in (*OUTER, *THROUGH)
-            else one
+            one
+            if one.kind in ENGRAVED
+            else Feature(layer=one.layer + KERF, shape=_path(one, kerf, tolerance, where))
             for one in drawing.features
+            if one.kind in (*OUTER, *THROUGH, *ENGRAVED)
         ),
     )
 
 
 def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
-    """Return the way of the middle of a cutter that leaves an edge."""
+    """Return the path of the centre of a cutter that leaves the edge of a `feature`."""
     from gearcam.parts.parallel import followed, moved, sized
 
     match feature.shape:
@@ -267,8 +271,8 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
         case Circle(center=center, diameter=diameter):
             x, y = center.tolist()
             raise InfeasibleError(
-                f"the {feature.kind.lower()} at x = {shown(x)}, y = {shown(y)} mm is no wider "
-                "than what the cutter burns away",
+                f"the {feature.kind.lower()} at x = {shown(x)}, y = {shown(y)} mm is not wider "
+                "than the kerf",
                 where=where,
                 value=kerf,
                 limit=diameter,

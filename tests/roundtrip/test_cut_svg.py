@@ -305,7 +305,7 @@ def test_a_pair_has_a_file_for_each_wheel_and_one_for_both() -> None:
         replace(design, output=output, blank=Blank(bore_diameter=(8.0, 6.0)))
     ).files("cut-svg", {})
     assert set(made) == {"gear1_cut.svg", "gear2_cut.svg", "cut.svg"}
-    assert "half a kerf of 0.2 mm" in made["cut.svg"].decode()
+    assert "half the kerf of 0.2 mm" in made["cut.svg"].decode()
     sheets = {name: sheet_of(data) for name, data in made.items()}
     areas = [sheets[f"gear{k}_cut.svg"].regions("outline_kerf")[0].area for k in (1, 2)]
     both = [outline.area for outline in sheets["cut.svg"].regions("outline_kerf")]

@@ -6,6 +6,7 @@ import io
 import math
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,8 @@ import trimesh
 from ezdxf.entities.circle import Circle as DxfCircle
 from ezdxf.entities.lwpolyline import LWPolyline
 
+import gearcam
+from gearcam.designs import load
 from gearcam.drawings import cut_drawing, wheel_drawing
 from gearcam.errors import InfeasibleError
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
@@ -30,6 +33,7 @@ from helpers_contour import contour_of, disc_contour, line
 from helpers_distance import distances
 from helpers_pairs import profile
 
+PROFILES = Path(__file__).parents[2] / "profiles"
 TOLERANCE = 0.005
 KERF = 0.2
 
@@ -168,6 +172,31 @@ def test_a_cam_s_path_has_the_area_that_steiner_says() -> None:
     assert abs(path.area - size.area) > 20.0
     assert made.files("csv", {}) == cam().files("csv", {})
     assert made.files("stl", {}) == cam().files("stl", {})
+
+
+KERFED = {
+    "disc": (PROFILES / "eccentric_cam.toml", {"cam"}),
+    "conjugate": (PROFILES / "conjugate_cams.toml", {"cam1", "cam2"}),
+    "yoke": (PROFILES / "yoke_cam.toml", {"cam"}),
+}
+SHOWN = {"PITCH", "PRIME", "CENTER"}
+
+
+@pytest.mark.parametrize("name", KERFED)
+def test_a_cam_s_file_to_be_cut_holds_cuts_alone_and_another_one_the_part(name: str) -> None:
+    path, stems = KERFED[name]
+    plain = load(path).with_({"output.kerf_mm": 0.0})
+    cut = plain.with_({"output.kerf_mm": 0.2})
+    before, after = gearcam.build(plain).files("dxf"), gearcam.build(cut).files("dxf")
+    assert set(before) == {f"{stem}.dxf" for stem in stems}
+    assert set(after) == set(before) | {f"{stem}_reference.dxf" for stem in stems}
+    for stem in stems:
+        layers = {one.dxf.layer for one in read_dxf(after[f"{stem}.dxf"]).modelspace()}
+        assert layers
+        assert all(layer.endswith("_KERF") for layer in layers)
+        # without a kerf the same curves are there as ever, and the reference is that file
+        assert {one.dxf.layer for one in read_dxf(before[f"{stem}.dxf"]).modelspace()} & SHOWN
+        assert after[f"{stem}_reference.dxf"] == before[f"{stem}.dxf"]
 
 
 def test_clearance_makes_another_part() -> None:

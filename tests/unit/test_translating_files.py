@@ -85,7 +85,7 @@ def test_the_kerf_of_a_groove_that_goes_through() -> None:
     assert groove.area == pytest.approx(cam.groove.polygon.buffer(-0.2).area, rel=1e-4)
     blank = shapely.Polygon(reach(paths["BLANK_KERF"]))
     assert blank.area == pytest.approx(shapely.box(0, 0, 194.1, 60).buffer(0.2).area, rel=1e-4)
-    assert set(result.files("dxf")) == {"cam.dxf"}
+    assert set(result.files("dxf")) == {"cam.dxf", "cam_reference.dxf"}
 
 
 def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
@@ -149,7 +149,7 @@ def test_the_way_of_a_tool() -> None:
 
 def test_the_picture_stands_where_it_is_asked() -> None:
     result = built(FILE)
-    with pytest.raises(InfeasibleError, match="slide so far") as caught:
+    with pytest.raises(InfeasibleError, match="beyond the travel of the cam") as caught:
         built(FILE, ("u_mm = 80", "u_mm = 171")).files("svg")
     assert caught.value.limit == pytest.approx(170.0)
     drawing = result.form.picture(result)

@@ -70,6 +70,7 @@ _EXAMPLES: Final = {
     "u_mm": 0,
     "tool_radius_mm": 8,
     "pressure_angle_deg": 30,
+    "jamming_angle_deg": 45,
     "file": "motion.csv",
     "smoothing_tolerance_mm": 0.01,
     "smoothing_tolerance_deg": 0.01,

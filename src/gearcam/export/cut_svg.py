@@ -1,9 +1,15 @@
-"""SVG for laser cutters: 1:1 in millimetres, to be cut, not looked at.
+"""SVG for laser cutters: 1:1 in millimetres.
 
-Laser programs go by colours and by the order of what they read: cuts are red hairlines, engraving
-is blue; first comes what is engraved, then inner edges, then outlines, so that nothing is cut out
-of a part that has come loose. Everything is a path of arcs and straight pieces: outlines within the
-chord tolerance, openings and marks exact.
+Laser programs go by colour and order: cuts are red hairlines, engraving is blue; first comes what
+is engraved, then inner edges, then outlines, so that no part comes loose before it is finished.
+Everything is a path of arcs and straight pieces: outlines within the chord tolerance, openings and
+marks exact.
+
+Some drivers cut only lines up to 0.02 mm wide, and a browser hardly shows these. The width in mm
+therefore stays in the file, and a style that only browsers apply, and only on a screen, draws lines
+1 pixel wide: `@supports` around `@media`, as parsers of CSS 2 may apply the rules in `@media` to
+any output, but skip a rule that they do not know. Tried with Chromium (1 pixel on a screen, the
+hairline in print), resvg, CairoSVG and svglib (the hairline).
 
 Refused: drawings without an outline.
 
@@ -19,7 +25,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, box
+from gearcam.drawings import ENGRAVED, OUTER, THROUGH, Drawing, Feature, Path, box
 from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data
 from gearcam.markup import svg_document
@@ -29,21 +35,27 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import Circle, Loop
 
-CUT: Final = "#ff0000"
-ENGRAVED: Final = "#0000ff"
+RED: Final = "#ff0000"
+BLUE: Final = "#0000ff"
+"""Colours of cuts and of engraving."""
 
 HAIRLINE: Final = 0.01
 """Width of every line, mm."""
 
+_ON_SCREEN: Final = (
+    "<style>@supports (vector-effect: non-scaling-stroke) { @media screen { "
+    "path { stroke-width: 1px; vector-effect: non-scaling-stroke } } }</style>"
+)
+
 MARGIN: Final = 1.0
-"""What the sheet keeps around, mm."""
+"""Margin of the sheet, mm."""
 
 GROUPS: Final = (
-    ("engrave", (MARK, LABEL), ENGRAVED),
-    ("cut-inner", THROUGH, CUT),
-    ("cut-outer", OUTER, CUT),
+    ("engrave", ENGRAVED, BLUE),
+    ("cut-inner", THROUGH, RED),
+    ("cut-outer", OUTER, RED),
 )
-"""What is drawn, in this order: name, kinds, colour."""
+"""Groups in drawing order: name, kinds, colour."""
 
 _FINER: Final = 1e-3
 """Rounding of numbers over the tolerance."""
@@ -55,11 +67,11 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
     Parameters
     ----------
     drawings : sequence of Drawing
-        Each of one part, where it stands on the sheet.
+        Each of one part, at its place on the sheet.
     title : str
         Of the file.
     kerf : float, mm
-        By half of which the paths have been moved: said in the file, nothing is moved here.
+        The paths were moved by half of it before; it is only stated in the file.
 
     Returns
     -------
@@ -80,11 +92,11 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
     low, high = box(kept) + np.array([[-MARGIN], [MARGIN]])
     wide, tall = (decimal(float(size), 4) for size in np.ceil((high - low) * 1e4) / 1e4)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
-    told = f"; the paths are moved by half a kerf of {shown(kerf)} mm" if kerf else ""
-    # of the paths y = 0 is the sheet's upper edge
+    told = f"; paths are moved by half the kerf of {shown(kerf)} mm" if kerf else ""
+    # y = 0 of the paths is the upper edge of the sheet
     shift = -np.array([low[0], high[1]])
-    words = f"<desc>1:1 in mm: engrave what is blue, then cut what is red{told}</desc>"
-    return svg_document(size, title, [words, *_groups(kept, shift, decimals)])
+    words = f"<desc>1:1 in mm; first engrave blue lines, then cut red lines{told}</desc>"
+    return svg_document(size, title, [words, _ON_SCREEN, *_groups(kept, shift, decimals)])
 
 
 def _groups(kept: Sequence[Feature], shift: Array, decimals: int) -> Iterator[str]:
@@ -99,7 +111,7 @@ def _groups(kept: Sequence[Feature], shift: Array, decimals: int) -> Iterator[st
 
 
 def _data(feature: Feature, shift: Array, decimals: int) -> str:
-    """Return the path data of a feature that is shifted."""
+    """Return the path data of a shifted feature."""
     match feature.shape:
         case Contour() as contour:
             vertices, bulges = contour.fitted(fit_closed, CURVE_PART * contour.tolerance)
@@ -113,4 +125,4 @@ def _data(feature: Feature, shift: Array, decimals: int) -> str:
             steps = (f"{decimal(x, decimals)} {decimal(-y, decimals)}" for x, y in points + shift)
             return f"M{'L'.join(steps)}"
         case shape:
-            raise ValueError(f"{feature.layer}: a {type(shape).__name__} is not cut")
+            raise ValueError(f"{feature.layer}: a {type(shape).__name__} cannot be cut")

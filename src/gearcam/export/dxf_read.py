@@ -176,7 +176,7 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
     if paths:
         raise DxfError(
             f"the layer {paths[0]} holds the path of a cutter, not an edge: "
-            "take a file that was written without a kerf"
+            "take the file that ends in _reference.dxf, or one written without a kerf"
         )
     for wanted in (PROFILE, OUTLINE, OUTER_WALL if outer else INNER, ""):
         found = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -37,7 +38,13 @@ _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 
 
 def _dxf(result: CamResult, measured: Measured) -> Files:
-    return drawn(result.to_cut, _style(result), measured)
+    """Return drawings of the parts; with a kerf its paths, and the parts for reference."""
+    drawings = list(result.to_cut)
+    if result.design.output.kerf:
+        drawings += [
+            replace(one, name=f"{one.name}_reference") for one in result.form.drawings(result)
+        ]
+    return drawn(drawings, _style(result), measured)
 
 
 def _cut_svg(result: CamResult, _: Measured) -> Files:
