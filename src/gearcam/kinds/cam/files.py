@@ -38,7 +38,7 @@ _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 
 
 def _dxf(result: CamResult, measured: Measured) -> Files:
-    """Return drawings of the parts; with a kerf its paths, and the parts for reference."""
+    """Return drawings of the parts; with a kerf cutting paths, and the parts for reference."""
     drawings = list(result.to_cut)
     if result.design.output.kerf:
         drawings += [
@@ -194,10 +194,10 @@ FILES: Final[Mapping[str, FileFormat]] = {
     ),
     "dxf": FileFormat(
         _dxf,
-        _plates(".dxf", whole=False),
+        _plates(".dxf", whole=False) + "; with `kerf_mm` also the same names with _reference.dxf",
         "outlines in mm in the cam's frame: layers PROFILE, PITCH, PRIME, BORE, HOLE and CENTER; of"
-        " a groove BLANK, OUTER and INNER, or GROOVE, in place of PROFILE. With `kerf_mm` paths of"
-        " the cutter, on layers whose names end in _KERF",
+        " a groove BLANK, OUTER and INNER, or GROOVE, instead of PROFILE. With `kerf_mm` cutting"
+        " paths only, on layers that end in _KERF, and the part with its curves as the reference",
     ),
     "cut-svg": FileFormat(
         _cut_svg,
