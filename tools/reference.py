@@ -283,7 +283,7 @@ def keys() -> Iterator[str]:
             "`name`",
             "letters, digits, `_ - .`, up to 100",
             "the file's name",
-            "names the folder of the files",
+            "names the output folder",
         ),
     ]
     yield table(KEY_HEADS, rows)

@@ -1,12 +1,12 @@
-"""Design files: what is asked for, read strictly, every error at once with its place.
+"""Design files: strict reading that reports all mistakes at once, each with its place.
 
-The keys, ranges, schema and messages of a file follow from the parameters of laws, racks, pairs,
-followers, cams, blanks and checks; nothing here knows what they mean. Lengths and angles carry
-their unit in the file's keys (``_mm``, ``_deg``) and become mm and rad at this door. The kinds of
-design are found by `gearcam.designs.kind.KINDS`.
+The keys, ranges, schema and messages derive from the parameter classes of laws, racks, pairs,
+followers, cams, blanks and checks; this package does not know what they mean. Keys of lengths and
+angles end with their unit (``_mm``, ``_deg``); values are converted to mm and rad here. The kinds
+of design are in `gearcam.designs.kind.KINDS`.
 
-Refused: unknown keys, wrong types, values out of range, two values where one decides the other,
-kinds of design that this version does not build.
+Refused: unknown keys, wrong types, values out of range, two values where one determines the other,
+and kinds of design that this version does not support.
 """
 
 from __future__ import annotations

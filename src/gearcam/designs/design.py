@@ -1,7 +1,7 @@
-"""What all designs have in common: a design made in Python meets the rules of a file.
+"""The base class of designs: a design made in Python obeys the rules of a design file.
 
-What no file can hold is a Python function: designs with one compare it by identity and have a hash
-of their own; written out, it is named where it is told of, and refused where it would be lost.
+Only a Python function has no equivalent in a file. Designs compare functions by identity and have a
+unique hash then; a summary names the function, and writing such a design to a file is refused.
 """
 
 from __future__ import annotations
@@ -27,36 +27,36 @@ from gearcam.errors import DesignError, InfeasibleError, Problem
 from gearcam.numeric.arguments import instance
 
 _PLACE: Final = re.compile("[0-9]{1,9}")
-"""The number of a place in a list."""
+"""Index of an item in a list."""
 
 HASH_DIGITS: Final = 16
-"""Hexadecimal digits of a design's hash: two of a thousand million million are alike by chance."""
+"""Hexadecimal digits of the hash of a design: 64 bits."""
 
 Wanted = tuple[str, Any, tuple[type, ...]]
-"""Key of a part, the part, and of which types it may be."""
+"""Key of a part, the part, and its allowed types."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Design:
-    """What every design has; each kind adds the fields of its tables.
+    """Base class of designs; each kind adds a field for each of its tables.
 
     Parameters
     ----------
     name : str
-        Name of the design and of its folder: letters, digits, ``_ - .``
+        Name of the design and of its output folder: letters, digits, ``_ - .``
     source : str
-        The file it came from, empty for a design made in Python.
+        The design file; empty for a design made in Python.
     limits : mapping of str to float
-        Limits of checks by name, in mm and rad; the others keep their defaults.
+        Limits of checks by name, in mm and rad; others have their defaults.
     output : OutputSpec
-        Files and their tolerance.
+        Files to write and their tolerance.
     examined : bool
-        Whether its values have passed an examination.
+        Whether the values have been validated already.
 
     Raises
     ------
     DesignError
-        If a value is not what a design file may hold, all problems at once.
+        If a value would not be allowed in a design file; lists all problems.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class Design:
     """
 
     kind: ClassVar[str]
-    """The kind of design, as in a file."""
+    """The kind of design, as in the key ``kind`` of a file."""
 
     name: str
     source: str = ""
@@ -91,7 +91,7 @@ class Design:
                 raise DesignError(fault.problem(self.source) for fault in faults)
 
     def __eq__(self, other: object) -> bool:
-        """Whether another design is of the same kind and asks for the same, whatever its source."""
+        """Return whether another design has the same kind and values, regardless of its source."""
         if not isinstance(other, Design) or type(self) is not type(other):
             return NotImplemented
         return self._value == other._value
@@ -110,7 +110,7 @@ class Design:
 
     @property
     def _built(self) -> Any:
-        """Its result: a picture of a design is one of what comes of it."""
+        """The result, which provides the picture of a design in notebooks."""
         return KINDS[self.kind].room("build").build(self)
 
     def __copy__(self) -> Self:
@@ -123,45 +123,42 @@ class Design:
         document, rule = document_of(self), "a function that is defined with def in a module"
         _demand(pickles, document, self.source, "cannot be pickled", rule)
         if any(functions_in(document)):
-            _ = self._token  # which the copy keeps
+            _ = self._token  # the copy keeps it
         return vars(self)
 
     @cached_property
     def _value(self) -> tuple[str, list[Callable[..., Any]]]:
-        """Everything that it asks for, with the rows of CSV files instead of their names.
-
-        Functions stand beside it.
-        """
+        """The values to compare, with rows of CSV files instead of their names, and functions."""
         document = document_of(self)
         functions = [one for _, many in functions_in(document) for one in many]
-        with contextlib.suppress(InfeasibleError):  # of a file that cannot be read the name counts
+        with contextlib.suppress(InfeasibleError):  # if a file cannot be read, its name is compared
             document = _with_rows(document, self)
         return json.dumps(document, sort_keys=True, default=lambda _: ""), functions
 
     @cached_property
     def _token(self) -> str:
-        """What stands for functions in its hash: as they cannot be compared, no other has it."""
+        """A random text that replaces functions in the hash, since they cannot be compared."""
         return os.urandom(16).hex()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what a design file with this design would hold.
+        """Return the content of a design file for this design.
 
         Returns
         -------
         dict
-            Nested dictionaries with the keys and units of a file; `gearcam.design` takes them.
+            Nested dictionaries with the keys and units of a file, as for `gearcam.design`.
 
         Raises
         ------
         DesignError
-            Where the design holds a Python function, which no file can.
+            If the design contains a Python function, which a file cannot.
         """
         document = document_of(self)
         _demand(never, document, self.source, "cannot be written to a file", "a formula as text")
         return document
 
     def with_(self, changes: Mapping[str, object]) -> Self:
-        """Return the design with other values of some keys.
+        """Return a copy of the design with changed values.
 
         Parameters
         ----------
@@ -171,12 +168,12 @@ class Design:
         Returns
         -------
         Design
-            Of the same kind, examined anew.
+            Of the same kind, validated.
 
         Raises
         ------
         DesignError
-            If a design of this kind has no such key, or a value is not what the file may hold.
+            If there is no such key, or a value is not allowed.
         """
         document, rule = document_of(self), "a mapping of dotted keys to values"
         for key, value in instance("changes", changes, Mapping, rule).items():
@@ -192,32 +189,32 @@ class Design:
         return design(document, self.source)
 
     def _settle(self) -> None:
-        """Bring what is given into one form."""
+        """Convert alternative forms of input into one form."""
 
     def _wanted(self) -> Iterable[Wanted]:
-        """Return of what types the parts are that follow a registry; those of tables are known."""
+        """Return the allowed types of fields whose types depend on a registry."""
         return ()
 
 
 def demand_kind(design: Design, kind: str) -> Any:
-    """Return a design, or refuse it if it is of another kind.
+    """Return a design if it is of a certain kind.
 
     Parameters
     ----------
     design : Design
-        Of any kind.
+        A design of any kind.
     kind : str
-        The one that a command is for.
+        The required kind.
 
     Returns
     -------
     Design
-        The design, whose fields are those of the kind.
+        The same design.
 
     Raises
     ------
     DesignError
-        With the kind that it is of.
+        If it is of another kind.
     """
     if design.kind != kind:
         message = f"this command is for designs of kind {kind}"
@@ -245,7 +242,7 @@ def _demand_types(design: Design) -> None:
 
 
 def document_of(design: Design) -> dict[str, Any]:
-    """Return what a design file with this design would hold.
+    """Return the content of a design file for this design; it may contain Python functions.
 
     Parameters
     ----------
@@ -275,14 +272,14 @@ def document_of(design: Design) -> dict[str, Any]:
 
 
 def summary_of(design: Design) -> dict[str, Any]:
-    """Return the document of a `design` with the names of Python functions in their places."""
+    """Return the document of a `design` with Python functions replaced by their names."""
     return json.loads(json.dumps(document_of(design), default=function_name))
 
 
 def _demand(
     can: Callable[[Function], bool], document: Mapping[str, Any], file: str, what: str, allowed: str
 ) -> None:
-    """Refuse a document with functions that cannot do what is wanted."""
+    """Raise `DesignError` if a function in a document does not satisfy `can`."""
     problems = [
         Problem(f"the {function_name(one)} {what}", file=file, key=dotted(path), allowed=allowed)
         for path, functions in functions_in(document)
@@ -294,25 +291,25 @@ def _demand(
 
 
 def design(document: Mapping[str, Any], source: str = "") -> Any:
-    """Return the design of nested dictionaries that hold what a design file would.
+    """Return the design of nested dictionaries with the content of a design file.
 
     Parameters
     ----------
     document : mapping
-        With the keys and the units of a file, ``kind`` and ``name`` among them; a tuple stands for
-        a list. CSV files are looked for in the current folder.
+        Keys and values as in a design file, including ``kind`` and ``name``; lists may be tuples.
+        Paths of CSV files are relative to the current folder.
     source : str
-        The file that it came from, for messages.
+        Name of the design file, for messages.
 
     Returns
     -------
     Design
-        In mm and rad, of the document's kind.
+        In mm and rad; its class depends on the kind.
 
     Raises
     ------
     DesignError
-        For everything that is wrong in it, each with its key.
+        With all mistakes, each with its key.
     """
     plain = document if is_deep(document) else _plain(document)  # examine refuses what is deep
     found = examine(plain)
@@ -322,7 +319,7 @@ def design(document: Mapping[str, Any], source: str = "") -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """Return a document of the types that TOML has: numbers of numpy become those of Python."""
+    """Return a document with types of TOML: numpy numbers and arrays become Python ones."""
     if isinstance(value, Mapping):
         return {key: _plain(item) for key, item in value.items()}
     value = value.tolist() if hasattr(value, "tolist") else value
@@ -330,13 +327,13 @@ def _plain(value: Any) -> Any:
 
 
 def hash_of(design: Design) -> str:
-    """Return the hash of a design: designs of the same hash give the same files.
+    """Return the hash of a design: designs with the same hash produce the same files.
 
-    It is taken from the values of all keys, defaults included, and from the rows of the CSV files
-    that the design names; not from comments, spaces, the order of keys, or where these files
-    lie; degrees count with 13 digits. What changes the content of no file of a build is left out:
-    ``[limits]``, ``[meshing]`` and which files are wanted. Nobody knows whether Python functions
-    are the same: a design with one has a hash that only itself and its copies have.
+    It depends on the values of all keys, including defaults, and on the rows of CSV files, but not
+    on comments, spaces, the order of keys, or the paths of CSV files; degrees are rounded to 13
+    digits. Values that do not change any file are excluded: ``[limits]``, ``[meshing]`` and the
+    list of files. Python functions cannot be compared: a design with one shares its hash only with its
+    copies.
 
     Parameters
     ----------
@@ -351,7 +348,7 @@ def hash_of(design: Design) -> str:
     Raises
     ------
     InfeasibleError
-        If such a CSV file cannot be read any more.
+        If a CSV file of the design cannot be read any more.
     """
     document = document_of(design)
     for title in ("limits", "meshing"):
@@ -363,7 +360,7 @@ def hash_of(design: Design) -> str:
 
 
 def _with_rows(value: Any, design: Design) -> Any:
-    """Return a part of a document with rows instead of files, and numbers of one type."""
+    """Return a part of a document with rows instead of CSV files, and all numbers as floats."""
     if isinstance(value, Mapping):
         return {
             key: _rows(item, design) if key == "file" else _with_rows(item, design)
@@ -384,7 +381,7 @@ def _rows(file: str, design: Design) -> Any:
 
 
 def value_at(document: Any, key: str) -> Any:
-    """Return the value of a dotted `key` in a `document`, None where it has none."""
+    """Return the value of a dotted `key` in a `document`; None if there is none."""
     for step in path_of(key):
         try:
             document = document[step]
@@ -394,6 +391,6 @@ def value_at(document: Any, key: str) -> Any:
 
 
 def path_of(key: str) -> tuple[str | int, ...]:
-    """Return the steps of a dotted key, such as ``law.ratios[1]``."""
+    """Return the steps of a dotted key: ``("law", "ratios", 1)`` for ``law.ratios[1]``."""
     steps = re.findall(r"[^.\[\]]+", key)
     return tuple(int(step) if _PLACE.fullmatch(step) else step for step in steps)

@@ -1,4 +1,4 @@
-"""Python functions in documents, where a file would have a formula as text."""
+"""Python functions in documents, where a file would have a formula."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Function = Callable[..., Any]
 
 
 def functions_of(value: Any) -> tuple[Function, ...]:
-    """Return the Python functions that stand for one text: a function, or a list of functions."""
+    """Return the Python functions in a value: one function, or a list of functions only."""
     if callable(value):
         return (value,)
     many = value if isinstance(value, list | tuple) else ()
@@ -20,7 +20,7 @@ def functions_of(value: Any) -> tuple[Function, ...]:
 
 
 def functions_in(part: Any, path: Path = ()) -> Iterator[tuple[Path, tuple[Function, ...]]]:
-    """Yield where functions stand in a `part` of a document at a `path`, and these."""
+    """Yield the paths of functions in a `part` of a document at a `path`, with the functions."""
     if functions := functions_of(part):
         yield path, functions
     elif isinstance(part, dict | list):
@@ -29,7 +29,7 @@ def functions_in(part: Any, path: Path = ()) -> Iterator[tuple[Path, tuple[Funct
 
 
 def function_name(function: Function) -> str:
-    """Return a function in words: ``Python function module.name``."""
+    """Return the name of a function for messages: ``Python function module.name``."""
     named = function if hasattr(function, "__qualname__") else type(function)
     return f"Python function {named.__module__}.{named.__qualname__}"
 
@@ -39,10 +39,10 @@ def pickles(function: Function) -> bool:
     try:
         pickle.dumps(function)
     except Exception:
-        return False  # classes of other people raise what they like
+        return False  # other classes may raise anything
     return True
 
 
 def never(_: Function) -> bool:
-    """Return False."""
+    """Return False: no function is allowed."""
     return False

@@ -1,24 +1,23 @@
-"""The kinds of design, and what an examination of one collects.
+"""The kinds of design, and the outcome of validating a design.
 
-Each kind is a folder of the package `gearcam.kinds`, found there by its name; nothing outside it
-names it, and only that of a file is loaded. Its modules:
+Each kind is a folder of the package `gearcam.kinds`, found by its name. No other code names a kind,
+and only the kind of the design at hand is imported. The modules of a kind:
 
-- `design`: ``KIND``, a `DesignKind`: the tables of a file, their rules, the design they make;
+- `design`: ``KIND``, a `DesignKind`: the tables of a file, their rules, and the design class;
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
-- `facts`: ``facts(result, measured)`` returns what is known of it;
-- `files`: ``FILES``, a `gearcam.export.shared.FileFormat` for each kind of file; where ``report``
-  is among them, ``assembled(result)`` returns its solids where they stand and ``framed(result)``
-  what a notebook shows;
-- `charts`: ``CHARTS``, what makes each chart; `scene`: ``scene(result)`` returns what moves;
-- `advice`: ``seek(search, refusal)`` leads the search for changes that help where it is refused
-  or has errors, ``hopeless(result)`` tells what need not be built to its end, ``FILE_DEMANDS`` by
-  kinds of files what refuses those though all parts can be made;
-- `public`: in its ``__all__`` the classes that people who write Python make designs of (the
-  package `gearcam.kinds` tells type checkers of them);
-- `describe`: what schema, template and list of laws say of its main part, and the table of each
-  of its items;
-- `commands`, where it has any: ``COMMANDS`` of the command line;
-- `ladder`, where it has any: ``LADDERS``, stages at rising resolution (see `gearcam.ladders`).
+- `facts`: ``facts(result, measured)`` returns its facts;
+- `files`: ``FILES``, a `gearcam.export.shared.FileFormat` for each kind of file; with ``report``
+  also ``assembled(result)``, the solids in their places, and ``framed(result)``, the HTML for
+  notebooks;
+- `charts`: ``CHARTS``, functions that return charts; `scene`: ``scene(result)`` returns the scene;
+- `advice`: ``seek(search, refusal)`` searches for remedies of a refused design or one with errors,
+  ``hopeless(result)`` tells which designs need not be built completely, ``FILE_DEMANDS`` has
+  functions by kind of file that refuse a file although all parts can be made;
+- `public`: ``__all__`` lists the classes for designs written in Python (the package
+  `gearcam.kinds` declares them for type checkers);
+- `describe`: the main part in the schema, the template and the list of laws;
+- `commands`, optional: ``COMMANDS`` for the command line;
+- `ladder`, optional: ``LADDERS``, stages at increasing resolution (see `gearcam.ladders`).
 """
 
 from __future__ import annotations
@@ -44,14 +43,14 @@ _HOME: Final = "gearcam.kinds"
 
 @dataclass
 class Examined:
-    """What an examination has found.
+    """The outcome of validating a design.
 
     Parameters
     ----------
     faults : list of Fault
-        All that is wrong.
+        All mistakes.
     parts : dict
-        Parameter objects of what is right, by the names of a design's fields.
+        Parameter objects of valid parts, by the names of the fields of a design.
     """
 
     faults: list[Fault] = field(default_factory=list)
@@ -65,48 +64,49 @@ class DesignKind:
     Parameters
     ----------
     name : str
-        As in a file.
+        Name in design files.
     doc : str
-        What it is, for people.
+        Short description.
     design : type
-        What comes of a file: a frozen dataclass with a field for each table, ``name``, ``source``,
-        ``limits``, and what `examine_main` finds.
+        Class of its designs: a frozen dataclass with ``name``, ``source``, ``limits``, the result
+        of `examine_main` and a field for each table.
     main : str
-        Title of the part that has no keys of its own but those of a registry; empty where a kind
-        has none, and then neither the next three nor the module `describe`.
+        Title of the part whose keys depend on a registry; empty if there is none, and then neither
+        the next three nor the module `describe` are needed.
     examine_main : callable
-        ``examine_main(document, found)`` examines that part.
+        ``examine_main(document, found)`` validates that part.
     main_of : callable
-        ``main_of(design)`` returns that part as a file would hold it.
+        ``main_of(design)`` returns that part as in a design file.
     homes : callable
-        Returns where keys of that part belong, in words, by key.
+        Returns hints by key that say where a key of that part belongs.
     tables : mapping of str to callable
-        What gives the tables with fixed keys, by title; each makes the design's field of that name.
+        Functions that return the tables with fixed keys, by title, which is also the field name.
     required : tuple of str
-        Titles that a file must give.
+        Titles of tables that a file must have.
     one_of : mapping of str to tuple
-        Keys of which a table has exactly one, by its title; or words of a key instead of them.
+        Alternatives of which a table has exactly one, by its title: keys, or values of a key.
     conditions : mapping of str to callable
-        What returns more of the JSON schema of a table, by its title.
+        Functions that return additions to the JSON schema of a table, by its title.
     rules : callable
-        ``rules(document, found)`` yields faults between the tables.
+        ``rules(document, found)`` yields contradictions between tables.
     listed : callable
-        ``listed(document, table)`` returns the keys of a table that people are told of where one is
-        unknown or all are missing.
+        ``listed(document, table)`` returns the keys of a table for messages about unknown keys and
+        missing tables.
     later : callable
-        ``later(document)`` returns the fault of what is not made, and only that is told, or None.
+        ``later(document)`` returns a fault for designs that are not supported, or None. No other
+        fault is reported then.
     formats : tuple of str
-        What ``output.files`` may list.
+        Kinds of files that ``output.files`` may list.
     rooms : tuple of str
-        Modules whose checks register themselves.
+        Modules that register checks.
     checks : tuple of str
-        Kinds of those checks.
+        Kinds of subject of those checks.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
     notes : mapping of str to str
         Comments on tables of the example.
     processes : mapping of str to mapping
-        What the example has besides for each way to make it, ``printing``, ``laser`` or ``wire``.
+        Additions to the example for each process: ``printing``, ``laser`` or ``wire``.
     """
 
     name: str
@@ -134,7 +134,7 @@ class DesignKind:
 
     @property
     def titles(self) -> tuple[str, ...]:
-        """Everything that a file of this kind may have at its top."""
+        """The top-level keys and tables of a file of this kind."""
         main = (self.main,) if self.main else ()
         return ("kind", "name", *main, *self.tables, "limits")
 
@@ -143,12 +143,12 @@ class DesignKind:
         return self._limits() if title == "limits" else self.tables[title]()
 
     def room(self, name: str) -> ModuleType:
-        """Return one of the modules of its folder, by `name`; ModuleNotFoundError without it."""
+        """Import and return a module of its folder by `name`."""
         return importlib.import_module(f"{_package(self.name)}.{name}")
 
     def load_checks(self) -> None:
-        """Load the rooms whose checks register themselves."""
-        # only here, as a file without limits does not need them
+        """Import the modules that register checks."""
+        # on demand, since a file without limits does not need them
         for room in self.rooms:
             importlib.import_module(room)
 
@@ -160,14 +160,14 @@ class DesignKind:
                 if check.kind == room and check.limit is not None:
                     name, made_of, default = check.limit
                     key = made_of.key(name)
-                    # nan: the design decides
+                    # nan: it depends on the design
                     known = None if math.isnan(default) else default
                     entries[key] = Key(name, key, made_of, float, None, "", known)
         return Table("limits", None, entries)
 
 
 class _Kinds(Mapping[str, DesignKind]):
-    """The kinds by name, each loaded when it is asked for."""
+    """The kinds by name, each imported when it is used."""
 
     def __iter__(self) -> Iterator[str]:
         return iter(_names())
@@ -189,18 +189,18 @@ KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 
 
 def find_room(kind: str, name: str) -> ModuleType | None:
-    """Return the module of a `name` that a `kind` may have; its designs are not loaded."""
+    """Return an optional module of a `kind` by `name`, or None; its designs are not imported."""
     home = f"{_package(kind)}.{name}"
     return importlib.import_module(home) if importlib.util.find_spec(home) else None
 
 
 def rooms(name: str) -> Iterator[ModuleType]:
-    """Yield the modules of a `name` that kinds have, without loading anything of their designs."""
+    """Yield the modules called `name` of all kinds, without importing their designs."""
     return (room for kind in _names() if (room := find_room(kind, name)) is not None)
 
 
 def all_formats() -> tuple[str, ...]:
-    """Return every kind of file that a design of some kind can give."""
+    """Return the kinds of files of all kinds of design."""
     return tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
 
 
@@ -220,11 +220,11 @@ def _package(name: str) -> str:
 
 
 Told = Iterable[tuple[str, int | None, str, str]]
-"""What parameters find wrong: field, number of an item, what is wrong, what is allowed."""
+"""Mistakes found by parameter classes: field, index of an item, message, what is allowed."""
 
 
 def told_faults(told: Told, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
-    """Yield the faults of what parameters have told, with their keys and values.
+    """Yield the faults for mistakes found by a parameter class, with keys and values.
 
     Parameters
     ----------
@@ -233,9 +233,9 @@ def told_faults(told: Told, known: Table, raw: Mapping[str, Any], at: Path) -> I
     known : Table
         The table of the parameters.
     raw : mapping
-        As in the file.
+        The table as in the file.
     at : tuple
-        Where it stands.
+        Path of the table.
     """
     keys = {entry.name: entry.key for entry in known.entries.values()}
     seen: set[Path] = set()
@@ -246,21 +246,21 @@ def told_faults(told: Told, known: Table, raw: Mapping[str, Any], at: Path) -> I
             path = (*at, key, index)
             if isinstance(value, list) and index < len(value):
                 value = value[index]
-        if path not in seen:  # one value for both wheels is wrong once
+        if path not in seen:  # report one value for both wheels once
             seen.add(path)
             shown = f"{show(value)}: {message}" if value is not None else message
             yield Fault(path, shown, value, rule)
 
 
 def own_faults(made: Any, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
-    """Yield what parameters themselves find wrong by reading (their optional ``problems``).
+    """Yield the mistakes that parameters find themselves (their optional method ``problems``).
 
     Parameters
     ----------
     made : object
         The parameters.
     known, raw, at
-        As of `told_faults`.
+        As for `told_faults`.
     """
     yield from told_faults(getattr(made, "problems", tuple)(), known, raw, at)
 
@@ -272,29 +272,29 @@ def made_of(
     faults: Sequence[Fault],
     at: Path,
 ) -> tuple[Any, list[Fault]]:
-    """Make parameters as far as they can be read, and ask them what they find wrong.
+    """Create parameters if their values can be read, and collect the mistakes that they find.
 
-    What they find is said beside the faults of single values.
+    These are reported in addition to faults of single values.
 
     Parameters
     ----------
     known : Table
         Their table.
     make : callable
-        Makes them from inner values by name.
+        Creates them from internal values by name.
     raw : mapping
-        As in the file; keys that the table does not know do not count.
+        The table as in the file; unknown keys are ignored.
     faults : sequence of Fault
-        Of single values there.
+        Faults of single values in the table.
     at : tuple
-        Where it stands.
+        Path of the table.
 
     Returns
     -------
     made : object
-        None where they cannot be read.
+        The parameters; None if their values cannot be read.
     problems : list of Fault
-        What they find.
+        Mistakes that they find.
     """
     depth = len(at)
     here = [fault.path[depth:] for fault in faults]

@@ -1,8 +1,8 @@
-"""Lines of keys: where in a design file's text each key and each array item stands.
+"""Line numbers of keys and array items in the text of a design file.
 
-The text has been read as TOML before, so this walk trusts it: it only finds where things begin. It
-runs when there is something to report, never for a good file. A *path* is a tuple of keys and item
-numbers, ``("pair", "teeth", 1)``; the empty path is the file.
+The text must be valid TOML: this code only finds where things begin. It runs only if there is a
+mistake to report. A *path* is a tuple of keys and indices, ``("pair", "teeth", 1)``; the empty path
+is the file.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _ESCAPED = {"b": "\b", "t": "\t", "n": "\n", "f": "\f", "r": "\r", '"': '"', "\\
 
 
 def spans_of(text: str) -> dict[Path, tuple[int, int]]:
-    """Return where each value and each list item begins and ends in a valid TOML `text`."""
+    """Return the start and end of each value and list item in a valid TOML `text`."""
     walk = _Walk(text)
     walk.document()
     return walk.spans
@@ -45,10 +45,10 @@ def lines_of(text: str) -> dict[Path, int]:
     Returns
     -------
     dict of path to int
-        Lines counted from 1. What cannot be followed is left out.
+        Line numbers from 1; incomplete if the text cannot be followed.
     """
     walk = _Walk(text)
-    # a partial map still serves: lookups fall back to the nearest known parent
+    # a partial map is useful: lookups fall back to the nearest known parent
     with contextlib.suppress(RecursionError, LookupError):
         walk.document()
     return walk.lines
@@ -62,7 +62,7 @@ def line_at(lines: Mapping[Path, int], path: Path) -> int:
     lines : mapping of path to int
         From `lines_of`.
     path : tuple
-        Keys and item numbers.
+        Keys and indices.
 
     Returns
     -------
@@ -101,7 +101,7 @@ class _Walk:
         self.at = match.end() if match else self.at
 
     def take(self, sign: str) -> bool:
-        """Step over a sign and the blanks around it, if it is next."""
+        """Skip a token and the space around it, if it is next; return whether it is."""
         self.space()
         found = self.text.startswith(sign, self.at)
         if found:
@@ -138,7 +138,7 @@ class _Walk:
         return path
 
     def enter(self, path: Path) -> Path:
-        """Go on to the last item where the path is an array of tables."""
+        """Return the path of the last item if `path` is an array of tables, else `path`."""
         return (*path, self.last_item[path]) if path in self.last_item else path
 
     def pair(self, table: Path) -> None:

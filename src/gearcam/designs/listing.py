@@ -1,4 +1,4 @@
-"""The laws that a design can name, each with what it asks for."""
+"""The laws for ``gearcam laws``, with their keys."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from gearcam.laws.sources import SOURCES
 
 @dataclass(frozen=True, kw_only=True)
 class Listed:
-    """A law as it is shown.
+    """A law in the list.
 
     Parameters
     ----------
     name, doc : str
-        Of its entry.
+        Name and description.
     line : str
-        How a design file names it.
+        The line that selects it in a design file.
     rows : tuple of (str, str)
-        Its keys, then continuity and source, with what they mean.
+        Keys with their meanings, then continuity and source.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Listed:
 
 
 def law_groups() -> Iterator[tuple[str, list[Listed]]]:
-    """Yield the laws of each kind of design below a heading."""
+    """Yield a heading and the laws of each kind of design."""
     for kind in filter(lambda kind: kind.main, KINDS.values()):
         yield kind.room("describe").laws()
 
@@ -45,7 +45,7 @@ def sources_of(groups: Iterable[tuple[str, list[Listed]]]) -> dict[str, str]:
 
 
 def listed(entry: Any, line: str, known: Table) -> Listed:
-    """Return a law as it is shown: its `entry`, the `line` that names it, its `known` keys."""
+    """Return the list entry of a law from its `entry`, its `line` and its `known` keys."""
     keys = ((key, description(item)) for key, item in known.entries.items())
     rows = (*keys, ("continuity", entry.continuity), ("source", entry.source))
     return Listed(name=entry.name, doc=entry.doc, line=line, rows=rows)

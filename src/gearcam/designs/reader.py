@@ -1,4 +1,4 @@
-"""Reading design files: TOML becomes a design, or one error that lists everything wrong in it."""
+"""Reading design files: TOML becomes a design, or one error that lists all mistakes."""
 
 from __future__ import annotations
 
@@ -20,27 +20,27 @@ from gearcam.errors import DesignError, Problem
 from gearcam.reading import UnreadableError, read
 
 LARGEST: Final = 2_000_000
-"""Size of a design file, bytes: a motion table of 20 000 rows in a list is half of it."""
+"""Largest size of a design file, bytes: twice that of a motion table of 20 000 rows."""
 
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _TWICE = re.compile(r"Cannot declare \((.*)\) twice")
 _LONG = re.compile(r"(?<![0-9_])[0-9_]{1000,}")
-"""Digits that are, or may be, too many for a whole number."""
+"""Digits that may be too many for an integer."""
 
 _DEEP_KEY = re.compile(
     r"""(?<![\w."'-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
     f"{{{DEEPEST}}}"
 )
-"""A dotted key that goes deeper: tomllib takes the square of the number of its names."""
+"""A dotted key that is nested too deep; the time of tomllib is quadratic in the number of names."""
 
 _COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
 """A number with a decimal comma at the end of a line."""
 
 _UNIT = re.compile(r"=\s*[+-]?\d[\d.]*\s*[^\W\d_]+\s*(#.*)?$")
-"""A number with a unit behind it at the end of a line."""
+"""A number with a unit at the end of a line."""
 
 _NAME = re.compile(r"\s*(\[?\[?)\s*([\w.-]+|\"[^\"]*\")")
-"""The brackets of a table, if any, and the name at the beginning of a line."""
+"""A name at the beginning of a line, with the brackets of a table if any."""
 
 _PLAIN: Final = {
     "Invalid value": "this value cannot be read (texts stand in quotes, numbers use a point)",
@@ -68,19 +68,19 @@ def load(path: str | os.PathLike[str]) -> Design:
     Returns
     -------
     Design
-        In mm and rad, of the file's kind.
+        In mm and rad; its class depends on the kind.
 
     Raises
     ------
     DesignError
-        If the file cannot be read, or for everything that is wrong in it, each with its line.
+        If the file cannot be read, or with all mistakes in it, each with its line.
     """
     file = os.fspath(path)
     return loads(decoded(content_of(file), file), file=file)
 
 
 def content_of(file: str) -> bytes:
-    """Return what is in a `file`.
+    """Return the content of a `file`.
 
     Raises
     ------
@@ -99,14 +99,14 @@ def decoded(content: bytes, file: str) -> str:
     Parameters
     ----------
     content : bytes
-        As read.
+        The bytes of the file.
     file : str
-        Its name for messages.
+        Its name, for messages.
 
     Returns
     -------
     str
-        Without the mark that some programs put before UTF-8.
+        The text without a byte order mark.
 
     Raises
     ------
@@ -132,17 +132,17 @@ def loads(text: str, *, file: str = "") -> Design:
     text : str
         TOML.
     file : str
-        The file's name for messages; its stem names a design that has no name.
+        Name of the file, for messages; its stem is the default name of the design.
 
     Returns
     -------
     Design
-        In mm and rad, of the file's kind.
+        In mm and rad; its class depends on the kind.
 
     Raises
     ------
     DesignError
-        For everything that is wrong in it, each with its line.
+        With all mistakes, each with its line.
     """
     document = document_in(text, file)
     _find_tables(document, Path(file).parent)
@@ -153,7 +153,7 @@ def loads(text: str, *, file: str = "") -> Design:
 
 
 def _find_tables(value: Any, folder: Path) -> None:
-    """Look for CSV files that a design names beside its own file."""
+    """Make the paths of CSV files in a document relative to the `folder` of its file."""
     for item in value.values() if isinstance(value, dict) else value:
         if isinstance(item, dict | list):
             _find_tables(item, folder)
@@ -162,31 +162,31 @@ def _find_tables(value: Any, folder: Path) -> None:
 
 
 def problems_of(faults: Iterable[Fault], text: str, file: str) -> list[Problem]:
-    """Return what is wrong in the `text` of a `file`, from its `faults`, with lines."""
+    """Return the `faults` in the `text` of a `file` as problems, sorted by line."""
     lines = lines_of(text)
     placed = [fault.problem(file, line_at(lines, fault.path)) for fault in faults]
     return sorted(placed, key=lambda problem: problem.line or 0)
 
 
 def document_in(text: str, file: str) -> dict[str, Any]:
-    """Return what the text of a file holds.
+    """Return the document of a TOML text.
 
     Parameters
     ----------
     text : str
         TOML.
     file : str
-        The file's name for messages.
+        Name of the file, for messages.
 
     Returns
     -------
     dict
-        As read.
+        The document.
 
     Raises
     ------
     DesignError
-        If it is not TOML, or too deep.
+        If it is not valid TOML, or nested too deep.
     """
     deep = DesignError([Problem(TOO_DEEP, file=file)])
     if _DEEP_KEY.search(text):
@@ -234,6 +234,6 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
 
 
 def _many_hint(name: str) -> str:
-    """Return how several tables of a `name` are written, where a design has several."""
+    """Return a hint on arrays of tables, if a design can have several tables called `name`."""
     many = any(isinstance(kind.example.get(name), list) for kind in KINDS.values())
     return f"each of several tables is written [[{name}]]" if many else ""

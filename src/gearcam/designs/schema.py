@@ -1,7 +1,7 @@
 """The JSON schema of design files, for editors that complete and check TOML while it is typed.
 
-It is made of the same tables that files are checked by, so that both agree on keys, types and
-ranges. What a schema cannot say (knots must rise, formulas must parse) the reader says.
+It derives from the tables that also validate files, so that both agree on keys, types and ranges.
+Other rules, such as increasing knots and valid formulas, are checked only when a file is read.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _BOUNDS: Final = {
 }  # fmt: skip
 
 _NAME_PATTERN: Final = r"^[A-Za-z0-9_\u00aa-\uffff]([A-Za-z0-9_.\-\u00aa-\uffff]*[^.])?$"
-"""What an editor can check of a name; the reader knows letters of all scripts from other signs."""
+"""An approximation for editors; the reader distinguishes letters of all scripts from symbols."""
 
 
 def schema() -> Schema:
@@ -33,7 +33,7 @@ def schema() -> Schema:
     Returns
     -------
     dict
-        JSON schema, draft 2020-12, with one branch per kind of design, law and phase.
+        JSON schema, draft 2020-12, with a branch for each kind of design, law and phase.
     """
     definitions: Schema = {}
     for kind in KINDS.values():
@@ -47,30 +47,30 @@ def schema() -> Schema:
         "title": "gearcam design file",
         "type": "object",
         "required": ["kind"],
-        "properties": {"kind": {"enum": list(KINDS), "description": "the kind of design"}},
+        "properties": {"kind": {"enum": list(KINDS), "description": "kind of design"}},
         "allOf": [_when("kind", name, {"$ref": f"#/$defs/{name}"}) for name in KINDS],
         "$defs": definitions,
     }
 
 
 def _when(key: str, value: str, then: Schema) -> Schema:
-    """Return what holds where a key has a value."""
+    """Return a condition: `then` holds if a key has a value."""
     return {"if": {"properties": {key: {"const": value}}, "required": [key]}, "then": then}
 
 
 def chosen(key: str, names: Iterable[str], words: str, home: Callable[[str], str]) -> Schema:
-    """Return the schema of a table whose keys follow from a word.
+    """Return the schema of a table whose keys depend on the value of one key.
 
     Parameters
     ----------
     key : str
-        The key of the word, such as ``type``.
+        The key, such as ``type``.
     names : iterable of str
-        What it may be.
+        Its allowed values.
     words : str
-        What it means.
+        Its description.
     home : callable
-        Returns the name of the definition that holds for a word.
+        Returns the name of the definition for a value.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def chosen(key: str, names: Iterable[str], words: str, home: Callable[[str], str
 
 
 def told(names: Iterable[tuple[str, str]]) -> str:
-    """Return words with their meanings in one line."""
+    """Return `names` with their descriptions in one line."""
     return "; ".join(f"{name}: {doc}" for name, doc in names)
 
 
@@ -95,11 +95,11 @@ def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
     Parameters
     ----------
     known : Table
-        Its keys.
+        The table.
     doc : str
-        What it is.
+        Its description.
     **words : str
-        Keys before them that have one value each.
+        Additional keys with fixed values.
 
     Returns
     -------
@@ -129,7 +129,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
                 "type": "string",
                 "pattern": _NAME_PATTERN,
                 "maxLength": 100,
-                "description": "names the folder of the files; the file's own name if left out",
+                "description": "names the output folder; default: the name of the design file",
             },
             **({kind.main: main} if kind.main else {}),
         }
@@ -149,7 +149,7 @@ def _titled(kind: DesignKind, title: str) -> Schema:
 
 
 def _either(one: str | Mapping[str, Sequence[str]]) -> Schema:
-    """Return what one of several alternatives asks for: a key, or words of a key."""
+    """Return the schema of an alternative: a required key, or allowed values of a key."""
     if isinstance(one, str):
         return {"required": [one]}
     words = {key: {"enum": list(values)} for key, values in one.items()}

@@ -1,7 +1,7 @@
-"""Tables of a design file: which keys they have and what each may hold.
+"""Tables of a design file: their keys, with types and ranges.
 
-Everything follows from parameter dataclasses (see `gearcam.quantities`): an *entry* is one key, a
-*table* the keys of one dataclass. Values cross here between the file's units and mm and rad.
+They derive from parameter dataclasses (see `gearcam.quantities`): an *entry* is one key, a *table*
+the keys of one dataclass. Values are converted here between the units of files and mm and rad.
 """
 
 from __future__ import annotations
@@ -26,24 +26,23 @@ class Key:
     Parameters
     ----------
     name : str
-        The parameter's name inside the program.
+        Name of the parameter in the program.
     key : str
-        Its key in a file, with the suffix of its unit.
+        The key in a file, with the suffix of its unit.
     param : Param
         Quantity, bounds, choices, meaning.
     base : type
         Type of a single value: float, int, str or bool.
     length : int or None
-        Entries of a list: a number, 0 for any number of them, None where the value is no list.
+        Length of a list; 0: any length; None: not a list.
     literal : str
-        The word that may stand for a value, such as ``solve``; empty where none may.
+        A word allowed instead of a number, such as ``solve``; empty for none.
     default : object
-        In inner units; `REQUIRED` where the file must give the key, None where the program finds a
-        value by itself.
+        In mm or rad; `REQUIRED` if the file must have the key, None if the program finds a value.
     swings : bool or None
-        Of a lift: whether it is given so where lifts are angles; None of everything else.
+        For lifts: whether this key is for lifts that are angles; None for other keys.
     slides : bool or None
-        Of what a cam does: whether it is given so where the cam slides; None of everything else.
+        For spans: whether this key is for translating cams; None for other keys.
     """
 
     name: str
@@ -58,15 +57,15 @@ class Key:
 
     @property
     def required(self) -> bool:
-        """Whether the file must give the key, and no other in its place."""
+        """Whether the file must have this key, without an alternative."""
         return self.default is REQUIRED and self.slides is None
 
     def takes(self, count: int) -> bool:
-        """Return whether its list may have as many values as `count`."""
+        """Return whether its list may have `count` values."""
         return count == self.length if self.length else count >= (self.param.min_length or 0)
 
     def inward(self, value: Any) -> Any:
-        """Turn a value that has been checked from the file's unit into mm, rad and tuples."""
+        """Convert a valid value from the unit of the file into mm or rad; lists become tuples."""
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
         if isinstance(value, list | tuple):
@@ -79,7 +78,7 @@ class Key:
         return float(value) * self.param.quantity.factor
 
     def outward(self, value: Any) -> Any:
-        """Turn an inner value into what a file would hold; arrays become lists."""
+        """Convert a value in mm or rad into the unit of the file; arrays become lists."""
         value = value.tolist() if hasattr(value, "tolist") else value
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
@@ -93,22 +92,22 @@ class Key:
         if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):
             return value
         written = value / factor
-        # degrees that went through radians get their digits back
+        # removes the rounding error of degrees that were converted to radians
         return float(f"{written:.13g}") if math.isfinite(written) else written
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """The keys of one table of the file.
+    """The keys of a table in a design file.
 
     Parameters
     ----------
     title : str
         Its name in the file.
     owner : type or None
-        What is made from it, a dataclass; None for limits, which belong to checks.
+        The dataclass of its values; None for limits, which belong to checks.
     entries : mapping of str to Key
-        By key.
+        The keys with their properties.
     """
 
     title: str
@@ -116,14 +115,14 @@ class Table:
     entries: Mapping[str, Key]
 
     def of_lifts(self, *, oscillating: bool) -> Table:
-        """Return the table with the keys of lifts that are angles, `oscillating`, or lengths."""
+        """Return the table with keys for lifts that are angles, if `oscillating`, or lengths."""
         kept = {
             k: entry for k, entry in self.entries.items() if entry.swings in (None, oscillating)
         }
         return Table(self.title, self.owner, kept)
 
     def of_cams(self, *, sliding: bool) -> Table:
-        """Return the table with the keys of cams that slide, `sliding`, or turn."""
+        """Return the table with keys for translating cams, if `sliding`, or rotating ones."""
         kept = {
             k: replace(entry, slides=None)
             for k, entry in self.entries.items()
@@ -132,13 +131,13 @@ class Table:
         return Table(self.title, self.owner, kept)
 
     def inward(self, raw: Mapping[str, Any]) -> dict[str, Any]:
-        """Return inner values by parameter name, for the keys given."""
+        """Return values in mm and rad by parameter name, for the keys given."""
         return {
             entry.name: entry.inward(raw[key]) for key, entry in self.entries.items() if key in raw
         }
 
     def outward(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what a file would hold; what is None is left out."""
+        """Return values in the units of a file by key, without None."""
         return {
             entry.key: entry.outward(values[entry.name])
             for entry in self.entries.values()
@@ -146,7 +145,7 @@ class Table:
         }
 
     def document(self, made: Any) -> dict[str, Any]:
-        """Return what a file would hold of an instance of the owner."""
+        """Return the content of the table for an instance of the owner."""
         return self.outward(
             {item.name: getattr(made, item.name) for item in dataclasses.fields(made)}
         )
@@ -161,12 +160,12 @@ def table_of(title: str, owner: type) -> Table:
     title : str
         Its name in the file.
     owner : type
-        The dataclass; its fields are made by `gearcam.quantities.param`.
+        The dataclass; its fields are created by `gearcam.quantities.param`.
 
     Returns
     -------
     Table
-        With an entry for each field, in order; with two for a lift.
+        With an entry for each field, in order, and two for a lift or span.
     """
     hints = typing.get_type_hints(owner)
     defaults = {field.name: field.default for field in dataclasses.fields(owner)}
@@ -203,7 +202,7 @@ def _entry(name: str, made_of: Param, hint: Any, default: Any) -> Key:
 
 
 def _split(hint: Any) -> tuple[Any, str]:
-    """Take None and a word such as "solve" out of a union; return the word, if it was there."""
+    """Return the type of a union without None and words such as "solve", and the word."""
     if typing.get_origin(hint) not in (typing.Union, types.UnionType):
         return hint, ""
     rest = [part for part in typing.get_args(hint) if part is not types.NoneType]
@@ -213,7 +212,7 @@ def _split(hint: Any) -> tuple[Any, str]:
 
 
 def settled(part: Any) -> Any:
-    """Return what people gave with tuples for lists and arrays, and plain numbers for numpy's.
+    """Return input with tuples instead of lists and arrays, and Python numbers.
 
     Parameters
     ----------
@@ -223,7 +222,7 @@ def settled(part: Any) -> Any:
     Returns
     -------
     object
-        The same one where nothing changes.
+        The same object if nothing changes.
     """
     if hasattr(part, "tolist"):
         part = part.tolist()
