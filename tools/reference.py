@@ -6,9 +6,11 @@ Run by `make docs`. A test compares the pages with those that are committed.
 from __future__ import annotations
 
 import argparse
+import inspect
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -305,9 +307,16 @@ def files() -> Iterator[str]:
     yield FILES_INTRO
     for kind in ordered_kinds():
         yield f"## {TITLES[kind.name]}"
-        made = kind.room("files").FILES
-        rows = ((code(word), names(made[word].names), made[word].doc) for word in kind.formats)
+        rows = ((code(word), *format_words(kind, word)) for word in kind.formats)
         yield table(("`files`", "names", "what they hold"), rows)
+
+
+def format_words(kind: DesignKind, word: str) -> tuple[str, str]:
+    """Return the names of the files of a word of ``files``, and what they hold."""
+    made = kind.room("files").FILES[word]
+    doc = inspect.getdoc(made.func if isinstance(made, partial) else made) or ""
+    _, listed, holds = doc.replace("{format}", word.removeprefix("drawing-")).split("\n\n")
+    return names(listed.removeprefix("Files: ").rstrip(".")), holds
 
 
 def names(text: str) -> str:

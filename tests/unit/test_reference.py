@@ -126,9 +126,8 @@ def test_the_names_of_files_are_those_written(name: str) -> None:
     if name == "yoke_cam":
         result = gearcam.build(result.design.with_({"output.tool_radius_mm": 5}))
     kind = KINDS[result.design.kind]
-    formats = kind.room("files").FILES
     for word in set(kind.formats) - set(SLOW):
-        told = formats[word].names.replace("the same names with .dxf", "")
+        told = reference.format_words(kind, word)[0].replace("the same names with .dxf", "")
         listed = set(re.findall(r"\w+\.\w+", told))
         listed |= {f"{one.removesuffix('.csv')}.dxf" for one in listed if "tool_path" in one}
         made = {re.sub(r"[12]_step\d", "1_step1", file) for file in result.files(word)}

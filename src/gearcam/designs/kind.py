@@ -6,9 +6,9 @@ and only the kind of the design at hand is imported. The modules of a kind:
 - `design`: ``KIND``, a `DesignKind`: the tables of a file, their rules, and the design class;
 - `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
 - `facts`: ``facts(result, measured)`` returns its facts;
-- `files`: ``FILES``, a `gearcam.export.shared.FileFormat` for each kind of file; with ``report``
-  also ``assembled(result)``, the solids in their places, and ``framed(result)``, the HTML for
-  notebooks;
+- `files`: ``FILES``, the function that makes each kind of file; paragraphs of its docstring list
+  the names of the files (``Files: ...``) and what they hold. With ``report`` also
+  ``assembled(result)``, the solids in their places, and ``framed(result)``, the HTML for notebooks;
 - `charts`: ``CHARTS``, functions that return charts; `scene`: ``scene(result)`` returns the scene;
 - `advice`: ``seek(search, refusal)`` searches for remedies of a refused design or one with errors,
   ``hopeless(result)`` tells which designs need not be built completely, ``FILE_DEMANDS`` has

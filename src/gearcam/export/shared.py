@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from gearcam.numerals import shown
@@ -19,30 +18,6 @@ if TYPE_CHECKING:
 
 Files = dict[str, bytes]
 """Contents by file name."""
-
-
-@dataclass(frozen=True)
-class FileFormat:
-    """One word of ``output.files``: what it makes of a result.
-
-    Parameters
-    ----------
-    make : callable
-        ``make(result, measured)`` returns the files; what is measured on them is written down.
-    names : str
-        Names of the files.
-    doc : str
-        What they hold.
-    """
-
-    make: Callable[[Any, dict[str, Any]], Files]
-    names: str
-    doc: str
-
-    def __call__(self, result: Any, measured: dict[str, Any]) -> Files:
-        """Return the files of a `result`, and write down in `measured` what is measured on them."""
-        return self.make(result, measured)
-
 
 STEP_PART = 2e-3
 """Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""

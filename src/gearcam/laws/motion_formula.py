@@ -65,7 +65,7 @@ class MotionFormula:
     lift: Given = param(
         TEXT,
         function=True,
-        doc="formula in theta, rad, such as 5*(1 - cos(theta)); mm, or rad (oscillating)",
+        doc="formula in theta, rad, such as 5*(1 - cos(theta)), in mm, or rad if oscillating",
     )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:

@@ -78,8 +78,8 @@ class MotionTable(FromFile):
         LENGTH,
         default=None,
         gt=0,
-        doc="largest distance from rows; 0 if left out (translating)",
-        angular=Param(ANGLE, gt=0, doc="largest distance from rows; 0 if left out (oscillating)"),
+        doc="largest distance from a row; 0 if left out (translating follower)",
+        angular=Param(ANGLE, gt=0, doc="largest distance from a row (oscillating follower)"),
     )
 
     def problems(self) -> Iterator[Problem]:

@@ -53,10 +53,10 @@ TURN: Final = 2.0 * math.pi
 LONGEST: Final = 1e6
 """Largest lift, mm."""
 
-_WAY: Final = Param(LENGTH, word="way", gt=0, le=1e6, doc="way of a sliding cam that it takes")
+_WAY: Final = Param(LENGTH, word="way", gt=0, le=1e6, doc="travel of a translating cam")
 
 _SPAN: Final[dict[str, Any]] = {
-    "gt": 0, "le": 360, "doc": "cam angle that it takes, or what the others leave", "sliding": _WAY,
+    "gt": 0, "le": 360, "doc": "cam angle of the phase, or what the others leave", "sliding": _WAY,
 }  # fmt: skip
 """What a phase takes of a turn, or of a way."""
 
@@ -102,8 +102,8 @@ class RisePhase(Brief):
         default=None,
         gt=0,
         le=LONGEST,
-        doc="how far (translating follower)",
-        angular=Param(ANGLE, gt=0, lt=180, doc="how far (oscillating follower)"),
+        doc="lift of the phase (translating follower)",
+        angular=Param(ANGLE, gt=0, lt=180, doc="lift of the phase (oscillating follower)"),
     )
 
 
@@ -144,8 +144,8 @@ class SegmentPhase(Brief):
         default=None,
         ge=-LONGEST,
         le=LONGEST,
-        doc="lift at its end (translating)",
-        angular=Param(ANGLE, gt=-180, lt=180, doc="lift at its end (oscillating)"),
+        doc="lift at its end (translating follower)",
+        angular=Param(ANGLE, gt=-180, lt=180, doc="lift at its end (oscillating follower)"),
     )
     velocity: float | None = _rate(LENGTH_PER_RAD, ANGLE_PER_RAD, "velocity", "ds/dtheta")
     acceleration: float | None = _rate(

@@ -32,7 +32,7 @@ class MeshingSpec(Brief):
     True
     """
 
-    steps: int = param(COUNT, default=360, ge=1, le=1000000, doc="phases studied")
+    steps: int = param(COUNT, default=360, ge=1, le=1000000, doc="number of phases, at even angles")
     start: float = param(
         ANGLE, default=0.0, ge=-36000, le=36000, word="from", doc="driver angle of the first phase"
     )
@@ -49,18 +49,22 @@ class MeshingSpec(Brief):
         default=math.radians(0.005),
         ge=-1,
         le=1,
-        doc="how far the driver is turned ahead of its place, to make flanks overlap; not 0",
+        doc="how far the driver is turned ahead (or back), so that flanks overlap; not 0",
     )
     teeth: tuple[int, ...] | None = param(
-        COUNT, default=None, ge=1, min_length=1, doc="teeth of the driver to study; all if left out"
+        COUNT,
+        default=None,
+        ge=1,
+        min_length=1,
+        doc="teeth of the driver that count; all if left out",
     )
     step: int = param(
-        COUNT, default=1, ge=1, le=100, doc="step of stepped wheels that is studied, from below"
+        COUNT, default=1, ge=1, le=100, doc="step studied of stepped wheels, from below"
     )
     center_distance: float | None = param(
         LENGTH,
         default=None,
         gt=0,
         le=1e6,
-        doc="distance of the shafts as mounted; as designed if left out",
+        doc="centre distance as mounted, not of a rack; as designed if left out",
     )

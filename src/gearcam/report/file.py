@@ -9,18 +9,18 @@ if TYPE_CHECKING:
     from gearcam.export.shared import Files
     from gearcam.result import Result
 
-REPORT_DOC: Final = (
-    "one page for the browser, which needs no network: the parts in motion, charts, solids,"
-    " findings, facts, accuracy, and links to the other files"
-)
-"""What the page holds."""
-
 _FRAME: Final = "border:0;width:100%;height:min(85vh,760px);resize:vertical"
 """Of a page in a notebook: parts and first charts are seen, the others by scrolling in it."""
 
 
 def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
-    """Return the page of a `result`, with what was `measured` on the files before it."""
+    """Return the page of a `result`, with what was `measured` on the files before it.
+
+    Files: report.html.
+
+    One page for the browser, which needs no network: the parts in motion, charts, solids, findings,
+    facts, accuracy, and links to the other files.
+    """
     from gearcam.report.page import PAGE, document, page
     from gearcam.report.solids import solids_shown
 

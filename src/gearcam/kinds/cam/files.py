@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.export.shared import (
     STEP_PART,
-    FileFormat,
     Files,
     cut_files,
     drawn,
@@ -17,8 +16,8 @@ from gearcam.export.shared import (
     mesh_files,
     sheet_files,
 )
-from gearcam.report.file import REPORT_DOC, report_files
 from gearcam.report.file import framed as framed
+from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
@@ -38,7 +37,15 @@ _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 
 
 def _dxf(result: CamResult, measured: Measured) -> Files:
-    """Return drawings of the parts; with a kerf cutting paths, and the parts for reference."""
+    """Return the outlines as DXF.
+
+    Files: cam.dxf; of conjugate cams cam1.dxf, cam2.dxf; with `kerf_mm` also cam_reference.dxf, or
+    cam1_reference.dxf, cam2_reference.dxf.
+
+    Outlines in mm in the cam's frame: layers PROFILE, PITCH, PRIME, BORE, HOLE and CENTER; of a
+    groove BLANK, OUTER and INNER, or GROOVE, instead of PROFILE. With `kerf_mm` cutting paths only,
+    on layers that end in _KERF, and the part with its curves as the reference.
+    """
     drawings = list(result.to_cut)
     if result.design.output.kerf:
         drawings += [
@@ -48,10 +55,23 @@ def _dxf(result: CamResult, measured: Measured) -> Files:
 
 
 def _cut_svg(result: CamResult, _: Measured) -> Files:
+    """Return the outlines for laser programs.
+
+    Files: cam_cut.svg; of conjugate cams cam1_cut.svg, cam2_cut.svg; cut.svg.
+
+    For laser programs, 1:1 in mm: inner edges, then outlines in red; one file for each part, and
+    cut.svg with all parts side by side and labelled.
+    """
     return cut_files(result.to_cut, result.design.name, result.design.output.kerf)
 
 
 def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
+    """Return the solids in one of the formats of meshes.
+
+    Files: cam.{format}; of conjugate cams cam1.{format}, cam2.{format}, cams.{format}.
+
+    Closed solids in mm, of conjugate cams also both as they stand on the shaft.
+    """
     stem = result.form.assembly
     together = {stem: assembled(result)} if stem else {}
     return mesh_files(result.parts, result.meshes, together, kind, measured)
@@ -68,6 +88,15 @@ def assembled(result: CamResult) -> dict[str, Mesh]:
 
 
 def _tables(result: CamResult, _: Measured) -> Files:
+    """Return the profile and the motion as tables.
+
+    Files: profile.csv; of a groove profile_inner.csv, profile_outer.csv; of a translating groove
+    profile_lower.csv, profile_upper.csv; of conjugate cams profile_1.csv, profile_2.csv;
+    motion.csv.
+
+    Vertices of the profile; lift, velocity, acceleration, jerk, pressure angle and radii of
+    curvature over the cam angle or travel.
+    """
     from gearcam.export.table import outline_bytes, table_bytes
 
     columns = {
@@ -90,6 +119,12 @@ def _style(result: CamResult) -> Any:
 
 
 def _picture(result: CamResult, _: Measured) -> Files:
+    """Return the picture of the cam.
+
+    Files: cam.svg; of conjugate cams cams.svg.
+
+    A picture of the cam below its follower, not for cutting.
+    """
     from gearcam.export.svg import svg_bytes
 
     notes, drawing = result.facts.headline, result.drawing
@@ -97,6 +132,12 @@ def _picture(result: CamResult, _: Measured) -> Files:
 
 
 def _step(result: CamResult, _: Measured) -> Files:
+    """Return the solids as STEP.
+
+    Files: cam.step; of conjugate cams cam1.step, cam2.step, cams.step.
+
+    Exact solids for CAD. Needs `pip install "gearcam[step]"`.
+    """
     from gearcam.drawings import UNMOVED
     from gearcam.export.step import step_bytes
 
@@ -115,10 +156,25 @@ def _step(result: CamResult, _: Measured) -> Files:
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
+    """Return the workshop drawings.
+
+    Files: cam_drawing.{format}; of conjugate cams cam1_drawing.{format}, cam2_drawing.{format}.
+
+    Workshop drawings with dimensions and a table of data.
+    """
     return sheet_files(result.sheets, _style(result), ending)
 
 
 def _inspection(result: CamResult, _: Measured) -> Files:
+    """Return the points for inspection.
+
+    Files: inspection.csv; of a groove inspection_inner.csv, inspection_outer.csv; of a translating
+    groove inspection_lower.csv, inspection_upper.csv; of conjugate cams inspection_1.csv,
+    inspection_2.csv.
+
+    Points of the profile at even cam angles with their outward normals, where trimming has left
+    them.
+    """
     from gearcam.export.table import table_bytes
 
     count = result.design.output.inspection_points
@@ -149,6 +205,15 @@ def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> d
 
 
 def _tool_path(result: CamResult, measured: Measured) -> Files:
+    """Return the paths of a cutter.
+
+    Files: tool_path.csv; of a groove tool_path_inner.csv, tool_path_outer.csv; of a translating
+    groove tool_path_lower.csv, tool_path_upper.csv; of conjugate cams tool_path_1.csv,
+    tool_path_2.csv; tool_path_relief.csv; the same names with .dxf.
+
+    The path of the centre of a cutter of `tool_radius_mm`; in a groove along the pitch curve for a
+    cutter as wide as the groove, else along each wall, and for two rollers along the relief.
+    """
     from gearcam.drawings import TOOL, Drawing, Feature, reach
     from gearcam.export.table import outline_bytes
 
@@ -162,6 +227,13 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
 
 
 def _curvature(result: CamResult, measured: Measured) -> Files:
+    """Return the error of curvatures that are measured.
+
+    Files: curvature.csv.
+
+    The error of the curvature from three neighbouring points over their spacing; of conjugate cams
+    of the first.
+    """
     from gearcam.export.table import table_bytes
     from gearcam.kinds.cam.curvature import curvature_columns
 
@@ -169,79 +241,18 @@ def _curvature(result: CamResult, measured: Measured) -> Files:
     return {"curvature.csv": table_bytes(columns)}
 
 
-def _plates(ending: str, *, whole: bool = True) -> str:
-    together = f", cams{ending}" if whole else ""
-    return f"cam{ending}; of conjugate cams cam1{ending}, cam2{ending}{together}"
-
-
-def _walls(stem: str, ending: str = ".csv") -> str:
-    pairs = (("groove", "inner", "outer"), ("sliding groove", "lower", "upper"))
-    names = [f"of a {form} {stem}_{a}{ending}, {stem}_{b}{ending}" for form, a, b in pairs]
-    conjugate = f"of conjugate cams {stem}_1{ending}, {stem}_2{ending}"
-    return "; ".join([f"{stem}{ending}", *names, conjugate])
-
-
-_SOLIDS: Final = "closed solids in mm, of conjugate cams also both as they stand on the shaft"
-_SHEETS: Final = "workshop drawings with dimensions and a table of data"
-
-
-FILES: Final[Mapping[str, FileFormat]] = {
-    "csv": FileFormat(
-        _tables,
-        _walls("profile") + "; motion.csv",
-        "vertices of the profile; lift, velocity, acceleration, jerk, pressure angle and radii of"
-        " curvature over the cam angle or travel",
-    ),
-    "dxf": FileFormat(
-        _dxf,
-        _plates(".dxf", whole=False) + "; with `kerf_mm` also the same names with _reference.dxf",
-        "outlines in mm in the cam's frame: layers PROFILE, PITCH, PRIME, BORE, HOLE and CENTER; of"
-        " a groove BLANK, OUTER and INNER, or GROOVE, instead of PROFILE. With `kerf_mm` cutting"
-        " paths only, on layers that end in _KERF, and the part with its curves as the reference",
-    ),
-    "cut-svg": FileFormat(
-        _cut_svg,
-        _plates("_cut.svg", whole=False) + "; cut.svg",
-        "for laser programs, 1:1 in mm: inner edges, then outlines in red; one file for each part,"
-        " and cut.svg with all parts side by side and labelled",
-    ),
-    "svg": FileFormat(
-        _picture,
-        "cam.svg; of conjugate cams cams.svg",
-        "a picture of the cam below its follower, not for cutting",
-    ),
-    **{
-        kind: FileFormat(partial(_mesh, kind), _plates(f".{kind}"), _SOLIDS)
-        for kind in ("stl", "3mf", "glb")
-    },
-    "step": FileFormat(
-        _step, _plates(".step"), 'exact solids for CAD; needs `pip install "gearcam[step]"`'
-    ),
-    "drawing-dxf": FileFormat(
-        partial(_sheet, "dxf"), _plates("_drawing.dxf", whole=False), _SHEETS
-    ),
-    "drawing-svg": FileFormat(
-        partial(_sheet, "svg"), _plates("_drawing.svg", whole=False), _SHEETS
-    ),
-    "inspection": FileFormat(
-        _inspection,
-        _walls("inspection"),
-        "points of the profile at even cam angles with their outward normals, where trimming has"
-        " left them",
-    ),
-    "report": FileFormat(report_files, "report.html", REPORT_DOC),
-    "tool-path": FileFormat(
-        _tool_path,
-        f"{_walls('tool_path')}; tool_path_relief.csv; the same names with .dxf",
-        "the path of the centre of a cutter of `tool_radius_mm`; in a groove along the pitch curve"
-        " for a cutter as wide as the groove, else along each wall, and for two rollers along the"
-        " relief",
-    ),
-    "curvature": FileFormat(
-        _curvature,
-        "curvature.csv",
-        "the error of the curvature from three neighbouring points over their spacing; of conjugate"
-        " cams of the first",
-    ),
+FILES: Final[Mapping[str, Callable[..., Files]]] = {
+    "csv": _tables,
+    "dxf": _dxf,
+    "cut-svg": _cut_svg,
+    "svg": _picture,
+    **{kind: partial(_mesh, kind) for kind in ("stl", "3mf", "glb")},
+    "step": _step,
+    "drawing-dxf": partial(_sheet, "dxf"),
+    "drawing-svg": partial(_sheet, "svg"),
+    "inspection": _inspection,
+    "report": report_files,
+    "tool-path": _tool_path,
+    "curvature": _curvature,
 }
-"""What each word of ``output.files`` makes."""
+"""What makes each kind of file: contents by name; what is measured on them is written down."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from gearcam.export.shared import (
     STEP_PART,
-    FileFormat,
     Files,
     cut_files,
     drawn,
@@ -19,8 +18,8 @@ from gearcam.export.shared import (
     sheet_files,
 )
 from gearcam.kinds.gear_pair.columns import POINTS
-from gearcam.report.file import REPORT_DOC, report_files
 from gearcam.report.file import framed as framed
+from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
     from gearcam.drawings import Placement
@@ -37,6 +36,13 @@ PAIR: Final = "pair"
 
 
 def _tables(result: GearPairResult, _: Measured) -> Files:
+    """Return the outlines and the centrodes as tables.
+
+    Files: gear1_outline.csv, gear2_outline.csv, centrodes.csv.
+
+    Vertices of the outlines; angles, ratio, radii, arc lengths and radii of curvature of both
+    centrodes.
+    """
     from gearcam.export.table import outline_bytes, table_bytes
 
     found = result.centrodes()
@@ -59,14 +65,36 @@ def _style(result: GearPairResult) -> DxfStyle:
 
 
 def _dxf(result: GearPairResult, measured: Measured) -> Files:
+    """Return the outlines as DXF.
+
+    Files: gear1.dxf, gear2.dxf, pair.dxf; of stepped wheels gear1_step1.dxf and so on.
+
+    Outlines in mm. A wheel lies in its own frame, on the layers OUTLINE, BORE, HOLE, SLOT and MARK;
+    the assembled pair has the same layers with GEAR1_ or GEAR2_ before their names, CENTRODE and
+    CENTER. With `kerf_mm` the files of the wheels hold paths of the cutter, on layers whose names
+    end in _KERF.
+    """
     return drawn([*result.to_cut, result.drawing], _style(result), measured)
 
 
 def _cut(result: GearPairResult, _: Measured) -> Files:
+    """Return the outlines for laser programs.
+
+    Files: gear1_cut.svg, gear2_cut.svg, cut.svg; of stepped wheels gear1_step1_cut.svg and so on.
+
+    For laser programs, 1:1 in mm: marks to engrave in blue, then inner edges, then outlines in red;
+    one file for each part, and cut.svg with all parts side by side and labelled.
+    """
     return cut_files(result.to_cut, result.design.name, result.design.output.kerf)
 
 
 def _picture(result: GearPairResult, _: Measured) -> Files:
+    """Return the picture of the pair.
+
+    Files: pair.svg.
+
+    A picture of the assembled pair, not for cutting.
+    """
     from gearcam.export.svg import svg_bytes
 
     notes = result.facts.headline
@@ -74,6 +102,12 @@ def _picture(result: GearPairResult, _: Measured) -> Files:
 
 
 def _inspection(result: GearPairResult, _: Measured) -> Files:
+    """Return the points for inspection.
+
+    Files: inspection.csv.
+
+    Points on every flank with their normals, for a measuring machine.
+    """
     from gearcam.export.table import table_bytes
     from gearcam.kinds.gear_pair.ordered import inspection_rows
 
@@ -82,6 +116,13 @@ def _inspection(result: GearPairResult, _: Measured) -> Files:
 
 
 def _steps(result: GearPairResult, _: Measured) -> Files:
+    """Return the solids as STEP.
+
+    Files: gear1.step, gear2.step, pair.step.
+
+    Exact solids for CAD: one spline face for each flank, fillet, land and tip, planes and cylinders
+    elsewhere. Needs `pip install "gearcam[step]"`.
+    """
     from gearcam.drawings import UNMOVED
     from gearcam.export.step import step_bytes
 
@@ -96,6 +137,12 @@ def _steps(result: GearPairResult, _: Measured) -> Files:
 
 
 def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
+    """Return the solids in one of the formats of meshes.
+
+    Files: gear1.{format}, gear2.{format}, pair.{format}.
+
+    Closed solids in mm: each wheel, and the assembled pair as two named bodies.
+    """
     return mesh_files(result.parts, result.meshes, {PAIR: assembled(result)}, kind, measured)
 
 
@@ -106,56 +153,25 @@ def assembled(result: GearPairResult) -> dict[str, Mesh]:
 
 
 def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
+    """Return the workshop drawings.
+
+    Files: gear1_drawing.{format}, gear2_drawing.{format}, pair_drawing.{format}.
+
+    Workshop drawings with views, dimensions and a table of data.
+    """
     return sheet_files(result.sheets, _style(result), ending)
 
 
-_SOLIDS: Final = "closed solids in mm: each wheel, and the assembled pair as two named bodies"
-_SHEETS: Final = "workshop drawings with views, dimensions and a table of data"
-
-
-def _each(ending: str) -> str:
-    return f"gear1{ending}, gear2{ending}, pair{ending}"
-
-
-FILES: Final[Mapping[str, FileFormat]] = {
-    "dxf": FileFormat(
-        _dxf,
-        _each(".dxf") + "; of stepped wheels gear1_step1.dxf and so on",
-        "outlines in mm. A wheel lies in its own frame, on the layers OUTLINE, BORE, HOLE, SLOT and"
-        " MARK; the assembled pair has the same layers with GEAR1_ or GEAR2_ before their names,"
-        " CENTRODE and CENTER. With `kerf_mm` the files of the wheels hold paths of the cutter, on"
-        " layers whose names end in _KERF",
-    ),
-    "cut-svg": FileFormat(
-        _cut,
-        "gear1_cut.svg, gear2_cut.svg, cut.svg; of stepped wheels gear1_step1_cut.svg and so on",
-        "for laser programs, 1:1 in mm: marks to engrave in blue, then inner edges, then outlines"
-        " in red; one file for each part, and cut.svg with all parts side by side and labelled",
-    ),
-    "svg": FileFormat(_picture, "pair.svg", "a picture of the assembled pair, not for cutting"),
-    **{
-        kind: FileFormat(partial(_meshes, kind), _each(f".{kind}"), _SOLIDS)
-        for kind in ("stl", "3mf", "glb")
-    },
-    "step": FileFormat(
-        _steps,
-        _each(".step"),
-        "exact solids for CAD: one spline face for each flank, fillet, land and tip, planes and"
-        ' cylinders elsewhere; needs `pip install "gearcam[step]"`',
-    ),
-    "csv": FileFormat(
-        _tables,
-        "gear1_outline.csv, gear2_outline.csv, centrodes.csv",
-        "vertices of the outlines; angles, ratio, radii, arc lengths and radii of curvature of both"
-        " centrodes",
-    ),
-    "drawing-dxf": FileFormat(partial(_sheets, "dxf"), _each("_drawing.dxf"), _SHEETS),
-    "drawing-svg": FileFormat(partial(_sheets, "svg"), _each("_drawing.svg"), _SHEETS),
-    "inspection": FileFormat(
-        _inspection,
-        "inspection.csv",
-        "points on every flank with their normals, for a measuring machine",
-    ),
-    "report": FileFormat(report_files, "report.html", REPORT_DOC),
+FILES: Final[Mapping[str, Callable[..., Files]]] = {
+    "dxf": _dxf,
+    "cut-svg": _cut,
+    "svg": _picture,
+    **{kind: partial(_meshes, kind) for kind in ("stl", "3mf", "glb")},
+    "step": _steps,
+    "csv": _tables,
+    "drawing-dxf": partial(_sheets, "dxf"),
+    "drawing-svg": partial(_sheets, "svg"),
+    "inspection": _inspection,
+    "report": report_files,
 }
-"""What each word of ``output.files`` makes."""
+"""What makes each kind of file: contents by name; what is measured on them is written down."""

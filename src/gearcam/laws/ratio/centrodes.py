@@ -50,7 +50,7 @@ class EccentricCircle:
     """
 
     eccentricity: float = param(
-        NUMBER, ge=0, lt=1, doc="distance of shaft and centre over the radius"
+        NUMBER, ge=0, lt=1, doc="distance of shaft and circle centre, in radii"
     )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:

@@ -36,9 +36,11 @@ class Multispeed(Brief):
         NUMBER, gt=0, min_length=2, doc='the constant ratios in turn; one may be "solve"'
     )
     angles: Row = param(
-        ANGLE, ge=0, le=360, min_length=2, doc="driver angle over which each of them holds"
+        ANGLE, ge=0, le=360, min_length=2, doc="driver angle over which each ratio holds"
     )
-    transition: float = param(ANGLE, gt=0, le=360, doc="driver angle of each transition")
+    transition: float = param(
+        ANGLE, gt=0, le=360, doc="driver angle of each transition; a closed law ends with one"
+    )
     shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
     driven_travel: float | None = open_travel("driven wheel")
 
@@ -90,9 +92,9 @@ class ThreePhasePolynomial(Brief):
     """
 
     knots: tuple[float, float, float, float] = param(
-        ANGLE, ge=0, le=360, doc="driver angles, from 0 to a turn or one lobe"
+        ANGLE, ge=0, le=360, doc="driver angles of the knots, from 0 to a turn or one lobe"
     )
-    lowest: float = param(NUMBER, gt=0, doc="i21 at the second knot")
+    lowest: float = param(NUMBER, gt=0, doc="i21 at the second knot, below the mean ratio")
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -151,12 +153,15 @@ class Fourier(Brief):
     """
 
     of: str = param(
-        TEXT, default="ratio", choices=("ratio", "phi2"), doc="what the coefficients are of"
+        TEXT, default="ratio", choices=("ratio", "phi2"), doc="what the coefficients belong to"
     )
     cosines: Row = param(
-        NUMBER, default=(), doc="a_1, a_2, ...: shares of the mean ratio, or degrees of phi2"
+        NUMBER,
+        default=(),
+        doc="cosine coefficients of the harmonics 1, 2, ... of a lobe: shares of the mean ratio, "
+        "or degrees of phi2 at mean ratio 1",
     )
-    sines: Row = param(NUMBER, default=(), doc="b_1, b_2, ...: in the same units")
+    sines: Row = param(NUMBER, default=(), doc="sine coefficients, in the same units")
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

@@ -56,13 +56,13 @@ class Formula(Brief):
     """
 
     phi2: Given | None = param(
-        TEXT, default=None, function=True, doc="driven angle in rad; must close"
+        TEXT, default=None, function=True, doc="driven angle, rad, over phi1; must close"
     )
     ratio: Given | None = param(
-        TEXT, default=None, function=True, doc="ratio i21, scaled so that it closes"
+        TEXT, default=None, function=True, doc="ratio over phi1, scaled so that it closes"
     )
     r1: Given | None = param(
-        TEXT, default=None, function=True, doc="driver centrode's radius at any scale"
+        TEXT, default=None, function=True, doc="driver's radius over phi1, at any scale"
     )
     driver_travel: float | None = open_travel("driver")
     driven_travel: float | None = open_travel("driven wheel")
@@ -201,10 +201,10 @@ class RackLaw(Brief):
     """
 
     r1: Given | None = param(
-        TEXT, default=None, function=True, doc="driver centrode's radius over phi1"
+        TEXT, default=None, function=True, doc="wheel's radius over phi1, at any scale"
     )
     travel: Given | None = param(
-        TEXT, default=None, function=True, doc="travel of the rack over phi1"
+        TEXT, default=None, function=True, doc="or its travel over phi1, at any scale"
     )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
@@ -248,7 +248,7 @@ LAWS.register(
     LawEntry(
         name="formula",
         example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
-        doc="a formula in phi1 of phi2, of the ratio (scaled to close) or of r1 (at any scale)",
+        doc="a formula in phi1 (rad) of exactly one of phi2, the ratio and r1",
         continuity="analytic where the formula is",
         source="Niculescu, Table 1.1, the three hypotheses",
     ),

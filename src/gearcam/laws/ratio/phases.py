@@ -36,10 +36,10 @@ class Phases(Brief):
         ge=0,
         le=360,
         min_length=2,
-        doc='driver angles, from 0 to a turn or one lobe; of an open pair one may be "solve"',
+        doc='driver angles from 0 to a turn or one lobe; of an open pair one may be "solve"',
     )
     ratios: RowOfSome = param(
-        NUMBER, gt=0, min_length=2, doc='i21 at the knots; one may be "solve"'
+        NUMBER, gt=0, min_length=2, doc='i21 there; one may be "solve" (the first: the last too)'
     )
     driven_travel: float | None = open_travel("driven wheel")
 

@@ -42,7 +42,7 @@ class MotionLaw(Brief):
         TEXT,
         default=None,
         function=True,
-        doc="position of a slide over phi1, towards the crank, at any scale",
+        doc="instead of y: position of a slide over phi1, towards the crank, at any scale",
     )
     rod: float | None = param(
         NUMBER, default=None, gt=1, le=1e6, doc="length of the slide's rod, in crank radii"

@@ -67,10 +67,8 @@ class RoundedPolygon(Brief):
     ``d = (h - c)/cos(pi/n)``. Closure decides h.
     """
 
-    corners: int = param(COUNT, ge=3, le=100, doc="number of corners of the driver")
-    corner_radius: float = param(
-        NUMBER, gt=0, le=100, doc="radius of the corners over the centre distance"
-    )
+    corners: int = param(COUNT, ge=3, le=100, doc="corners of the driver, a multiple of its lobes")
+    corner_radius: float = param(NUMBER, gt=0, le=100, doc="corner radius over the centre distance")
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

@@ -38,7 +38,7 @@ class FormulaRise(Brief):
     """
 
     formula: Given = param(
-        TEXT, function=True, doc="S over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)"
+        TEXT, function=True, doc="lift over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)"
     )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:

@@ -54,7 +54,7 @@ class BSplineRise(ClosedForm):
         NUMBER, ge=-100, le=100, min_length=4, doc="control values of S, from 0 to 1"
     )
     degree: int = param(
-        COUNT, default=4, ge=3, le=5, doc="of the pieces; derivatives up to degree - 1 go on"
+        COUNT, default=4, ge=3, le=5, doc="degree of the pieces; C2 to C4 (degree - 1)"
     )
 
     def problems(self) -> Iterator[Problem]:
@@ -112,10 +112,10 @@ class TableRise(FromFile):
 
     file: str | None = param(TEXT, default=None, doc="CSV file with the columns x and y")
     x: Row | None = param(
-        NUMBER, default=None, ge=0, le=1, min_length=_FEWEST, doc="phi, from 0 to 1"
+        NUMBER, default=None, ge=0, le=1, min_length=_FEWEST, doc="share of the angle"
     )
     y: Row | None = param(
-        NUMBER, default=None, ge=-100, le=100, min_length=_FEWEST, doc="S at x, from 0 to 1"
+        NUMBER, default=None, ge=-100, le=100, min_length=_FEWEST, doc="share of the lift there"
     )
     start: tuple[float, float] = param(
         NUMBER,

@@ -31,7 +31,7 @@ class ConstantAcceleration(ClosedForm):
         default=0.5,
         ge=NARROWEST,
         le=1.0 - NARROWEST,
-        doc="share of the angle with acceleration",
+        doc="share of the angle that accelerates",
     )
 
     def function(self) -> Piecewise:
