@@ -20,6 +20,7 @@ version = release = gearcam.__version__
 
 extensions = ["myst_parser"]
 myst_enable_extensions = ["dollarmath"]
+smartquotes = False
 myst_heading_anchors = 4  # anchors as git hosts make them
 
 html_theme = "furo"

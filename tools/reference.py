@@ -208,18 +208,12 @@ def checks() -> Iterator[str]:
                     code(check.code),
                     ", or ".join(check.severities),
                     limit(check),
-                    *check_words(check),
+                    check.doc,
                 )
                 for check in CHECKS.values()
                 if check.kind == group
             )
-            yield table(("code", "severity", "limit, default", "what it does", "looks at"), rows)
-
-
-def check_words(check: Check) -> tuple[str, str]:
-    """Return what a check does and what it looks at."""
-    does, _, looks = check.doc.partition(" Looks at: ")
-    return does, looks.rstrip(".")
+            yield table(("code", "severity", "limit, default", "what it does"), rows)
 
 
 def ordered_kinds() -> Iterator[DesignKind]:
@@ -315,8 +309,8 @@ def format_words(kind: DesignKind, word: str) -> tuple[str, str]:
     """Return the names of the files of a word of ``files``, and what they hold."""
     made = kind.room("files").FILES[word]
     doc = inspect.getdoc(made.func if isinstance(made, partial) else made) or ""
-    _, listed, holds = doc.replace("{format}", word.removeprefix("drawing-")).split("\n\n")
-    return names(listed.removeprefix("Files: ").rstrip(".")), holds
+    _, listed, holds, *_ = doc.replace("{format}", word.removeprefix("drawing-")).split("\n\n")
+    return names(listed.removeprefix("Files: ").rstrip(".")), names(holds)
 
 
 def names(text: str) -> str:

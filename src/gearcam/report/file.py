@@ -20,6 +20,18 @@ def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
 
     One page for the browser, which needs no network: the parts in motion, charts, solids, findings,
     facts, accuracy, and links to the other files.
+
+    Parameters
+    ----------
+    result : Result
+        Of any kind with reports.
+    measured : mapping
+        What was measured on the files before it.
+
+    Returns
+    -------
+    dict of str to bytes
+        The page by its name.
     """
     from gearcam.report.page import PAGE, document, page
     from gearcam.report.solids import solids_shown
