@@ -10,13 +10,26 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.changes import (
+    CLOSE,
+    INSIDE,
+    Changes,
+    ahead,
+    alike,
+    between,
+    for_both,
+    joined,
+    octaves,
+    sized,
+    tidy,
+    together,
+)
 from gearcam.designs.design import Design, document_of, value_at
 from gearcam.designs.kind import KINDS
 from gearcam.display import Brief
@@ -26,8 +39,6 @@ from gearcam.numerals import shown
 if TYPE_CHECKING:
     from gearcam.findings import Finding
     from gearcam.result import Result
-
-Changes = Mapping[str, object]
 
 PATIENCE: Final = 6.0
 """Seconds after which a search is given up, on a usual machine."""
@@ -41,12 +52,6 @@ _SLACK: Final = 10.0
 
 _STEP: Final = 1.0 / 40.0
 """Part of a way that is one step of the search."""
-
-_CLOSE: Final = 0.01
-"""Part of a value by which a remedy may be more than what would do."""
-
-_INSIDE: Final = 1e-3
-"""Part of the way by which a limit is kept, and for which digits are left out."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,8 +79,9 @@ class Remedy(Brief):
 
     @property
     def next_less(self) -> str:
-        """The next smaller change in the same way; nothing where none was tried."""
-        return _text(self.less)
+        """The largest smaller change that is not enough; empty where none was tried."""
+        differing = {key: value for key, value in self.less.items() if value != self.changes[key]}
+        return _text(differing)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,8 +132,10 @@ def remedies(
     return result.sought[patience]
 
 
-def _sought(result: Result, refusal: InfeasibleError | None, patience: float) -> Remedies:
-    """Return what a search finds (see `remedies`)."""
+def _sought(
+    result: Result, refusal: InfeasibleError | None, patience: float, *, last: bool = False
+) -> Remedies:
+    """Return what a search finds (see `remedies`), going on from what it finds unless `last`."""
     errors: list[Finding] = []
     if refusal is None:
         try:
@@ -140,6 +148,8 @@ def _sought(result: Result, refusal: InfeasibleError | None, patience: float) ->
         return Remedies()
     search = Search(result, refusal, frozenset(error.code for error in errors), patience)
     search.advice.seek(search, refusal)
+    if not last:
+        search.go_on()
     return Remedies(
         found=tuple(search.found),
         tried=tuple(search.tried),
@@ -226,6 +236,7 @@ class Search:
         self.most, self.builds = round(_PACE * patience), 0
         self.until = time.perf_counter() + _SLACK * patience
         self.found: list[Remedy] = []
+        self.first: list[Changes] = []
         self.tried: dict[str, None] = {}
         self.gave_up = False
         self.second: InfeasibleError | None = None
@@ -288,112 +299,77 @@ class Search:
         near = {key: way.near.get(key, value_at(self.document, key)) for key in way.far or way.near}
         if any(value is None for value in near.values()):
             return False
-        if way.far and _between(near, way.far, 1.0) == _between(near, {}, 0.0):
+        if way.far and between(near, way.far, 1.0) == between(near, {}, 0.0):
             return False  # it is there already
         if way.near:
-            first = _between(near, way.far, _INSIDE) if way.far else _tidy(near)
+            first = between(near, way.far, INSIDE) if way.far else tidy(near)
             if self.cures(first):
                 self.keep(first)
                 return True
-        told = any(_ahead(remedy.changes, near, way.far) for remedy in self.found)
-        return bool(way.far) and not told and self._least(near, way.far)
+            if not way.far:
+                self.first.append(first)
+        known = any(ahead(remedy.changes, near, way.far) for remedy in self.found)
+        least = self._doubled if way.doubling else self._least
+        return bool(way.far) and not known and least(near, way.far)
 
     def _least(self, near: Changes, far: Changes) -> bool:
         """Find the smallest change between two ends; whether there is one."""
         low, high = 0.0, 1.0
-        while self.over() or not self.cures(_between(near, far, high)):
+        while self.over() or not self.cures(between(near, far, high)):
             high *= 0.5
             if high < _STEP or self.over():
                 return False
         while True:
-            ends = [_between(near, far, share) for share in (high, low)]
-            fine = high - low <= _INSIDE or (high - low <= _STEP and _alike(*ends))
+            ends = [between(near, far, share) for share in (high, low)]
+            fine = high - low <= INSIDE or (high - low <= _STEP and alike(*ends))
             if fine or self.over():
                 self.keep(ends[0], ends[1] if low else None)
                 return True
             middle = 0.5 * (low + high)
-            does = self.cures(_between(near, far, middle))
+            does = self.cures(between(near, far, middle))
             low, high = (low, middle) if does else (middle, high)
 
-    def follow(self, ways: Iterable[Way]) -> None:
-        """Follow `ways`, each for one wheel and, where that does not do, for both.
+    def _doubled(self, near: Mapping[str, Any], far: Mapping[str, Any]) -> bool:
+        """Find the smallest change of sizes between two ends through powers of two."""
+        low = start = float(abs(next(iter(near.values()))))
+        for high in octaves(near, far):
+            if self.over():
+                return False
+            if self.cures(sized(near, far, high)):
+                break
+            low = high
+        else:
+            return False
+        while abs(math.log(high / low)) > CLOSE and not self.over():
+            middle = math.sqrt(low * high)
+            does = self.cures(sized(near, far, middle))
+            low, high = (low, middle) if does else (middle, high)
+        self.keep(sized(near, far, high), sized(near, far, low) if low != start else None)
+        return True
 
-        Where a changed design is refused for something else, ways out of that are followed too.
+    def go_on(self) -> None:
+        """Search on from designs that were built with one change and have other errors then."""
+        for changes in self.first:
+            if self.found or self.over():
+                return
+            left = (self.most - self.builds) / _PACE
+            other = _sought(self.changed(changes), None, left, last=True)
+            self.builds += other.builds
+            self.tried |= dict.fromkeys(other.tried)
+            for remedy in other.found:
+                less = together(changes, remedy.less) if remedy.less else None
+                self.keep(together(changes, remedy.changes), less)
+
+    def follow(self, ways: Iterable[Way]) -> None:
+        """Follow `ways`, each for one wheel and, where that does not help, for both.
+
+        Where a changed design is refused for another reason, its ways are followed too.
         """
         for way in ways:
             if self.along(way):
                 continue
-            if (both := _for_both(way)) is not None:
+            if (both := for_both(way)) is not None:
                 self.along(both)
-            elif way.near and not self.over() and self.left(_tidy(way.near)) is None:
+            elif way.near and not self.over() and self.left(tidy(way.near)) is None:
                 for other in self.second.ways if self.second else ():
-                    self.along(_joined(way.near, other))
-
-
-def _joined(changes: Changes, way: Way) -> Way:
-    """Return a way that makes other changes too."""
-    return Way(
-        near={**changes, **way.near} if way.near else {},
-        far={**changes, **way.far} if way.far else {},
-    )
-
-
-def _for_both(way: Way) -> Way | None:
-    """Return a way of one wheel's blank as one of both, None where it is none."""
-    keys = [*way.near, *way.far]
-    if not keys or not all(re.fullmatch(r"blank\.\w+\[\d\]", key) for key in keys):
-        return None
-    near, far = ({key[:-3]: end for key, end in ends.items()} for ends in (way.near, way.far))
-    return Way(near=near, far=far)
-
-
-def _ahead(changes: Changes, near: Mapping[str, Any], far: Mapping[str, Any]) -> bool:
-    """Whether `changes` go the way of these ends, that of single numbers."""
-    if changes.keys() != far.keys():
-        return False
-    ends = ((value, near[key], far[key]) for key, value in changes.items())
-    return all(isinstance(a, float) and (a - b) * (c - b) > 0.0 for a, b, c in ends)
-
-
-def _alike(some: Changes, others: Changes) -> bool:
-    """Whether the numbers of two changes of the same keys are nearly the same."""
-    pairs = zip(_items(some), _items(others), strict=True)
-    return all(abs(a - b) <= _CLOSE * abs(a) for a, b in pairs if isinstance(a, float))
-
-
-def _items(changes: Mapping[str, Any]) -> list[Any]:
-    return [
-        one for value in changes.values() for one in (value if isinstance(value, list) else [value])
-    ]
-
-
-def _between(near: Changes, far: Changes, share: float) -> dict[str, object]:
-    """Return values between two ends, with as few digits as the way asks for."""
-    return {key: _mixed(value, far.get(key, value), share) for key, value in near.items()}
-
-
-def _tidy(value: Any) -> Any:
-    """Write numbers in ten digits."""
-    if isinstance(value, Mapping):
-        return {key: _tidy(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_tidy(item) for item in value]
-    return float(f"{value:.10g}") if isinstance(value, float) else value
-
-
-def _mixed(near: Any, far: Any, share: float) -> Any:
-    if isinstance(near, list):
-        ends = far if isinstance(far, list) else [far] * len(near)
-        # numbers that close together are not rounded each by itself
-        return [_part_way(a, b, share) for a, b in zip(near, ends, strict=True)]
-    mixed = _part_way(near, far, share)
-    if isinstance(far, bool | str) or not isinstance(mixed, float) or near == far or share == 1.0:
-        return mixed
-    step = 10.0 ** math.floor(math.log10(abs(_INSIDE * (far - near))))
-    return _tidy(step * (math.ceil if far > near else math.floor)(mixed / step))
-
-
-def _part_way(near: Any, far: Any, share: float) -> Any:
-    if isinstance(near, bool | str) or isinstance(far, bool | str):
-        return near
-    return _tidy(float(near + share * (far - near)))
+                    self.along(joined(way.near, other))

@@ -134,14 +134,15 @@ def infeasible_text(error: InfeasibleError) -> str:
 def remedy_lines(found: Remedies) -> Iterator[str]:
     """Yield the remedies that a search has found, and whether it was complete."""
     if found.found:
-        yield "built without errors with one of these:"
+        many = len(found.found) > 1
+        yield f"{'each of these changes' if many else 'this change'} was built without errors:"
     for remedy in found.found:
-        less = f"  (not yet with {remedy.next_less})" if remedy.less else ""
-        yield f"  {remedy.text}{less}"
+        less = f"  (not enough: {remedy.next_less})" if remedy.less else ""
+        yield wrapped(f"{remedy.text}{less}", first="  ", rest="      ")
     keys = ", ".join(found.tried)
     if found.gave_up:
-        sought = "more" if found.found else "a remedy"
-        yield f"the search for {sought} was given up after {found.builds} designs"
+        sought = "more remedies" if found.found else "a remedy"
+        yield f"the search for {sought} was ended after {found.builds} designs"
     elif keys and not found.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 

@@ -114,10 +114,14 @@ class Way:
         empty: the values that the design has.
     far : mapping of str to value
         The largest change, with the same keys; empty if `near` is the only one.
+    doubling : bool
+        Whether the first value goes to the far one through powers of two: what is found then does
+        not depend on the value that the design has.
     """
 
     near: Mapping[str, object] = field(default_factory=dict)
     far: Mapping[str, object] = field(default_factory=dict)
+    doubling: bool = False
 
 
 class InfeasibleError(GearcamError, ValueError):

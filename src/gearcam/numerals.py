@@ -97,6 +97,13 @@ def tree(made: Any) -> Any:
     return exact(made) if isinstance(made, float) else made
 
 
+def shortened(value: float, side: float, digits: int = 4) -> float:
+    """Return a `value` in `digits`, its size rounded up where `side` is above 0, else down."""
+    step = 10.0 ** (math.floor(math.log10(abs(value))) + 1 - digits)
+    size = (math.ceil if side > 0.0 else math.floor)(abs(value) / step) * step
+    return math.copysign(float(f"{size:.10g}"), value)
+
+
 def rounded_down(value: float, digits: int = 6) -> str:
     """Return a positive `value` rounded down to `digits`, so that it keeps an upper limit."""
     step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)

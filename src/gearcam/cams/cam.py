@@ -48,6 +48,11 @@ class Cam(Displayed):
         return None
 
     @property
+    def least_base_radius(self) -> float | None:
+        """Least base radius without undercut, mm, of translating flat followers; None of others."""
+        return None
+
+    @property
     def outline(self) -> Array:
         """Vertices of the first wall, (n, 2), mm, counter-clockwise, in the cam's frame."""
         return self.walls[0].outline

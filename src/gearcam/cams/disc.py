@@ -34,6 +34,14 @@ class DiscCam(Wall, Cam):
         """What can be cut: for a disc cam one profile."""
         return (self,)
 
+    @property
+    def least_base_radius(self) -> float | None:
+        """Least base radius, mm, that is not undercut below a translating flat face."""
+        radius, back = self.face_radius, (one.after < one.before for one in self.program.hard)
+        if radius is None or self.mechanism.oscillating or any(back):
+            return None
+        return self.mechanism.start - radius.low.value
+
     @cached_property
     def facts(self) -> Facts:
         """What the cam knows of itself; the facts of its result tell more."""

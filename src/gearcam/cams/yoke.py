@@ -32,12 +32,6 @@ class YokeCam(DiscCam):
         place = self.contact_place
         return None if place is None else 2.0 * place.largest
 
-    @property
-    def least_base_radius(self) -> float | None:
-        """Least base radius that is not undercut under a flat face, mm."""
-        radius = self.face_radius
-        return None if radius is None else self.mechanism.start - radius.low.value
-
 
 def make_yoke(cam: DiscCam) -> YokeCam:
     """Return a disc cam as one that its follower goes around.

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
 
 from gearcam.advice import kerf_paths
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
 from gearcam.kinds.cam.design import CAM_FORMATS
+from gearcam.kinds.cam.pressed import gentler, grown
+from gearcam.numerals import shortened
 
 if TYPE_CHECKING:
     from gearcam.advice import Search
     from gearcam.result import Result
 
-_LARGER: Final = 5.0
-_SMALLER: Final = 0.05
-"""How far a cam grows and a roller or a lift shrinks in the search, over what is given."""
+_LARGER: Final = 100.0
+"""How far a cam grows in the search, over what its follower and its lift reach."""
+
+_SMALLER: Final = 0.01
+"""How far a roller or a lift shrinks in it, over what is given."""
 
 
 _ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
@@ -42,7 +49,7 @@ FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
     """Lead a `search` for remedies: what a `refusal` names, then other sizes."""
-    search.follow([*(refusal.ways if refusal else ()), *_sizes(search.document)])
+    search.follow([*(refusal.ways if refusal else _of_errors(search)), *_sizes(search)])
 
 
 def hopeless(_: Result) -> bool:
@@ -50,19 +57,26 @@ def hopeless(_: Result) -> bool:
     return False
 
 
-def _sizes(document: Mapping[str, Any]) -> Iterator[Way]:
+def _of_errors(search: Search) -> Iterator[Way]:
+    """Yield the smallest radii without jamming, and without undercut below a flat face."""
+    result: Any = search.result
+    if "jamming" in search.codes:
+        least = [gentler(result, "jamming", number) for number in range(len(result.cam.motions))]
+        yield Way(near={key: size for changes in least for key, size in (changes or {}).items()})
+    if "undercut" in search.codes and (base := result.cam.least_base_radius) is not None:
+        yield Way(near=grown(search.document, "cam.base_radius_mm", shortened(base, 1.0)))
+
+
+def _sizes(search: Search) -> Iterator[Way]:
     """Yield ways to a cam that is larger for its follower and its lifts."""
+    document, far = search.document, _LARGER * _reach(search)
     larger = ("cam.prime_radius_mm", "cam.base_radius_mm", "cam.prime_radius2_mm")
-    larger += ("follower.roller_distance_mm",)
-    smaller = ("follower.roller_radius_mm", "follower.roller2_radius_mm")
-    sizes = dict.fromkeys(larger, _LARGER) | dict.fromkeys(smaller, _SMALLER)
-    for key, factor in sizes.items():
-        given = value_at(document, key)
-        if given:
-            # a larger cam needs a larger blank
-            blank = value_at(document, "cam.outer_diameter_mm") if factor > 1.0 else None
-            room = {"cam.outer_diameter_mm": factor * blank} if blank else {}
-            yield Way(far={key: factor * given, **room})
+    for key in (*larger, "follower.roller_distance_mm"):
+        if 0.0 < (value_at(document, key) or 0.0) < far:
+            yield Way(far=grown(document, key, far), doubling=True)
+    for key in ("follower.roller_radius_mm", "follower.roller2_radius_mm"):
+        if given := value_at(document, key):
+            yield Way(far={key: _SMALLER * given}, doubling=True)
     motion = document["motion"]
     lifts = {
         f"motion[{number}].{key}": _SMALLER * value
@@ -71,4 +85,17 @@ def _sizes(document: Mapping[str, Any]) -> Iterator[Way]:
         if key.startswith(("lift_", "to_", "velocity_", "acceleration_")) and value
     }
     if lifts:
-        yield Way(far=lifts)
+        yield Way(far=lifts, doubling=True)
+
+
+def _reach(search: Search) -> float:
+    """Return how far a follower and its lift reach, mm."""
+    result: Any = search.result
+    follower = result.design.follower
+    lift = 0.0
+    with suppress(InfeasibleError):
+        lift = float(np.ptp(result.program.range)) * (
+            follower.arm or follower.pivot_distance or 1.0
+        )
+    sizes = (follower.radius, abs(follower.offset), follower.arm, follower.pivot_distance)
+    return lift + sum(size or 0.0 for size in sizes)

@@ -15,7 +15,7 @@ from gearcam.cams.mechanism import position_at
 from gearcam.designs.design import document_of, value_at
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.findings import CHECKS, Finding, limit_of
-from gearcam.numerals import shown
+from gearcam.numerals import shortened, shown
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
@@ -33,9 +33,6 @@ _STEPS: Final = 8
 
 _CLOSE: Final = 1e-4
 """Share of a radius to which it is found."""
-
-_DIGITS: Final = 3
-"""Digits after the first with which it is told."""
 
 
 def explained(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
@@ -84,9 +81,7 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
     limit = math.radians(next(_steep(result, code, number)).limit or 0.0)
     found = _least(result, motion, code, limit)
     for _ in range(_STEPS if found else 0):
-        digits = _DIGITS - math.floor(math.log10(found))
-        size = math.ceil(found * 10.0**digits - _CLOSE) / 10.0**digits
-        changes = resized(result, number, float(f"{size:.10g}"))
+        changes = resized(result, number, shortened(found, 1.0))
         try:
             # another size has the same lift
             other = result.form.make(result.design.with_(changes), result.program)

@@ -248,19 +248,18 @@ def _close(
 def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[str, list[Way]]:
     """Say which value each ratio must have for the law to close if only that one is changed.
 
-    With the words comes a way for each whose closing value is positive.
+    With the words comes a way for each; a closing value that is not positive is left out.
     """
-    lines, ways = ["closure asks for one of these"], []
+    lines, ways = [], []
     for index, (value, step) in enumerate(zip(given.tolist(), change.tolist(), strict=True)):
         closing = value + step
         names = [f"ratios[{index}]", *([f"ratios[{len(given)}]"] if closed and not index else [])]
-        state = (
-            f"{shown(closing, 10)}" if closing > 0 else f"none ({shown(closing)} is not positive)"
-        )
-        lines.append(f"{' and '.join(names)} = {state} instead of {shown(value, 10)}")
         if closing > 0.0:
+            lines.append(f"{' = '.join(names)} = {shown(closing, 10)}")
             ways.append(Way(near={f"law.{name}": closing for name in names}))
-    return "; ".join(lines), ways
+    if not lines:
+        return "it does not close with any other value of a single ratio", ways
+    return f"it closes with {' or '.join(lines)}", ways
 
 
 def _solve_knot(

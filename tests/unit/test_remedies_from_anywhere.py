@@ -1,0 +1,112 @@
+"""Remedies do not depend on where a design starts, and go on where one change is not enough."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import gearcam
+from gearcam.console import remedy_lines
+from gearcam.errors import InfeasibleError
+from helpers_documents import followed, job_of
+from helpers_remedies import ARM, CIRCLE, ROLLER, cam, pair
+
+STEEP = [30, 60, 60, 210]
+LIFT = 20.0
+
+
+def values(document: dict[str, Any], key: str, folder: Path) -> list[float]:
+    """What the remedies of a design say of a key."""
+    found = gearcam.remedies(job_of(document, folder)).found
+    told = [remedy.changes[key] for remedy in found if list(remedy.changes) == [key]]
+    return [float(value) for value in told]  # type: ignore[arg-type]
+
+
+def face(base: float, limit: float = 0.01) -> dict[str, Any]:
+    made = cam({"type": "flat"}, {"base_radius_mm": base}, LIFT, angles=STEEP)
+    for phase in made["motion"]:
+        if phase["type"] != "dwell":
+            phase["law"] = "cycloidal"
+    return made | {"limits": {"lost_lift_mm": limit}}
+
+
+def test_a_face_is_not_undercut_from_its_least_base_radius_on(tmp_path: Path) -> None:
+    """``base + s + s'' >= 0``: of a cycloidal rise in closed form, wherever the search begins."""
+    b = math.radians(STEEP[0])
+    turns = [k / 10000 for k in range(10001)]
+    least = max(
+        -LIFT * (u - math.sin(2 * math.pi * u) / (2 * math.pi))
+        - LIFT * 2 * math.pi / b**2 * math.sin(2 * math.pi * u)
+        for u in turns
+    )
+    told = {values(face(base), "cam.base_radius_mm", tmp_path)[0] for base in (8, 30, 100, 300)}
+    (value,) = told
+    assert least <= value <= least * (1 + 1e-3)
+    made = job_of(followed(face(8), {"cam.base_radius_mm": value}), tmp_path)
+    assert [one for one in made.findings if one.code == "undercut"] == []
+
+
+STARTS: dict[str, tuple[Any, str, tuple[float, ...]]] = {
+    "a roller's cam": (
+        lambda size: cam(ROLLER | {"roller_radius_mm": 6}, {"prime_radius_mm": size}, 30,
+                         angles=STEEP),
+        "cam.prime_radius_mm",
+        (7.0, 12.0, 20.0, 30.0),
+    ),
+    "a roller": (
+        lambda size: cam(ROLLER | {"roller_radius_mm": size}, {"prime_radius_mm": 70}, 20,
+                         angles=[60, 60, 60, 180]),
+        "follower.roller_radius_mm",
+        (69.0, 64.0, 50.0),
+    ),
+    "an arm's cam": (
+        lambda size: cam(ARM | {"roller_radius_mm": 15}, {"prime_radius_mm": size}, 15,
+                         angles=[30, 60, 30, 240]),
+        "cam.prime_radius_mm",
+        (24.0, 36.0, 60.0),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_the_remedy_does_not_depend_on_the_start(name: str, tmp_path: Path) -> None:
+    make, key, starts = STARTS[name]
+    told = [values(make(size), key, tmp_path) for size in starts]
+    assert all(len(one) == 1 for one in told), told
+    sizes = [value for (value,) in told]
+    assert max(sizes) <= min(sizes) * 1.011
+
+
+def test_where_a_ratio_that_closes_is_not_enough_the_search_goes_on(tmp_path: Path) -> None:
+    law = {"type": "phases", "knots_deg": [0, 120, 360], "ratios": [0.5, 2, 0.5]}
+    document = pair(law, [12, 12])
+    result = job_of(document, tmp_path)
+    with pytest.raises(InfeasibleError, match=r"it closes with ratios\[1\] = 1\.5$"):
+        _ = result.law
+    found = gearcam.remedies(result).found
+    assert found
+    for remedy in found:
+        assert remedy.changes["law.ratios[1]"] == 1.5
+        assert remedy.changes["pair.teeth"] != [12, 12]
+        made = job_of(followed(document, remedy.changes), tmp_path)
+        assert not [one for one in made.findings if one.severity == "error"]
+
+
+def test_a_list_that_is_changed_as_a_whole_stands_alone(tmp_path: Path) -> None:
+    law = {"type": "phases", "knots_deg": [0, 120, 360], "ratios": [0.5, 2, 0.5]}
+    found = gearcam.remedies(job_of(pair(law, [20, 20]), tmp_path)).found
+    keys = [set(remedy.changes) for remedy in found]
+    assert {"law.ratios"} in keys
+    assert not any({"law.ratios", "law.ratios[1]"} <= one for one in keys)
+
+
+def test_what_is_listed_as_a_remedy_is_not_listed_as_tried(tmp_path: Path) -> None:
+    document = pair(CIRCLE, [40, 40], rack={"addendum": 0.5})
+    found = gearcam.remedies(job_of(document, tmp_path))
+    lines = [*remedy_lines(found)]
+    assert found.tried
+    assert not any("no remedy" in line for line in lines)
+    assert [line for line in lines if "(not enough: " in line]
