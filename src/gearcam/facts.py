@@ -1,10 +1,9 @@
-"""Facts: what is known of a result, as one tree of named quantities.
+"""Facts: the quantities of a result as one tree with names.
 
-Console, ``summary.json``, drawings and pictures are all told from this tree. A *group* is a mapping
-of names to facts and groups; a *fact* has a value and, where people see it, its meaning, the limit
-that it is held against and its place. The name says the unit, as the keys of design files do:
-``module_mm`` is in mm. A value is a number, a text, a list, a range ``{"min": ..., "max": ...}`` or
-``{"least": ..., "mean": ...}``.
+The console, ``summary.json``, drawings and pages use this tree. A *group* is a mapping of names to
+facts and groups; a *fact* has a value and, if people see it, a meaning, a limit and a place. Names
+end with their unit, as keys of design files do: ``module_mm`` is in mm. A value is a number, a
+text, a list, a range ``{"min": ..., "max": ...}`` or ``{"least": ..., "mean": ...}``.
 """
 
 from __future__ import annotations
@@ -29,35 +28,35 @@ _UNITS: Final = {
     "_rad": "rad",
     "_kg": "kg",
 }
-"""Units by the ends of names, the longer ones first."""
+"""Units by the ends of names, longer ends first."""
 
 _PER: Final = re.compile(r"(?:_(mm|deg))?_per_((?:rad|mm)\d?)$")
-"""Ends of names of what grows along an angle or a way: ``velocity_mm_per_rad``."""
+"""Ends of names of derivatives by an angle or a length: ``velocity_mm_per_rad``."""
 
 _LEAVES: Final = (("min", "max"), ("least", "mean"))
-"""Keys of a mapping that is one value."""
+"""Keys of mappings that are single values."""
 
 
 @dataclass(frozen=True)
 class Fact(Brief):
-    """A value with what a person should know of it.
+    """A value with its meaning, limit and place.
 
     Parameters
     ----------
     value : object
-        Number, text, list or range, in the unit that its name says.
+        Number, text, list or range, in the unit of its name.
     meaning : str
-        What it is, in the words of the field; by its name where left out.
+        Label in the terms of the field; default: from the name.
     at_least, at_most : float, optional
-        The limit that it is held against, in the same unit.
+        Limit of the value, in the same unit.
     place : str
-        Where: wheel, tooth, angle.
+        Wheel, tooth, or angle of the value.
     unit : str, optional
-        Where the name does not say it.
+        Unit, if the name has none.
     shown : bool
-        Whether it is one of the few that are always shown.
+        Whether it is one of the few facts that are always shown.
     noise : float
-        What is smaller is rounding: people are shown 0.
+        Smaller values are rounding noise and shown as 0.
     """
 
     value: Any
@@ -72,22 +71,22 @@ class Fact(Brief):
 
 @dataclass(frozen=True)
 class NamedFact:
-    """A fact with its name and its unit, as it is told.
+    """A fact with its name and unit, for display.
 
     Parameters
     ----------
     name : str
         Dotted, as in ``summary.json``: ``pair.module_mm``.
     value : object
-        In `unit`.
+        Value in `unit`.
     unit, meaning : str
-        As people write them.
+        Unit and label.
     limit : str
-        The limit that the value is held against, in words.
+        The limit as text: ``at least 1.1``.
     place : str
-        Where.
+        Wheel, tooth, or angle of the value.
     noise : float
-        What is smaller is rounding.
+        Smaller values are rounding noise.
     """
 
     name: str
@@ -105,7 +104,7 @@ class NamedFact:
 
 
 def text_of(value: Any, noise: float = 0.0) -> str:
-    """Return a `value` as people read it, numbers in few digits; what is below `noise` is 0."""
+    """Return a `value` as text, numbers with few digits; smaller than `noise` is 0."""
     if isinstance(value, Mapping):
         low, high = (text_of(end, noise) for end in value.values())
         if low == high:
@@ -119,17 +118,17 @@ def text_of(value: Any, noise: float = 0.0) -> str:
 
 
 class Facts(Mapping[str, Any]):
-    """A tree of facts; values and groups are found by their dotted names.
+    """A tree of facts; a mapping from dotted names to values and groups.
 
     Parameters
     ----------
     tree : mapping
-        Groups and lists of groups, facts, and bare values, which no person is told of by default.
-        What is None is left out.
+        Groups, lists of groups, facts, and plain values, which are not shown by default. None is
+        left out.
     headline : sequence of str
-        Names of the few quantities that stand first, on one line.
+        Names of the few quantities in the first line.
     title : str
-        What the machine is, before them.
+        Name of the machine, at the start of that line.
 
     Examples
     --------
@@ -149,7 +148,7 @@ class Facts(Mapping[str, Any]):
         self._title = title
 
     def with_group(self, name: str, group: Any) -> Facts:
-        """Return the facts with a `group` of that `name` more, or as they are where it is empty."""
+        """Return the facts with an additional `group` called `name`, unless it is empty."""
         return Facts({**self._tree, name: group}, self._headline, self._title) if group else self
 
     def __repr__(self) -> str:
@@ -167,7 +166,7 @@ class Facts(Mapping[str, Any]):
         return list(self)
 
     def lines(self) -> Iterator[str]:
-        """Yield the headline, then the quantities that are always shown, lined up."""
+        """Yield the headline, then an aligned table of the facts that are always shown."""
         if self.headline:
             yield ", ".join(self.headline)
         rows = [
@@ -178,14 +177,14 @@ class Facts(Mapping[str, Any]):
 
     @cached_property
     def headline(self) -> tuple[str, ...]:
-        """The machine in a few phrases: ``("module 2 mm", "teeth 20 : 20")``."""
+        """The main quantities as phrases: ``("module 2 mm", "teeth 20 : 20")``."""
         told = map(self.quantity, self._headline)
         phrases = (f"{one.meaning} {one.text}" for one in told)
         return (self._title, *phrases) if self._title else tuple(phrases)
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """The tree as JSON holds it: values without their words."""
+        """The tree with plain values, for JSON."""
         return _bare(self._tree)
 
     def __getitem__(self, name: str) -> Any:
@@ -201,7 +200,7 @@ class Facts(Mapping[str, Any]):
         return sum(1 for _ in self)
 
     def quantities(self) -> Iterator[NamedFact]:
-        """Yield every quantity in the order of the tree."""
+        """Yield all quantities in the order of the tree."""
         return (_quantity(name, fact) for name, fact in _leaves(self._tree))
 
     def shown(self) -> Iterator[NamedFact]:
@@ -216,7 +215,7 @@ class Facts(Mapping[str, Any]):
         yield from (one for one in self.shown() if one.name not in self._headline)
 
     def quantity(self, name: str) -> NamedFact:
-        """Return one quantity by its dotted `name`."""
+        """Return the quantity with a dotted `name`."""
         return next(one for one in self.quantities() if one.name == name)
 
 
@@ -234,7 +233,7 @@ def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _at(tree: Any, name: str) -> Any:
-    """Return what a dotted name leads to; a key may hold dots itself, as names of files do."""
+    """Return the value of a dotted name; a key may contain dots, as names of files do."""
     if isinstance(tree, list):
         step, _, rest = name.partition(".")
         return _at(tree[int(step)], rest) if rest else tree[int(step)]
@@ -253,7 +252,7 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     last = name.rpartition(".")[2]
     end, unit = _unit_of(last)
     unit = unit if fact.unit is None else fact.unit
-    unit = "" if isinstance(fact.value, str) else unit  # words about a number
+    unit = "" if isinstance(fact.value, str) else unit  # words instead of a number
     meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
@@ -261,7 +260,7 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
 
 
 def _unit_of(name: str) -> tuple[str, str]:
-    """Return the end of a name that says its unit, and that unit; both empty if there is none."""
+    """Return the end of a name that is its unit, and the unit; both empty without one."""
     rate = _PER.search(name)
     if rate:
         return rate[0], f"{rate[1] or 1}/{rate[2]}"
@@ -280,7 +279,7 @@ def _bare(value: Any) -> Any:
 
 
 def lined_up(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
-    """Yield the rows of a table with their columns lined up; empty columns are left out."""
+    """Yield the rows of a table with aligned columns; empty columns are left out."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True) if width)
@@ -288,5 +287,5 @@ def lined_up(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
 
 
 def extent(low: float, high: float, factor: float = 1) -> dict[str, float]:
-    """Return the range from `low` to `high`, both times `factor`."""
+    """Return the range from `low` to `high` as a value of a fact, both times `factor`."""
     return {"min": factor * low, "max": factor * high}

@@ -321,8 +321,8 @@ def test_marks_and_ends_of_lines_of_tables_are_no_fault() -> None:
         (f"pair.teeth[{'9' * 5000}]=1,2", "there is no such place"),
         ("pair.teeth[\u00b2]=1,2", "there is no such place"),
         ("pair.teeth[\u0663]=1,2", "there is no such place"),
-        ("[]=1,2", "is no key with its values"),
-        (".=1,2", "is no key with its values"),
+        ("[]=1,2", "is not KEY=VALUE"),
+        (".=1,2", "is not KEY=VALUE"),
     ],
 )
 @pytest.mark.usefixtures("desk")

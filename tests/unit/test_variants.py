@@ -48,8 +48,8 @@ def test_settings_are_read_as_files_hold_values(text: str, values: list[Any]) ->
 @pytest.mark.parametrize(
     ("texts", "words"),
     [
-        (["law.eccentricity"], "is no key with its values"),
-        (["=0.1"], "is no key with its values"),
+        (["law.eccentricity"], "is not KEY=VALUE"),
+        (["=0.1"], "is not KEY=VALUE"),
         (["law.eccentricity="], "has no value"),
         (["law.eccentricity=0.1,0.1"], "0.1 is listed twice"),
         (["law.eccentricity=0.1", "law.eccentricity=0.2"], "is set twice"),

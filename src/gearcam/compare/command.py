@@ -50,7 +50,7 @@ def compare(files: Sequence[str], settings: Sequence[str], output: str, *, every
     DesignError
         See `gearcam.compare.variants.variants_of`.
     WriteError
-        If the disk refuses.
+        If a file cannot be written.
     """
     variants = variants_of(files, settings_of(settings))
     for line in lines(variants, every=every):

@@ -1,4 +1,4 @@
-"""The page of variants: their curves in one chart each, their outlines laid over each other."""
+"""The page of variants: charts with the curves of all, and their outlines superimposed."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ PAGE: Final = "compare.html"
 """Name of the file."""
 
 _INKS: Final = 6
-"""Colours of lines that a page has."""
+"""Number of line colours of a page."""
 
 
 def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
-    """Return what a page shows of variants (see `gearcam.report.page`).
+    """Return the content of the page of variants (see `gearcam.report.page`).
 
     Parameters
     ----------
     variants : sequence of Variant
         At least one that can be made.
     title : str
-        What is compared.
+        Title of the page.
     """
     made = [one for one in variants if one.scene is not None]
     known = [(k, one.scene) for k, one in enumerate(made) if one.scene is not None]
@@ -65,9 +65,9 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
     Parameters
     ----------
     name : str
-        Of a chart of the first.
+        Name of a chart of the first variant.
     variants : sequence of Variant
-        That can be made; those whose chart of that name has other axes are left out.
+        Variants that can be made; those whose chart has different axes are left out.
 
     Returns
     -------
@@ -98,12 +98,12 @@ def _line(line: Line, label: str) -> Line:
 
 
 def _common(marks: Sequence[tuple[MarkedPlace, ...]]) -> tuple[MarkedPlace, ...]:
-    """Return the marked places that all variants have: those of one tell nothing of others."""
+    """Return the marked places that all variants share."""
     return tuple(one for one in marks[0] if all(one in others for others in marks))
 
 
 def _limits(limits: Sequence[tuple[str, Limit]]) -> tuple[Limit, ...]:
-    """Return each limit once, with its variant where another has another value."""
+    """Return each limit once; limits that differ are labelled with their variant."""
     values: dict[str, set[float]] = {}
     for _, limit in limits:
         values.setdefault(limit.label, set()).add(limit.value)
@@ -115,7 +115,7 @@ def _limits(limits: Sequence[tuple[str, Limit]]) -> tuple[Limit, ...]:
 
 
 def _together(scenes: Sequence[Scene]) -> list[Scene]:
-    """Return scenes of one driver over one cycle: the longest."""
+    """Return scenes over common places of the driver, those of the longest cycle."""
     if all(np.array_equal(one.places, scenes[0].places) for one in scenes):
         return list(scenes)
     start, end = min(one.places[0] for one in scenes), max(one.places[-1] for one in scenes)
@@ -124,10 +124,10 @@ def _together(scenes: Sequence[Scene]) -> list[Scene]:
 
 
 def _over(scene: Scene, places: np.ndarray) -> Scene:
-    """Return a scene over other places: what repeats goes on, what does not stays at its end."""
+    """Return a scene over other places: a closed one repeats, an open one stops at its end."""
     first, last = scene.places[0], scene.places[-1]
     cycles = np.floor((places - first) / (last - first)) if scene.closed else 0.0 * places
-    within = places - cycles * (last - first)  # interp stays at the end beyond it
+    within = places - cycles * (last - first)  # interp keeps the value at the end
 
     def moved(body: MovingBody) -> MovingBody:
         turn = np.interp(within, scene.places, body.turn) + cycles * (body.turn[-1] - body.turn[0])
@@ -138,9 +138,9 @@ def _over(scene: Scene, places: np.ndarray) -> Scene:
 
 
 def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any]:
-    """Return a scene with the bodies of all: the first as it is, of the others the outlines.
+    """Return a scene with the bodies of the first variant and the outlines of the others.
 
-    Their `numbers` among the variants choose the colours.
+    The `numbers` of the variants select the colours.
     """
     first = scenes[0]
     others = [

@@ -13,21 +13,21 @@ from gearcam.facts import NamedFact, lined_up
 _SEVERITIES = ("error", "warning", "note")
 
 _CELL = 40
-"""Letters of a value in a terminal's table; lists may have many more."""
+"""Largest length of a value in the printed table, characters."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Row(Brief):
-    """A fact of every variant.
+    """A row of the table: one fact of all variants.
 
     Parameters
     ----------
     name, meaning : str
-        As facts have them.
+        Name and label of the fact.
     cells : tuple of str
-        Values with their units, one for each variant that can be made; empty where one has none.
+        Values with units, one for each variant that can be made; empty without a value.
     limit : str
-        What they are held against, where that is the same for all.
+        The limit, if it is the same for all.
     """
 
     name: str
@@ -37,24 +37,24 @@ class Row(Brief):
 
     @property
     def differs(self) -> bool:
-        """Whether people read different values."""
+        """Whether the displayed values differ."""
         return len({*self.cells}) > 1
 
 
 def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]:
-    """Return the table.
+    """Return the table of variants.
 
     Parameters
     ----------
     variants : sequence of Variant
-        Those that can be made are told of.
+        Variants; those that cannot be made are left out.
     every : bool
-        All facts, not only those that people are always told.
+        Whether to include all facts, not only those that are always shown.
 
     Returns
     -------
     tuple of Row
-        Facts in their order, then the codes of findings by severity.
+        Facts in order, then the codes of findings by severity.
     """
     made = [one.result for one in variants if one.refusal is None]
     if not made:
@@ -92,14 +92,14 @@ def _cell(fact: NamedFact, common: str) -> str:
 
 
 def lines(variants: Sequence[Variant], *, every: bool = False) -> Iterator[str]:
-    """Yield what a terminal shows of variants.
+    """Yield the lines of the printed table of variants.
 
     Parameters
     ----------
     variants : sequence of Variant
         At least one that can be made.
     every : bool
-        All facts by name, those that differ marked, not only those that differ.
+        Whether to list all facts by name and mark those that differ, not only the latter.
     """
     labels = [one.label for one in variants if one.refusal is None]
     all_rows = rows(variants, every=every)

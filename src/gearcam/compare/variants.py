@@ -1,4 +1,4 @@
-"""Variants: designs that are held against each other, made of files and of settings."""
+"""Variants: designs to compare, from files and settings."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from gearcam.result import Result
 from gearcam.scenes import Scene
 
 MOST: Final = 12
-"""Variants that people can still see side by side."""
+"""Largest number of variants that a table can show."""
 
 _SET: Final = "--set"
 _FORM: Final = "KEY=VALUE,VALUE,... such as law.eccentricity=0.1,0.2 or pair.teeth=[20,20],[24,24]"
@@ -30,18 +30,18 @@ Settings = Mapping[str, Sequence[Any]]
 
 @dataclass(frozen=True, kw_only=True)
 class Variant(Brief):
-    """A design with what came of it.
+    """A design with its result.
 
     Parameters
     ----------
     label : str
-        What tells it from the others.
+        Label that distinguishes it from the others.
     result : Result
-        Its facts and findings are computed, if it can be made.
+        The result, with computed facts and findings if it can be made.
     scene : Scene, optional
-        None where it cannot be made.
+        The scene; None if it cannot be made.
     refusal : GearcamError, optional
-        Why it cannot.
+        The error if it cannot be made.
     """
 
     label: str
@@ -51,13 +51,13 @@ class Variant(Brief):
 
 
 def settings_of(texts: Sequence[str]) -> dict[str, list[Any]]:
-    """Return the settings that are typed as `texts`; `DesignError` for what cannot be read."""
+    """Return the settings in `texts` as typed; raise `DesignError` if one cannot be read."""
     made: dict[str, list[Any]] = {}
     for text in texts:
         key, equals, words = (part.strip() for part in text.partition("="))
         values = _values(words)
         if not (path_of(key) and equals):
-            raise _wrong(f"{show(text)} is no key with its values")
+            raise _wrong(f"{show(text)} is not KEY=VALUE,...")
         if key in made:
             raise _wrong(f"{key} is set twice", "all values of a key in one list")
         if not values:
@@ -70,7 +70,7 @@ def settings_of(texts: Sequence[str]) -> dict[str, list[Any]]:
 
 
 def _values(words: str) -> list[Any]:
-    """Return values as a design file would hold them; words may stand without quotes."""
+    """Return values as in a design file; words may be without quotes."""
     try:
         return tomllib.loads(f"values = [{words}]")["values"]
     except (ValueError, RecursionError):
@@ -89,15 +89,15 @@ def _wrong(message: str, allowed: str = _FORM) -> DesignError:
 
 
 def variants_of(files: Sequence[str], settings: Settings) -> tuple[Variant, ...]:
-    """Return the variants of some files.
+    """Return the variants of design files with settings.
 
     Parameters
     ----------
     files : sequence of str
         Design files of one kind.
     settings : mapping
-        Values by key; each file is made with each of them, with several keys with each of their
-        combinations.
+        Values by key; each file is combined with each value, or with each combination of values of
+        several keys.
 
     Returns
     -------
@@ -107,15 +107,15 @@ def variants_of(files: Sequence[str], settings: Settings) -> tuple[Variant, ...]
     Raises
     ------
     DesignError
-        If there are not so many, for everything that is wrong in a file or with a setting, and for
-        designs of different kinds.
+        If the number of variants is not allowed, the designs are of different kinds, or a file or
+        setting has mistakes.
     """
     count = len(files) * math.prod(map(len, settings.values()))
     if count < 2:
         allowed = f"two design files or more, or {_SET} with two values or more"
         raise DesignError([Problem("there is nothing to compare with", allowed=allowed)])
     if count > MOST:
-        message, allowed = f"{count} variants cannot be seen side by side", f"at most {MOST}"
+        message, allowed = f"{count} variants are too many to compare", f"at most {MOST}"
         raise DesignError([Problem(message, allowed=allowed)])
     designs = [load(file) for file in files]
     _demand_one_kind(designs)
@@ -146,7 +146,7 @@ def _demand_one_kind(designs: Sequence[Design]) -> None:
 
 
 def _combinations(settings: Settings) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield each combination of values, with its words."""
+    """Yield a label and values for each combination of values."""
     last = [str(path_of(key)[-1]) for key in settings]
     short = len({*last}) == len(last) and not any(word.isdigit() for word in last)
     names = last if short else list(settings)
@@ -156,7 +156,7 @@ def _combinations(settings: Settings) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def _changed(wanted: Sequence[tuple[Design, Mapping[str, Any]]]) -> list[Design]:
-    """Return designs with their changes; all that is wrong is told at once, and once."""
+    """Return the changed designs; raise `DesignError` with all mistakes, each once."""
     made, problems = [], {}
     for design, changes in wanted:
         try:

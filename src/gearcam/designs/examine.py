@@ -1,7 +1,8 @@
-"""Examining a design: everything that can be known to be wrong by reading, found in one go.
+"""Validation of designs: finds all mistakes that need no computation.
 
-A *document* is what a design file holds, as nested dictionaries; a design made in Python is turned
-into one, so that both meet the same rules. What passes comes back as parameter objects, mm and rad.
+A *document* is the content of a design file as nested dictionaries. A design made in Python is
+converted into one, so that both obey the same rules. Valid parts become parameter objects in mm and
+rad.
 """
 
 from __future__ import annotations
@@ -31,23 +32,23 @@ _NAME_RULE: Final = (
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _LONGEST_NAME: Final = 100
 _LONGEST_ENCODED: Final = 200
-"""Bytes of a name in UTF-8: disks take 255."""
+"""Largest length of a name in UTF-8, bytes; file systems allow 255."""
 
 
 def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
-    """Examine a document.
+    """Validate a document.
 
     Parameters
     ----------
     document : mapping
         As read from TOML.
     stem : str
-        The file's name without its ending: the design's name where the file gives none.
+        Name of the file without its extension: the default name of the design.
 
     Returns
     -------
     Examined
-        With the fields of the kind's design where there is no fault.
+        Faults, and the fields of the design for valid parts.
     """
     found = Examined()
     if is_deep(document):
@@ -73,7 +74,7 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
 
 
 def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
-    """Return the kind of a document; where it gives none that is known, the likeliest, if any."""
+    """Return the kind of a document; if it is missing or misspelt the likeliest one, or None."""
     name = document.get("kind")
     if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
         return KINDS[near]
@@ -84,9 +85,9 @@ def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
 
 
 def home_of(kind: DesignKind, key: str) -> str:
-    """Return where a key that its table does not know belongs, if the kind has it elsewhere."""
+    """Return a hint that says where a misplaced key belongs in this kind; else an empty text."""
     homes: dict[str, str] = {}
-    for title in kind.tables:  # of two tables the first is the likelier
+    for title in kind.tables:  # the first of several tables is the likeliest
         for known in kind.table(title).entries:
             homes.setdefault(known, f"this key belongs under [{title}]")
     homes |= dict.fromkeys(("kind", "name"), "this key belongs above all tables")
@@ -94,7 +95,7 @@ def home_of(kind: DesignKind, key: str) -> str:
 
 
 def _elsewhere(kind: DesignKind, key: str) -> str:
-    """Return where a key that its table does not know may belong, in any kind of design."""
+    """Return a hint that says where a misplaced key belongs in any kind of design."""
     return home_of(kind, key) or _near_home(kind, key, SURE) or _other_home(key)
 
 
@@ -167,13 +168,13 @@ def _examine_name(document: Mapping[str, Any], stem: str, found: Examined) -> No
 
 
 def _free_name(name: str) -> str:
-    """Return the entry of a file for a name like this one that names a folder, or nothing."""
+    """Return a line with a similar valid name, or an empty text."""
     free = re.sub(r"[^\w-]+", "_", name).strip("_-")
     return "" if name_fault(free) else f'name = "{free}"'
 
 
 def name_fault(name: Any) -> str:
-    """Return what keeps a design's name from naming a folder, or nothing."""
+    """Return why a name cannot be the name of a folder; empty if it can."""
     if not isinstance(name, str):
         return "is not text"
     if len(name) > _LONGEST_NAME:
@@ -216,30 +217,29 @@ def _examine_limits(document: Mapping[str, Any], kind: DesignKind, found: Examin
 def chosen(
     at: Path, raw: Mapping[str, Any], key: str, what: str, known: Mapping[str, Any], found: Examined
 ) -> tuple[str, bool]:
-    """Return the word of a key that names an entry of a registry.
+    """Return the value of a key that selects an entry of a registry.
 
     Parameters
     ----------
     at : tuple
-        Where its table stands.
+        Path of the table.
     raw : mapping
         The table.
     key : str
-        Such as ``type``.
+        The key, such as ``type``.
     what : str
-        What an entry is, with its article.
+        Word for an entry, with its article.
     known : mapping
         The registry.
     found : Examined
-        Gets the fault where there is no such word.
+        Receives a fault if there is no such entry.
 
     Returns
     -------
     word : str
-        As in the registry; where the table has another one the nearest, by which its other keys can
-        be checked, or nothing.
+        The name of the entry; for a misspelt one the nearest, to check its keys; else empty.
     right : bool
-        Whether the table has it.
+        Whether the value is correct.
     """
     word, rule = raw.get(key), quoted(known)
     if isinstance(word, str) and word in known:

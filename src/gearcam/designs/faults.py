@@ -1,4 +1,4 @@
-"""Faults of a design file in words: what was found, what is allowed, what was meant."""
+"""Faults of a design file as text: the value, what is allowed, and what may be meant."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gearcam.errors import Problem
 from gearcam.numerals import shown
 
 MISSING: Final = object()
-"""Value of a fault where nothing was found."""
+"""Value of a fault about a missing key."""
 
 _MEASURE = re.compile(r"[+-]?\d[\d.]*\s*([^\W\d_]+|°)")
 """A number with a unit."""
@@ -27,21 +27,21 @@ _SHOWN: Final = 60
 
 TOO_DEEP: Final = "lists or tables are nested too deep"
 DEEPEST: Final = 50
-"""Lists and tables within each other; designs need five."""
+"""Largest depth of nested lists and tables; designs need five."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """Something wrong at a path of the document, without file and line.
+    """A mistake at a path of the document, without file and line.
 
     Parameters
     ----------
     path : tuple
-        Keys and item numbers.
+        Keys and indices.
     message, allowed, hint : str
         As in `gearcam.errors.Problem`.
     value : object
-        What was found, or `MISSING`.
+        The rejected value, or `MISSING`.
     """
 
     path: Path
@@ -51,14 +51,14 @@ class Fault:
     hint: str = ""
 
     def problem(self, file: str, line: int | None = None) -> Problem:
-        """Return it as it is told of a `file`, at a `line` of it where that is known."""
+        """Return the problem for a `file`, at a `line` if known."""
         value = None if self.value is MISSING else self.value
-        value = show(value) if functions_of(value) else value  # a problem must pickle
+        value = show(value) if functions_of(value) else value  # a problem must be picklable
         return Problem(self.message, file, line, dotted(self.path), value, self.allowed, self.hint)
 
 
 def is_deep(document: Any) -> bool:
-    """Return whether lists and tables of a `document` are nested deeper than any design's."""
+    """Return whether the lists and tables of a `document` are nested deeper than `DEEPEST`."""
     level = [document]
     for _ in range(DEEPEST):
         below = (
@@ -66,13 +66,13 @@ def is_deep(document: Any) -> bool:
             for part in level
             if isinstance(part, Mapping | list | tuple)
         )
-        # each once, so that what holds itself several times does not grow
+        # each object once, so that a list that contains itself does not grow
         level = list({id(item): item for items in below for item in items}.values())
     return bool(level)
 
 
 def dotted(path: Path) -> str:
-    """Return a path as in messages: ``pair.teeth[1]``."""
+    """Return a path as text: ``pair.teeth[1]``."""
     text = ""
     for part in path:
         if isinstance(part, int):
@@ -84,7 +84,7 @@ def dotted(path: Path) -> str:
 
 
 def show(value: Any) -> str:
-    """Return a value as it would stand in a file, shortened."""
+    """Return a value as in a design file, shortened."""
     if isinstance(value, bool):
         text = "true" if value else "false"
     elif isinstance(value, str):
@@ -103,7 +103,7 @@ def show(value: Any) -> str:
 
 
 def unknown_word(word: str, what: str, known: Collection[str], key: str = "") -> Problem:
-    """Return the problem of a `word` that is none of those `known`, told as `what`, of a `key`."""
+    """Return the problem that a `word` of a `key` is not `known`; `what` is the message."""
     allowed, hint = ", ".join(known), did_you_mean(word, known)
     return Problem(f"{show(word)} {what}", key=key, allowed=allowed, hint=hint)
 
@@ -114,14 +114,14 @@ def description(entry: Key) -> str:
 
 
 def allowed(entry: Key, *, item: bool = False) -> str:
-    """Return what an entry may hold, in words.
+    """Return the values that an entry allows, as text.
 
     Parameters
     ----------
     entry : Key
         The key.
     item : bool
-        Words for one item of a list.
+        Whether to describe one item of its list.
     """
     if entry.length is None or item:
         return _single(entry)
@@ -161,7 +161,7 @@ def quoted(words: Iterable[str]) -> str:
 
 
 def bounds(entry: Key) -> str:
-    """Return the range of a value with its unit, in words; empty where there is none."""
+    """Return the range of a value with its unit, as text; empty without one."""
     made = entry.param
     unit = f" {made.quantity.unit}" if made.quantity.unit else ""
     low = f"from {shown(made.ge, 10)}" if made.ge is not None else ""
@@ -181,25 +181,25 @@ def bounds(entry: Key) -> str:
 
 
 def _upper(high: str, low: str) -> str:
-    """Say the upper bound so that it follows the lower one: "from 0 to below 1"."""
+    """Return the upper bound as it follows the lower one: "from 0 to below 1"."""
     if high.startswith("below") and low.startswith("from"):
         return f"to {high}"
     return f"up {high}" if low.startswith("above") and high.startswith("to") else high
 
 
 def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
-    """Return the fault of a value that its entry does not allow.
+    """Return the fault for a value that its entry does not allow.
 
     Parameters
     ----------
     path : tuple
-        Where.
+        Path of the value.
     value : object
-        What was found.
+        The rejected value.
     entry : Key
-        What is allowed.
+        Its key.
     item : bool
-        Whether the value is an item of the entry's list.
+        Whether the value is an item of a list.
     """
     rule = allowed(entry, item=item)
     as_list = entry.length is not None and not item
@@ -237,7 +237,7 @@ def _a_kind(entry: Key) -> str:
 
 
 def is_of(value: Any, base: type) -> bool:
-    """Return whether a `value` is of a `base` type as files mean it: 2 is a number, not true."""
+    """Return whether a `value` is of a `base` type: 2 is a float here, True is not an int."""
     if isinstance(value, bool) or base is bool:
         return base is bool and isinstance(value, bool)
     return isinstance(value, (int, float) if base is float else base)

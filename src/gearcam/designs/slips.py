@@ -1,4 +1,4 @@
-"""Misspelt words and keys of a design file: what was probably meant.
+"""Suggestions for misspelt words and keys of a design file.
 
 Keys are compared word by word in one spelling, the first word counting twice: ``bore_mm`` is nearer
 to ``bore_diameter_mm`` than to ``bore_flat_mm``, though it shares more letters with the latter.
@@ -18,31 +18,31 @@ from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH
 
 MOST_LISTED: Final = 100
-"""Problems of a file that are listed at once."""
+"""Largest number of problems of a file that are listed."""
 
 STRONG: Final = 0.75
-"""Likeness from which a key was meant rather than the same one of another table, and from which a
-word may begin with another letter, as it rarely does in a slip."""
+"""Similarity from which a key is suggested rather than the same key of another table, and from
+which words may differ in the first letter, which is rare in misspellings."""
 
 SURE: Final = 0.9
-"""Likeness from which a key of another table was meant, if its own table has none as likely."""
+"""Similarity from which a key of another table is suggested."""
 
 _WEAK: Final = 0.55
 _LEAST_WORD: Final = 0.8
-"""Likeness from which a key, and one of its words, may have been meant at all."""
+"""Least similarity of keys, and of their words, for a suggestion."""
 
 _ABBREVIATED: Final = 0.95
-"""Likeness of a word to its beginning, and of a radius to a diameter."""
+"""Similarity of a word to its abbreviation, and of a radius to a diameter."""
 
 _OTHER_UNIT: Final = 0.15
-"""What a unit of another quantity takes off the likeness."""
+"""Reduction of the similarity for a unit of another quantity."""
 
 _LONGEST: Final = 100
-"""Letters of a key; nothing is meant by a longer one."""
+"""Largest length of a key with suggestions, characters."""
 
 _EQUAL: Final = 1e-9
 _MOST: Final = 4
-"""Keys that are offered in place of one."""
+"""Largest number of keys suggested for one."""
 
 _UNITS: Final = {
     "mm": ("mm", 1.0), "cm": ("mm", 10.0), "m": ("mm", 1000.0), "um": ("mm", 0.001),
@@ -50,7 +50,7 @@ _UNITS: Final = {
     "deg": ("deg", 1.0), "degrees": ("deg", 1.0),
     "rad": ("deg", 57.29578), "radians": ("deg", 57.29578),
 }  # fmt: skip
-"""Endings of keys: the unit of files that they stand for, and how much of it one is."""
+"""Unit suffixes of keys: the corresponding unit in files, and the factor to it."""
 
 _ENDING: Final = re.compile(f"(.+?)(?:_({'|'.join(_UNITS)})(?:_per_rad2?)?)?", re.DOTALL)
 
@@ -60,17 +60,17 @@ _SPELLINGS: Final = {
 }  # fmt: skip
 _FILLERS: Final = frozenset({"number", "num", "no", "n", "of", "the", "size", "value"})
 _SIZES: Final = frozenset({"diameter", "radius", "width", "distance"})
-"""Words that are left out, or added, more easily than others."""
+"""Words that are often left out or added."""
 
 
 @lru_cache(maxsize=4096)
 def _letters(word: str, other: str) -> float:
-    """Return twice the letters that two words share over the letters of both."""
+    """Return the number of letters that two words share over their mean length."""
     return difflib.SequenceMatcher(None, word, other).ratio()
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """Return the known word that was probably meant, or nothing."""
+    """Return the most similar known word, or an empty text."""
     by_lower = {name.lower(): name for name in known}
     meant = word.lower()
     close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=STRONG)
@@ -79,27 +79,27 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
-    """Return the question with the nearest known word, or nothing."""
+    """Return the hint ``did you mean ...?`` with the nearest known word, or an empty text."""
     near = nearest(word, known) if isinstance(word, str) else ""
     return f"did you mean {near}?" if near else ""
 
 
 def meant_by(key: str, known: Mapping[str, Key], least: float = _WEAK) -> list[Key]:
-    """Return the keys that were probably meant by one that is not `known`.
+    """Return suggestions for a key that is not `known`.
 
     Parameters
     ----------
     key : str
-        As written.
+        The key as written.
     known : mapping of str to Key
         The keys of its table.
     least : float
-        Likeness from which a key counts, 0 to 1.
+        Least similarity, 0 to 1.
 
     Returns
     -------
     list of Key
-        The likeliest; several if they are equally likely, none if no key is likely enough.
+        The most similar keys; several if they are equally similar, none below `least`.
     """
     near = known.items() if len(key) <= _LONGEST else ()
     scores = {name: _likeness(key, entry) for name, entry in near}
@@ -109,7 +109,7 @@ def meant_by(key: str, known: Mapping[str, Key], least: float = _WEAK) -> list[K
 
 
 def _likeness(key: str, entry: Key) -> float:
-    """Return how likely a written `key` means an entry, 0 to 1."""
+    """Return the similarity of a written `key` to an entry, 0 to 1."""
     stem, unit = _split(key)
     quantity = entry.param.quantity
     names = {entry.key.removesuffix(quantity.suffix), entry.name}
@@ -119,13 +119,13 @@ def _likeness(key: str, entry: Key) -> float:
 
 
 def _split(key: str) -> tuple[str, str]:
-    """Return a key without its unit, and its unit or nothing."""
+    """Return a key without its unit suffix, and the suffix or an empty text."""
     match = _ENDING.fullmatch(key)
     return (match[1], match[2] or "") if match else (key, "")
 
 
 def _words(name: str) -> list[str]:
-    """Return the words of a key in one spelling, without those that say nothing."""
+    """Return the words of a key in standard spelling, without fillers."""
     words = [word for word in name.lower().split("_") if word]
     words = [_SPELLINGS.get(word, word) for word in words]
     return [word for word in words if word not in _FILLERS] or words
@@ -157,7 +157,7 @@ def _weighed(words: list[str]) -> list[tuple[str, float]]:
 
 
 def _alike(word: str, other: str) -> float:
-    """Return the likeness of two words of keys, 0 where they are different ones."""
+    """Return the similarity of two words of keys; 0 for different words."""
     if word == other:
         return 1.0
     if {word, other} == {"radius", "diameter"} or (len(word) > 2 and other.startswith(word)):
@@ -167,16 +167,16 @@ def _alike(word: str, other: str) -> float:
 
 
 def key_hint(key: str, known: Mapping[str, Key] | Iterable[str], least: float = _WEAK) -> str:
-    """Return the hint for an unknown key: the nearest keys, and what their unit is.
+    """Return the hint for an unknown key: the nearest keys, with a conversion of the unit.
 
     Parameters
     ----------
     key : str
-        As written.
+        The key as written.
     known : mapping of str to Key, or iterable of str
         The keys of its table.
     least : float
-        As of `meant_by`.
+        As for `meant_by`.
     """
     if not isinstance(known, Mapping):
         return did_you_mean(key, known)
@@ -204,12 +204,12 @@ def _unit_words(key: str, entry: Key) -> str:
 
 
 def misspelt(raw: Mapping[str, Any], known: Mapping[str, Key]) -> frozenset[str]:
-    """Return the known keys that unknown ones of a table `raw` probably mean."""
+    """Return the known keys that are suggested for unknown ones in a table `raw`."""
     unknown = islice((key for key in raw if key not in known), MOST_LISTED)
     return frozenset(entry.key for key in unknown for entry in meant_by(key, known))
 
 
 def hinted(unknown: Iterable[str], hint: Callable[[str], str]) -> Iterator[tuple[str, str]]:
-    """Yield `unknown` keys, each with its `hint`; the search takes a while, so not for all."""
+    """Yield `unknown` keys with their `hint`; only the first ones have hints, to save time."""
     for number, key in enumerate(unknown):
         yield key, hint(key) if number < MOST_LISTED else ""

@@ -1,4 +1,4 @@
-"""What is wrong in one table of a design file by itself: keys, types, ranges, counts."""
+"""Validation of a single table of a design file: keys, types, ranges, list lengths."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ def faults_of(
     at: Path = (),
     listed: Iterable[str] | None = None,
 ) -> Iterator[Fault]:
-    """Yield everything that is wrong in a table by itself.
+    """Yield all mistakes in a single table.
 
     Parameters
     ----------
     table : Table
-        What is allowed.
+        The table.
     raw : object
-        What the file holds under the table's name.
+        Its content in the file.
     home : callable
-        Gives the words that say where a key of another place belongs.
+        ``home(key)`` returns a hint that says where a misplaced key belongs.
     at : tuple
-        Where the table stands; under its title if left out.
+        Path of the table; its title by default.
     listed : iterable of str, optional
-        The keys that people are told of where one is unknown; all if left out.
+        The keys named in messages about unknown keys; all by default.
 
     Yields
     ------
     Fault
-        In the order of keys; one for each place.
+        At most one for each path, in the order of keys.
     """
     at = at or (table.title,)
     names = list(table.entries if listed is None else listed)
@@ -82,7 +82,7 @@ def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
 
 
 def _fits(key: Key, value: Any) -> bool:
-    """Whether a single value is what its key allows."""
+    """Return whether its key allows a single value."""
     if (key.literal and value == key.literal) or (key.param.function and functions_of(value)):
         return True
     if not is_of(value, key.base) or (key.param.choices and value not in key.param.choices):
