@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import re
 import shlex
+import sys
+import types
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,6 +16,8 @@ import pytest
 import gearcam
 from arch import rules
 from gearcam.cli import main
+from gearcam.laws.ratio.span import Lobes
+from gearcam.tolerances import DEFAULT
 
 PAGES = [rules.ROOT / "README.md", *sorted((rules.ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -141,3 +146,37 @@ def test_every_key_of_studies_is_described(tmp_path: Path) -> None:
     columns = (tmp_path / "ellipse" / "meshing.csv").read_text("ascii").split("\n")[0].split(",")
     assert [name for name in columns if f"`{name}`" not in SUMMARY] == []
     assert unknown({"accuracy": {}, "new_key": 1}, SUMMARY) == {"new_key"}  # a control
+
+
+@pytest.fixture
+def joint(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The law that docs/contributing.md adds, as a module that registers nothing."""
+    page = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    module = types.ModuleType("joint")
+    monkeypatch.setitem(sys.modules, "joint", module)
+    kept = block.replace("LAWS.register(", "ENTRY = (")
+    exec(compile(kept, "joint.py", "exec"), vars(module))
+    assert module.ENTRY.name == "universal-joint"
+    return module
+
+
+def test_the_law_of_the_contributing_page_is_that_of_the_joint(joint: Any) -> None:
+    """With cos(b) = c: ``tan(phi2) = c*tan(phi1)`` in each lobe."""
+    angle = math.radians(30.0)
+    c, lobes = math.cos(angle), Lobes(2, 3)
+    law = joint.UniversalJoint(shaft_angle=angle).build(lobes, DEFAULT)
+    for phi in (0.0, 0.3, 0.7):
+        assert float(law.phi2(phi)) == pytest.approx(
+            math.atan(c * math.tan(2 * phi)) / 3, abs=1e-14
+        )
+    (_, low), (_, high) = law.ratio_range
+    assert (low, high) == pytest.approx((2 * c / 3, 2 / (3 * c)), rel=1e-13)
+
+
+def test_the_pair_of_the_contributing_page_has_the_size_shown() -> None:
+    page = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
+    law = gearcam.laws.Formula(ratio="1/(1 - 0.25*sin(phi1)**2)")  # the joint's, up to a factor
+    pair = gearcam.PairSpec(teeth=(40, 40), module=2.0)
+    result = gearcam.build(gearcam.GearPairDesign(name="joint", law=law, pair=pair))
+    assert f"`centre distance {result.pair.center_distance:.4f} mm`" in page
