@@ -337,7 +337,7 @@ def test_flanks_alone_bound_the_contact_ratio_and_refuse_what_cannot_drive(folde
         subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))
         assert subject.contact_ratio <= contact_bound(*made.pair.toothings) + 1e-9
     tight = {"type": "phases", "knots_deg": [0, 60, 360], "ratios": [1.8, 0.2, 1.8]}
-    with pytest.raises(InfeasibleError, match="touch for less than a pitch") as caught:
+    with pytest.raises(InfeasibleError, match="in contact for less than one pitch") as caught:
         _ = job_of(pair(tight, [30, 30]), folder).pair
     assert caught.value.value is not None
     assert caught.value.value < 1.0 == caught.value.limit

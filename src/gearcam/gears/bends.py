@@ -1,4 +1,4 @@
-"""How exact the curvatures of centrodes are: what the ratio and its derivatives are off by.
+"""Error bounds of centrode curvatures, from the errors of the ratio and its derivatives.
 
 Depends on rolling.
 """
@@ -17,21 +17,21 @@ from gearcam.numeric.arrays import Array
 EPS: Final = float(np.finfo(float).eps)
 
 FEW: Final = 8.0
-"""Roundings, in units of the last place, that a number of a few operations has at most."""
+"""Largest rounding error of a number after a few operations, in units of the last place."""
 
 _STEP: Final = 1e-100
-"""Step into the complex plane by which a curvature is differentiated: nothing cancels there."""
+"""Complex step by which a curvature is differentiated: it has no cancellation."""
 
 
 class Bends(NamedTuple):
-    """How a centrode bends.
+    """Least convex radius and largest concave curvature of a centrode.
 
     Parameters
     ----------
     radius, radius_error : float, mm
-        Least convex radius; infinite where nothing is known to be convex.
+        Least convex radius; infinite where no part is known to be convex.
     concave, concave_error : float, 1/mm
-        Largest concave curvature; 0 where all is convex.
+        Largest concave curvature; 0 for a convex centrode.
     """
 
     radius: float
@@ -41,7 +41,7 @@ class Bends(NamedTuple):
 
 
 def systematic_errors(law: RatioLaw, phi: Array) -> Array:
-    """Return what the ratio and its first two derivatives are off by all along a piece.
+    """Return systematic errors of the ratio and its first two derivatives.
 
     Parameters
     ----------
@@ -53,9 +53,9 @@ def systematic_errors(law: RatioLaw, phi: Array) -> Array:
     Returns
     -------
     (3, n) array
-        A Python function's own, the rounding of knots and of the ratios about them, which counts
-        the more the nearer they are, and the miss of a law that was solved. What scatters from
-        place to place is not in it.
+        Sum of the expansion error of a Python function, the rounding of knots and of the ratios
+        around them (larger the closer the knots are), and the residual of a solved law. Random
+        scatter is not included.
     """
     knots, order = law.knots, np.arange(3)[:, None]
     piece = np.clip(np.searchsorted(knots, phi), 1, len(knots) - 1) - 1
@@ -68,9 +68,9 @@ def systematic_errors(law: RatioLaw, phi: Array) -> Array:
 def curvature_errors(track: Centrode) -> Array:
     """Return errors of a centrode's extremes of curvature, 1/mm.
 
-    What scatters beside them, and what the ratio is off by all along a piece. An extreme of a
-    smooth stretch is flat, so that its place counts by the square of what it misses, which is less
-    than rounding; one at a knot is taken there, wherever the knot is.
+    Scatter near them, plus the systematic error of the ratio. An extreme of a smooth stretch is
+    flat: the error of its place enters squared and is below rounding. An extreme at a knot is
+    evaluated at the knot itself.
     """
     rolling, number = track.rolling, track.wheel - 1
     law, (phi, kappa) = rolling.law, track.curvature_extremes
@@ -87,7 +87,7 @@ def curvature_errors(track: Centrode) -> Array:
 
 
 def bends_of(track: Centrode) -> Bends:
-    """Return how a centrode bends most to both sides, as far as it is known."""
+    """Return the extreme curvatures of a centrode, with their errors."""
     _, kappa = track.curvature_extremes
     errors = curvature_errors(track)
     low, high = _most_of(kappa, errors)
@@ -99,5 +99,5 @@ def bends_of(track: Centrode) -> Bends:
 
 
 def _most_of(values: Array, errors: Array) -> tuple[float, float]:
-    """Return what the largest of `values` with `errors` is at least and at most."""
+    """Return lower and upper bounds of the largest of `values`, given their `errors`."""
     return float((values - errors).max()), float((values + errors).max())

@@ -1,4 +1,4 @@
-"""What the flanks of a pair alone can drive, whatever cuts their roots."""
+"""Upper bound of the contact ratio of a pair's flanks, for any cutter."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _FAR = 1.5
-"""How far flanks are followed, over the reach of a rack's: in concave parts they go farther."""
+"""Range of reach searched, over the reach of a rack's flank: concave parts reach farther."""
 
 
 def contact_bound(first: Toothing, second: Toothing) -> float:
-    """Return what the contact ratio cannot exceed.
+    """Return an upper bound of the contact ratio.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
     Returns
     -------
     float
-        Smallest of any flank: from addendum curve to addendum curve, cusps taken off.
+        Smallest of all flanks: from addendum curve to addendum curve, less the parts beyond cusps.
     """
     sf, sigma = (values[first.whole_flanks] for values in first.flanks)
     (low, high), (low2, high2) = _reach(first, second, sf, sigma), _reach(second, first, sf, -sigma)
@@ -36,9 +36,9 @@ def contact_bound(first: Toothing, second: Toothing) -> float:
 
 
 def _reach(toothing: Toothing, mate: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array]:
-    """Reach of flanks from their cusps, or without end, to the addendum curve, mm.
+    """Reach of flanks, mm, from their cusps (-inf without one) to the addendum curve.
 
-    Below the pitch curve they go as far as the own cutter, above it as far as that of the mate.
+    Below the pitch curve their own cutter limits them, above it the cutter of the mate.
     """
     far = [_FAR * replace(one.cutter, kc=0.0).reach for one in (toothing, mate)]
     cusps = find_cusps(toothing, sf, sigma, -far[0], far[1])
@@ -47,7 +47,7 @@ def _reach(toothing: Toothing, mate: Toothing, sf: Array, sigma: Array) -> tuple
 
 
 def demand_cutters(first: Toothing, second: Toothing) -> None:
-    """Refuse wheels into whose concave parts no cutter fits.
+    """Refuse wheels whose concave parts no cutter fits.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
     Raises
     ------
     InfeasibleError
-        With what the contact ratio could be, where the flanks themselves could not drive either.
+        With the bound of the contact ratio where the flanks could not drive either.
     """
     for toothing in (first, second):
         cutter = toothing.cutter
@@ -67,16 +67,16 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
         least, bound = cutter.least_concave_radius, contact_bound(first, second)
         drives = bound >= 1.0
         raise InfeasibleError(
-            "a concave part of the centrode is too tight for these teeth: a pinion cutter that "
-            "fits into it has pointed teeth"
-            + ("" if drives else ", and the flanks themselves touch for less than a pitch"),
+            "a concave part of the centrode is too tight for this module: a pinion cutter small "
+            "enough to fit would have pointed teeth"
+            + ("" if drives else ", and each flank is in contact for less than one pitch"),
             where=f"wheel {toothing.wheel}",
             value=radius if drives else bound,
             limit=least if drives else 1.0,
             unit="mm" if drives else "",
-            nearest="these are the smallest concave radius, and the least for this module; the "
-            f"flanks by themselves allow a contact ratio of at most {shown(bound, 4)}"
+            nearest="the value is the smallest concave radius, the limit the least for this "
+            f"module; the flanks allow a contact ratio of at most {shown(bound, 4)}"
             if drives
-            else "this is the most that the contact ratio can be, whatever cuts the roots",
+            else "the value is the largest contact ratio that any cutter could give",
             more_teeth=least / radius,
         )

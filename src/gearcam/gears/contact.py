@@ -1,11 +1,11 @@
-"""Which flanks of a pair touch, and when: as the wheels are made, and as they are mounted.
+"""Which flanks of a pair are in contact, and when: as designed, and as mounted.
 
 A *side* is the `sigma` of the driver's flanks: -1 drives (the driver turns by ``-phi1``), +1 holds
-back. The pairs of flanks of a side are numbered without end by j, the driver's tooth counted from
-0 over all turns; an open pair has as many as lie in both blanks. How two flanks touch is told in
-`gearcam.gears.normals`.
+back. The pairs of flanks of a side are numbered by j, the driver's tooth counted from 0 over all
+turns; an open pair has only those that lie in both blanks. `gearcam.gears.normals` has the
+equations of contact.
 
-Refused: nothing. Where flanks cannot touch there is no pair. Depends on flanks and tracks.
+Nothing is refused: flanks that cannot touch form no pair. Depends on flanks and tracks.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from gearcam.gears.normals import Mounting, touch
 from gearcam.gears.track import WHEELS, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask
 
-if TYPE_CHECKING:  # what cuts wheels needs more than numpy
+if TYPE_CHECKING:  # generating wheels needs more than numpy
     from gearcam.gears.outline import Flanks
     from gearcam.gears.pair import Gear
 
 
 DRIVE, COAST = -1, 1
-"""Sides of the driver's teeth: the one that drives, and the one that holds back."""
+"""Sides of the driver's teeth: the driving side and the coast side."""
 
 _EVEN = 1e-12
-"""Difference of the places of flanks, in pitches, that is rounding."""
+"""Rounding of flank positions, in pitches."""
 
 _ONE = 1e-12
-"""Difference of the ends of arcs, in travels, that is rounding: they are one."""
+"""Ends of arcs closer than this, in travels, are the same: rounding."""
 
 _ALIKE = 1e-9
-"""Difference of contact ratios that is none: what symmetry makes equal rounding makes differ."""
+"""Contact ratios closer than this are equal: rounding separates what symmetry makes equal."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -47,19 +47,19 @@ class FlankPairs(Mounting):
     Parameters
     ----------
     flanks : (Flanks, Flanks)
-        The flanks of both wheels as made.
+        The finished flanks of both wheels.
     """
 
     flanks: tuple[Flanks, Flanks]
 
     @property
     def closed(self) -> bool:
-        """Whether both wheels go all around."""
+        """Whether both wheels are closed (toothed all around)."""
         return all(toothing.closed for toothing in self.toothings)
 
     @cached_property
     def travel(self) -> float:
-        """Driver angle of a turn, of an open pair's travel, or along a rack, rad."""
+        """Driver angle of a turn, or of the travel of an open pair or a rack, rad."""
         if self.toothings[0].closed == self.closed:
             return self.track.around
         return float(self.track.angle(self.toothings[1].length))
@@ -74,14 +74,14 @@ class FlankPairs(Mounting):
         return j if wheel == 1 or self.side > 0 else j - 1
 
     def _flank(self, wheel: Wheel, j: Ints) -> Ints:
-        """Return the places of flanks in the wheel's arrays; of those it has not, the nearest."""
+        """Return the indices of flanks in the wheel's arrays; the nearest for flanks it lacks."""
         toothing = self.toothings[wheel - 1]
         size, tooth = len(toothing.numbers), self._count(wheel, j)
         index = tooth % size if toothing.closed else tooth + 1 - toothing.numbers[0]
         return np.clip(index, 0, size - 1) + (0 if self.sigma(wheel) > 0 else size)
 
     def real(self, j: Ints) -> Mask:
-        """Return whether both wheels have the flanks of pairs `j` (see `FlankPairs`)."""
+        """Return whether the flanks of pairs `j` exist on both wheels (see `FlankPairs`)."""
         result = np.ones(np.shape(j), dtype=bool)
         for wheel, toothing in zip(WHEELS, self.toothings, strict=True):
             if not toothing.closed:
@@ -100,23 +100,23 @@ class FlankPairs(Mounting):
         return places + self._count(wheel, j) // toothing.teeth * (toothing.pitch * toothing.teeth)
 
     def reach(self, wheel: Wheel, j: Ints) -> tuple[Array, Array]:
-        """Return the reach w, mm, at root and tip of a wheel's flank (see `FlankPairs`)."""
+        """Return the reach w, mm, of a wheel's flank at root and tip (see `FlankPairs`)."""
         flanks, number = self.flanks[wheel - 1], self._flank(wheel, j)
         return flanks.lowest[number], flanks.highest[number]
 
     def separation(self, j: Ints) -> Array:
-        """Return how far the driven flanks of pairs `j` lie behind the driver's, mm: sf2 - sf1."""
+        """Return the separation sf2 - sf1 of the flanks of pairs `j`, mm."""
         return self.place(2, j) - self.place(1, j)
 
     @cached_property
     def even(self) -> bool:
-        """Whether all pairs of the side touch together."""
+        """Whether flanks are evenly spaced: pairs then touch together at any centre distance."""
         found = self.separation(self.numbers)
         return found.size == 0 or bool(np.ptp(found) <= _EVEN * self.pitch)
 
     @cached_property
     def numbers(self) -> Ints:
-        """Numbers j of the pairs of a turn of the driver, or of the travel of an open pair."""
+        """Numbers j of the pairs in one turn of the driver, or in the travel of an open pair."""
         if self.closed:
             return np.arange(self.toothings[0].teeth)
         open_one = next(toothing for toothing in self.toothings if not toothing.closed)
@@ -141,13 +141,13 @@ class FlankPairs(Mounting):
 
     @cached_property
     def _lobe(self) -> int:
-        """How many pairs there are until the same ones come again."""
+        """Number of pairs after which the contacts repeat."""
         one, two = self.toothings
         return math.gcd(one.teeth, two.teeth) if self.closed and self.even else len(self.numbers)
 
     @cached_property
     def arcs(self) -> tuple[Array, Array]:
-        """Driver angles, rad, between which the pairs `numbers` touch; start >= end for none."""
+        """Driver angles, rad, at start and end of contact of each pair; start >= end if none."""
         j, track = self.numbers[: self._lobe], self.track
         if j.size == 0:
             return np.empty(0), np.empty(0)
@@ -162,7 +162,7 @@ class FlankPairs(Mounting):
         first, last = np.maximum(low1, high2), np.minimum(high1, low2)
         if self.side == COAST:
             first, last = np.maximum(high1, low2), np.minimum(low1, high2)
-        # where an end is not found these teeth do not mesh at all
+        # where no end is found these teeth do not mesh
         lost = ~found.reshape(4, -1).all(axis=0)
         first[lost] = last[lost] = track.angle(self.place(1, j[lost]))
         again: Array = np.arange(len(self.numbers) // self._lobe, dtype=float)[:, None]
@@ -171,7 +171,7 @@ class FlankPairs(Mounting):
 
     @cached_property
     def contact_ratios(self) -> Array:
-        """Contact ratio of each of the pairs `numbers`: arc of contact over the pitch.
+        """Contact ratio of each of the pairs `numbers`: arc of contact over pitch.
 
         The driver's arc between the ends of tangency, along its pitch curve.
         """
@@ -180,16 +180,16 @@ class FlankPairs(Mounting):
 
     @property
     def weakest(self) -> int:
-        """Place of the smallest contact ratio, the first where only rounding tells them apart."""
+        """Index of the smallest contact ratio; the first of those equal but for rounding."""
         ratios = self.contact_ratios
         return int(np.argmax(ratios <= ratios.min() + _ALIKE))
 
     @cached_property
     def stretches(self) -> tuple[Array, Array, Ints]:
-        """Stretches of a turn of the driver, or of an open pair's travel, by the pairs that carry.
+        """Intervals of one turn of the driver, or of an open pair's travel, by pairs in contact.
 
-        Driver angles of start and end, rad, and how many pairs carry there: 1 on single-pair arcs,
-        2 on double-pair arcs, 0 where no flanks touch.
+        Driver angles of start and end, rad, and the number of pairs in contact: 1 on single-pair
+        arcs, 2 on double-pair arcs, 0 where no flanks touch.
         """
         turn = self.travel
         start, end = (edge[self.arcs[1] > self.arcs[0]] for edge in self.arcs)
@@ -208,7 +208,7 @@ class FlankPairs(Mounting):
         return begun - np.searchsorted(np.sort(end), phi1, side="left")
 
     def carrying(self, phi1: ArrayLike) -> Ints:
-        """Return how many pairs carry at phases `phi1`, rad."""
+        """Return the number of pairs in contact at phases `phi1`, rad."""
         phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
         start, end, pairs = self.stretches
         x = np.mod(phi1, end[-1]) if self.closed else phi1
@@ -225,7 +225,7 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
     side : {-1, +1}
         `DRIVE` or `COAST`.
     distance : float, mm, optional
-        As mounted (see `Mounting`); as designed if left out.
+        Mounted distance (see `Mounting`); by default the design distance.
 
     Returns
     -------

@@ -1,14 +1,14 @@
-"""How far tips may reach into the mate's roots.
+"""How far tip corners may reach into the mate's roots (trochoid interference).
 
 At the moment of contact the end of a flank lies on the mate's flank. Where the centrode is concave
-the corner goes on deeper beyond that moment, and may run into the mate's root. Such corners are
-found in steps: those that come near the depth of the mate's root, or where a wheel is cut by a
-small pinion, are followed. Most wheels have none.
+the corner moves deeper after that moment and may cut into the mate's root. The search narrows in
+steps: only corners that come near the depth of the mate's root, or of wheels cut by a small
+pinion, are traced. Most wheels have none.
 
 In an internal pair a corner counts only below the mate's centrode: above it tips meet tips, which
-shorter flanks do not cure (see `gearcam.gears.tip_pass`). There most corners that are followed are
-seen to stay where the mate's cutter was. Only what is left is followed against the mate's outline,
-which takes as long to make as all the rest.
+shorter flanks do not cure (see `gearcam.gears.tip_pass`). Most traced corners are proved to stay
+in the space that the mate's cutter swept. Only the rest are checked against the mate's outline,
+which takes as long to compute as everything else.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 _WINDOW, _WIDE = 1.25, 8.0
-"""Pitches of roll on either side of a flank over which its corner is followed; in tight parts."""
+"""Pitches of roll to either side of a flank over which its corner is traced; in tight parts."""
 
 _ROLLS = 48
-"""Rolls in a pitch."""
+"""Roll positions per pitch."""
 
 _APART = 8
-"""Rolls between those at which the cutter is looked at first: most points are settled by these."""
+"""Step of roll positions in the first pass against the cutter: it settles most points."""
 
 _HALVINGS = 14
 """A reach of three modules halved 14 times: 0.0002 modules."""
 
 _CAUTION = 0.4
-"""Share of the clearance within which a corner is followed."""
+"""Share of the clearance within which a corner is traced."""
 
 _ABOUT = 0.8
-"""Share of the way to the mate's form point from which a corner counts as there."""
+"""Share of the distance to the mate's form point at which a corner counts as having reached it."""
 
 _FEW = 24.0
-"""Teeth of a pinion cutter below which all corners are followed: it leaves much in the corners of a
-root, and in so tight a place tips crowd."""
+"""Teeth of a pinion cutter below which all corners are traced: it leaves large fillets in a root
+that has little space for tips."""
 
 
 def highest_corners(
@@ -68,21 +68,21 @@ def highest_corners(
     Parameters
     ----------
     toothing, mate : Toothing
-        The wheel and the other one.
+        The wheel and its mate.
     mate_outline : callable
-        Returns the outline of the other wheel, (n, 2), mm; called only where it is needed.
+        Returns the outline of the mate, (n, 2), mm; called only if needed.
     tolerance : float, mm
-        Its chord error. A corner only touches up to twice this depth: at contact it lies on the
-        mate's flank.
+        Its chord error. Penetration up to twice this counts as touching, since at contact a corner
+        lies on the mate's flank.
     flanks : (sf, sigma), two (n,) arrays, mm and 1
         Flanks.
     highest : (n,) array, mm
-        Reach of their ends as they would be.
+        Reach of their ends without this limit.
 
     Returns
     -------
     (n,) array, mm
-        `highest` where it does no harm.
+        `highest` where the corner does not interfere.
     """
     if toothing.track.concave.radius == math.inf and mate.cutter.kc == 0.0:
         return highest.copy()
@@ -117,9 +117,9 @@ def highest_corners(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Paths(Brief):
-    """Paths of corners past the mate, over the rolls of a window on either side of their flanks.
+    """Paths of corners in the mate's frame, over a window of roll on either side of their flanks.
 
-    The rolls of neighbouring teeth are a pitch apart, and are the same ones for most of their way.
+    Windows of neighbouring teeth are one pitch apart and share most of their roll positions.
 
     Parameters
     ----------
@@ -138,12 +138,12 @@ class _Paths(Brief):
 
     @cached_property
     def internal(self) -> bool:
-        """Whether one of the two is a ring."""
+        """Whether one of the two wheels is a ring."""
         return self.mate.track.ring or self.toothing.track.ring
 
     @cached_property
     def _tight(self) -> bool:
-        """Whether all corners are followed, and farther."""
+        """Whether all corners are traced, over a longer window."""
         teeth = min(self.toothing.cutter.teeth, self.mate.cutter.teeth)
         return teeth < _FEW and not self.internal
 
@@ -153,7 +153,7 @@ class _Paths(Brief):
 
     @cached_property
     def _phi(self) -> Array:
-        """Driver angles of the rolls of both sides, (2, k), rad."""
+        """Driver angles of the roll positions of both sides, (2, k), rad."""
         sf, window = self.sf.reshape(2, -1), self._window
         count = sf.shape[1] - 1
         rolls = np.arange(-window * _ROLLS, (window + count) * _ROLLS + 1) / _ROLLS
@@ -168,7 +168,7 @@ class _Paths(Brief):
         return self.mate.frames(self._phi, curved=False)
 
     def _about(self, values: NDArray[Any], some: Ints) -> NDArray[Any]:
-        """Return of what belongs to all rolls that of the rolls about some flanks, (n, rolls)."""
+        """Return the windows around some flanks, (n, rolls), of values given for all rolls."""
         count = round(2 * self._window * _ROLLS) + 1
         windows = sliding_window_view(values, count, axis=1)[:, ::_ROLLS]
         return windows[np.divmod(some, windows.shape[1])]
@@ -178,19 +178,19 @@ class _Paths(Brief):
         return self.toothing.track.angle(self.sf[some] - self.sigma[some] * reach)
 
     def _along(self, some: Ints, ends: Frames) -> Plane:
-        """Return where corners are from P, seen along T, at all rolls, (n, rolls), mm."""
+        """Return corners relative to the pitch point P, in units of T, (n, rolls), mm."""
         corner = self.toothing.flank_points(ends, self.sf[some], self.sigma[some])
         away = corner[:, None] - self._about(self._own.p, some)
         return np.conj(self._about(self._own.t, some)) * away
 
     def _path(self, some: Ints, ends: Array) -> Plane:
-        """Return points of corners in the mate's frame, (n, rolls), mm."""
+        """Return positions of corners in the mate's frame, (n, rolls), mm."""
         along = self._along(some, self.toothing.frames(ends, curved=False))
-        # both tangents are one, and the outward normals opposite
+        # the tangents coincide, and the outward normals are opposite
         return self._about(self._other.p, some) + self._about(self._other.t, some) * along
 
     def near(self, reach: Array) -> Ints:
-        """Return which corners are to be followed."""
+        """Return which corners need tracing."""
         every = np.arange(reach.size)
         if self._tight:
             return every
@@ -201,17 +201,17 @@ class _Paths(Brief):
         return np.flatnonzero(near)
 
     def _deep(self, some: Ints, ends: Frames) -> Mask:
-        """Whether corners go deep below the mate's pitch line, as on a straight rack, anywhere."""
+        """Return which corners get deep below the mate's pitch line, taken as straight."""
         deepest = self.mate.cutter.dedendum
         down = np.real(np.conj(self.toothing.turn) * self._along(some, ends))
         clearance = deepest - self.toothing.cutter.addendum
         return np.any(down > deepest - _CAUTION * clearance, axis=1)
 
     def _grazing(self, ends: Frames, reach: Array) -> Mask:
-        """Whether corners that end about the mate's form point run into the fillet beginning there.
+        """Return which corners near the mate's form point cut into the fillet that begins there.
 
-        There the corner's path touches the fillet. By Euler and Savary it bends less, and so goes
-        into the metal, where ``kappa - kc > sin(alpha)*rho/(l*(l - rho))`` with ``l =
+        There the corner's path is tangent to the fillet. By Euler and Savary it is less curved,
+        and so enters the metal, where ``kappa - kc > sin(alpha)*rho/(l*(l - rho))`` with ``l =
         reach*cos(alpha)``.
         """
         cutter = self.mate.cutter
@@ -220,14 +220,14 @@ class _Paths(Brief):
         return (reach > _ABOUT * cutter.reach) & (ends.kappa - cutter.kc > room)
 
     def doubtful(self, some: Ints, reach: Array) -> Ints:
-        """Return which of some corners are not seen to stay where the mate's cutter was.
+        """Return which of some corners are not proved to stay in the space the mate's cutter swept.
 
-        Most points of a path it takes at the roll at which the corner is in contact, the rest at
-        others. What it comes as near to as the tolerance, `hit` does not count either.
+        Most points of a path are settled by the cutter's position at the corner's contact, the
+        rest by other positions. Distances below the tolerance count as swept, as in `hit`.
         """
         mate, ends = self.mate, self._ends(some, reach)
         middle = (self.sf - self.sigma * self.toothing.half_tooth)[some]
-        if not mate.closed:  # beyond its teeth nothing is cut
+        if not mate.closed:  # the cutter does not move beyond the teeth of an open wheel
             first, last = mate.tooth_places[[0, -1]]
             middle = np.where((first < middle) & (middle < last), middle, math.nan)
         path = self._path(some, ends)
@@ -247,13 +247,13 @@ class _Paths(Brief):
         return some[np.unique(corner)]
 
     def hit(self, some: Ints, reach: Array) -> Mask:
-        """Whether some corners go into the metal of the mate's outline."""
+        """Return which corners penetrate the mate's outline."""
         import shapely
 
         path = self._path(some, self._ends(some, reach))
         metal = shapely.contains_xy(self._body, path.real, path.imag) != self.mate.track.hollow
         if not (self.mate.closed or self.toothing.closed):
-            # beyond its travel an open pair does not go, were it only into the mate's other end
+            # an open pair stops at the end of its travel; beyond it only its other end is hit
             s = self._about(self._other.s, some)
             metal &= (s >= 0.0) & (s <= self.mate.length)
         if self.internal:
@@ -262,7 +262,7 @@ class _Paths(Brief):
 
     @cached_property
     def _body(self) -> Polygon:
-        """The mate's outline, its metal less by what corners may touch."""
+        """The mate's outline, its metal shrunk by the depth that counts as touching."""
         import shapely
 
         touched = 2.0 * self.tolerance

@@ -1,9 +1,8 @@
-"""The cutter of a wheel: the rack, or where the centrode is concave a pinion conjugate to it.
+"""The cutter of a wheel: a rack, or for a concave centrode a pinion conjugate to that rack.
 
-No straight rack can cut a concave centrode: rolled along it, it erases flank. A pinion cutter
-(shaper) of pitch curvature ``kc > max(-kappa)`` can, and cuts the same flanks, since it is
-conjugate to the rack. The rack is the pinion with ``kc = 0``, and every formula here has that
-limit.
+A straight rack cannot cut a concave centrode: it would remove parts of the flanks. A pinion cutter
+(shaper) of pitch curvature ``kc > max(-kappa)`` can, and it cuts the same flanks since it is
+conjugate to the rack. The rack is the pinion with ``kc = 0``; every formula here has that limit.
 """
 
 from __future__ import annotations
@@ -22,34 +21,34 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import largest_fitting
 
 _CONCAVE_MARGIN = 1.15
-"""kc over the sharpest concave curvature: enough for clearance, and still a large cutter."""
+"""kc over the largest concave curvature: leaves clearance, with a cutter as large as possible."""
 
 _FLAT = 1e-9
 """Curvature times module below which a centrode counts as straight, not concave (rounding)."""
 
 _HALVINGS = 60
-"""Of a length or curvature in search of the largest that fits: to rounding."""
+"""Relative tolerance, at rounding, in the search for the largest size that fits."""
 
 _LAND = 1e-9
-"""Share of half a space by which a cutter's tooth may be pointed: rounding of the search for it."""
+"""Share of half a space by which a cutter's tooth may miss its land: rounding of the search."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cutter(Brief):
-    """A cutter in mm, made by `choose_cutter`.
+    """Dimensions of a cutter, mm (see `choose_cutter`).
 
     Parameters
     ----------
     alpha : float, rad
         Pressure angle.
     addendum, dedendum, tip_radius : float, mm
-        Tooth height of the wheel above, depth below the pitch curve, and rounding of the cutter's
-        tip.
+        Height of the wheel's teeth above the pitch curve, depth below it, and tip radius of the
+        cutter.
     kc : float, 1/mm
         Curvature of the cutter's pitch circle; 0 for the rack.
     half_space : float, mm
-        Half the width of a space on the pitch curve: pi*m/4, less what the profile shift adds to
-        the teeth, more what the backlash takes from them.
+        Half the width of a space on the pitch curve: pi*m/4, less by the profile shift, more by
+        the backlash.
     pitch : float, mm
         pi*m.
     """
@@ -69,7 +68,7 @@ class Cutter(Brief):
 
     @property
     def teeth(self) -> float:
-        """How many teeth the pinion would have all around; infinite for the rack."""
+        """Number of teeth of the pinion; infinite for the rack."""
         return 2.0 * math.pi / (self.kc * self.pitch) if self.kc > 0.0 else math.inf
 
     @property
@@ -107,12 +106,12 @@ class Cutter(Brief):
         return edge + rise / kc
 
     def gap(self, x: Array, depth: Array, middle: Array) -> Array:
-        """Return how far points are from a tooth of the cutter, not positive inside it.
+        """Return distances of points from a tooth of the cutter, not positive inside it.
 
         Parameters
         ----------
         x, depth : (n,) arrays, mm
-            Along the common tangent from the pitch point, and below it.
+            Coordinates from the pitch point: along the common tangent, and below it.
         middle : (n,) array, mm
             Arc length from the pitch point to the middle of the tooth.
 
@@ -123,11 +122,11 @@ class Cutter(Brief):
 
         Notes
         -----
-        Involutes of one base circle are parallels: a point aside of a flank by an arc v of the
-        pitch circle is ``v*cos(alpha)`` away, as with the rack.
+        Involutes of one base circle are parallel curves: a point offset from a flank by an arc v
+        of the pitch circle is ``v*cos(alpha)`` away, as with the rack.
         """
         kc, slope, tip = self.kc, math.tan(self.alpha), self.offset - self.half_space
-        # across and along: from the centre of the tip's arc
+        # components from the centre of the tip arc
         if kc * self.half_space < _FLAT:
             down, aside, lean = depth, np.abs(x - middle), self.alpha
             narrower = down * slope
@@ -151,12 +150,12 @@ class Cutter(Brief):
 
     @property
     def fits(self) -> bool:
-        """Whether a tooth of it is as deep as the dedendum before it is pointed."""
+        """Whether its teeth reach the depth of the dedendum before they become pointed."""
         return self.offset <= self.half_space * (1.0 + _LAND)
 
     @cached_property
     def least_concave_radius(self) -> float:
-        """Smallest concave radius that leaves a sharp-cornered pinion's tooth a land, mm."""
+        """Smallest concave radius, mm, for which a sharp-cornered pinion's teeth keep a land."""
         most = largest_fitting(
             lambda kc: replace(self, kc=kc).offset <= self.half_space, self.kc, _HALVINGS
         )
@@ -184,14 +183,14 @@ def choose_cutter(
     concave_curvature : float, 1/mm
         Largest ``-kappa`` of the centrode; not positive for a convex one.
     pinions : sequence of float, 1/mm
-        Curvatures of pinions that a concave one may be cut by, of which the first counts whose
-        teeth fit, or the last; if left out, 1.15 times its own.
+        Curvatures of candidate pinions for a concave centrode: the first whose teeth fit is taken,
+        or else the last. By default 1.15 times the concave curvature.
     shift : float
         Profile shift of this wheel, in modules.
     backlash : float, mm
         Along the pitch curve; each wheel gives half of it.
     clearance : float, mm
-        What is taken off the toothed edge, along its normal: a cutter larger all around by it.
+        Material removed from the toothed edge along its normal, as by a cutter larger by that.
 
     Returns
     -------
@@ -219,7 +218,7 @@ def choose_cutter(
 def ring_pinions(
     concave_curvature: float, mate_curvature: float, module: float, teeth: float | None
 ) -> tuple[float, ...]:
-    """Return the curvatures of the pinion cutters of a ring, the one that is wanted first.
+    """Return the curvatures of pinion cutters for a ring, the preferred one first.
 
     Parameters
     ----------
@@ -230,19 +229,19 @@ def ring_pinions(
     module : float, mm
         Module.
     teeth : float or None
-        Teeth of the cutter, where they are given.
+        Number of teeth of the cutter, if given.
 
     Returns
     -------
     tuple of float, 1/mm
-        1.15 times the ring's, but at least the mate's: a cutter so large leaves fillets that the
-        mate's tips stay clear of, and gets out of the ring without cutting its tips. Where its
-        teeth are pointed, 1.15 times the ring's may do.
+        1.15 times the ring's, but at least the mate's: then the mate's tips clear the fillets, and
+        the cutter can be withdrawn without cutting the ring's tips. Second, in case its teeth are
+        pointed, 1.15 times the ring's.
 
     Raises
     ------
     InfeasibleError
-        If a cutter of so many teeth does not fit into the ring.
+        If a cutter with the given number of teeth does not fit into the ring.
     """
     if teeth is None:
         least = _CONCAVE_MARGIN * concave_curvature
@@ -250,11 +249,11 @@ def ring_pinions(
     most = 2.0 / (module * concave_curvature)
     if not teeth < most:
         raise InfeasibleError(
-            "the pinion cutter is as large as the ring where that is narrowest",
+            "the pinion cutter is too large for the ring where the ring is narrowest",
             where="ring.cutter_teeth",
             value=teeth,
             limit=most,
-            nearest="the limit is the cutter that just fits",
+            nearest="the limit is the number of teeth that just fits",
             ways=(Way(near={"ring.cutter_teeth": most / _CONCAVE_MARGIN}),),
             more_teeth=teeth / most,
         )
@@ -262,15 +261,15 @@ def ring_pinions(
 
 
 def widened(cutter: Cutter, by: float) -> Cutter:
-    """Return a cutter that is larger all around, and so cuts a parallel of what `cutter` cuts.
+    """Return a cutter enlarged all around: it cuts a parallel of the outline that `cutter` cuts.
 
     Parameters
     ----------
     cutter : Cutter
         The cutter.
     by : float, mm
-        How much, along the normal of its edge. Its flanks move by ``by/cos(alpha)`` along the pitch
-        line, and the arcs of its tips keep their centres.
+        Enlargement along the normal of its edge. The flanks move by ``by/cos(alpha)`` along the
+        pitch line; the tip arcs keep their centres.
 
     Returns
     -------
@@ -286,7 +285,7 @@ def widened(cutter: Cutter, by: float) -> Cutter:
 
 
 def _blunt(cutter: Cutter) -> Cutter:
-    """Round the tip less where the pinion's narrower tooth has no land else; 0 at the least."""
+    """Reduce the tip radius, to 0 at least, until the pinion's narrower tooth has a land."""
     if cutter.offset <= cutter.half_space:
         return cutter
     most = largest_fitting(

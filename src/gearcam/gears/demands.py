@@ -1,6 +1,6 @@
-"""What basic rack, profile shift and backlash must leave: teeth with lands, roots and addenda.
+"""Limits of basic rack, profile shift, backlash and clearance: teeth keep lands, roots and addenda.
 
-What a ring asks for: more teeth than its wheel has, and metal outside its roots.
+Limits of a ring: more teeth than its wheel, and metal outside its roots.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
 from gearcam.numerals import rounded_down, shown
 
 _TIP_PART = 0.95
-"""Largest tip radius over the dedendum: at 1 the arc's centre is on the pitch line: no fillet."""
+"""Largest tip radius over the dedendum: at 1 the arc's centre is on the pitch line, no fillet."""
 
 _LEAST_ADDENDUM = 0.1
 """Smallest addendum that a profile shift may leave, in modules."""
@@ -22,24 +22,24 @@ _MOST_BACKLASH = 2.0
 """Largest backlash over half the thickness of the thinner teeth: half of them is left."""
 
 _SHARE = 0.98
-"""Share of the room that a default takes which yields: a land is left."""
+"""Share of the available space that a reduced default takes, so that a land is left."""
 
 _SHALLOW = 0.8
-"""Addendum over dedendum of the common rack, where one of them follows the other."""
+"""Addendum over dedendum of the common rack, where one is derived from the other."""
 
 _ROUNDING = 1e-12
-"""What is rounding of a limit: in modules, and as a share of it."""
+"""Rounding of a limit: in modules, and relative."""
 
 
 def settle_rack(asked: Rack, x: float) -> BasicRack:
-    """Return the basic rack: what is given as given, defaults where they fit, else nearest to them.
+    """Return the basic rack: given values as given, defaults reduced where they do not fit.
 
-    The tip radius yields first, then the dedendum, the addendum last.
+    The tip radius is reduced first, then the dedendum, then the addendum.
 
     Parameters
     ----------
     asked : Rack
-        As in the design.
+        Given values of the design.
     x : float
         Profile shift, in modules.
 
@@ -73,26 +73,26 @@ def settle_rack(asked: Rack, x: float) -> BasicRack:
     if tip is None:
         tip = min(usual.tip_radius, max(0.0, _SHARE * largest))
     made = replace(made, tip_radius=tip)
-    # a dedendum that is not given could yield as far as the tip radius asks
+    # a default dedendum could be reduced as far as the tip radius needs
     free = asked.dedendum is None
     _demand_rack(made, _widest_tip(asked.pressure_angle) if free else _largest_tip(made))
     return made
 
 
 def _deepest(alpha: float, tip_radius: float) -> float:
-    """Dedendum at which a rack's tooth is pointed: ``rho/cos + (hf - rho)*tan = pi/4``."""
+    """Dedendum at which a rack's tooth becomes pointed: ``rho/cos + (hf - rho)*tan = pi/4``."""
     return tip_radius + (0.25 * math.pi - tip_radius / math.cos(alpha)) / math.tan(alpha)
 
 
 def _largest_tip(rack: BasicRack) -> float:
-    """Largest tip radius that leaves a rack's tooth a land; negative where nothing does."""
+    """Largest tip radius that leaves a rack's tooth a land; negative if none does."""
     alpha, depth = rack.pressure_angle, rack.dedendum
     room = 0.25 * math.pi - depth * math.tan(alpha)
     return min(room / (1.0 / math.cos(alpha) - math.tan(alpha)), _TIP_PART * depth)
 
 
 def _widest_tip(alpha: float) -> float:
-    """Largest tip radius of a rack whose dedendum is the nearest that leaves it a land."""
+    """Largest tip radius of a rack with the nearest dedendum that leaves its teeth a land."""
     part, tangent = _SHARE * _TIP_PART, math.tan(alpha)
     return part * 0.25 * math.pi / (tangent + part * (1.0 / math.cos(alpha) - tangent))
 
@@ -103,7 +103,7 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
     angle = f"a pressure angle of {shown(math.degrees(rack.pressure_angle))} deg"
     if depth < rack.addendum:
         raise InfeasibleError(
-            "the dedendum is less than the addendum: teeth would run into the mate's root",
+            "the dedendum is less than the addendum: teeth would hit the mate's roots",
             where="rack.dedendum",
             value=depth,
             limit=rack.addendum,
@@ -116,11 +116,11 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
     if _largest_tip(rack) < 0.0:
         deepest = _deepest(rack.pressure_angle, 0.0)
         raise InfeasibleError(
-            "the rack's tooth is pointed before it is as deep as the dedendum",
+            "the rack's tooth becomes pointed before it reaches the dedendum",
             where="rack.dedendum",
             value=depth,
             limit=deepest,
-            nearest=f"the limit is where its flanks meet, at {angle}",
+            nearest=f"the limit is the depth where its flanks meet, at {angle}",
             ways=(
                 Way(near={"rack.dedendum": _short(0.9 * deepest)}),
                 Way(near={"rack.addendum": _short(0.7 * deepest)}),
@@ -128,7 +128,7 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
         )
     if rack.tip_radius > largest * (1.0 + _ROUNDING):
         raise InfeasibleError(
-            "the rack's tip radius leaves its tooth no land",
+            "the tip radius is too large: it leaves the rack's teeth no land",
             where="rack.tip_radius",
             value=rack.tip_radius,
             limit=largest,
@@ -138,7 +138,7 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
 
 
 def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
-    """Refuse a profile shift or a backlash that leaves a wheel without teeth or roots.
+    """Refuse a profile shift or backlash that leaves a wheel without teeth or roots.
 
     Parameters
     ----------
@@ -168,12 +168,12 @@ def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
     most = _MOST_BACKLASH * thinnest * module
     if spec.backlash > most:
         raise InfeasibleError(
-            "so much backlash leaves no teeth",
+            "the backlash is too large: it leaves no teeth",
             where="pair.backlash_mm",
             value=spec.backlash,
             limit=most,
             unit="mm",
-            nearest=f"the limit is that of a module of {shown(module)} mm",
+            nearest=f"the limit is for a module of {shown(module)} mm",
             ways=(Way(near={"pair.backlash_mm": most}, far={"pair.backlash_mm": 0.0}),),
         )
 
@@ -192,7 +192,7 @@ def demand_clearance(
     module : float, mm
         Module.
     finish : (Finish, Finish)
-        What is taken off the edges of both wheels' teeth.
+        Clearance and rounding of both wheels' teeth.
 
     Raises
     ------
@@ -202,17 +202,17 @@ def demand_clearance(
     alpha = rack.pressure_angle
     for number, (wheel, shift) in enumerate(zip(finish, (spec.x, -spec.x), strict=True)):
         half = (0.25 * math.pi + shift * math.tan(alpha)) * module - 0.25 * spec.backlash
-        # `demand_shift` leaves the least addendum but for rounding
+        # `demand_shift` has left the least addendum, but for rounding
         height = max(0.0, rack.addendum + shift - _LEAST_ADDENDUM) * module
         most = min(0.5 * half * math.cos(alpha), height)
         if wheel.clearance > most:
             raise InfeasibleError(
-                "so much clearance leaves no teeth",
+                "the clearance is too large: it leaves no teeth",
                 where=f"blank.clearance_mm[{number}]",
                 value=wheel.clearance,
                 limit=most,
                 unit="mm",
-                nearest=f"the limit is that of a module of {shown(module)} mm",
+                nearest=f"the limit is for a module of {shown(module)} mm",
                 ways=(
                     Way(
                         near={f"blank.clearance_mm[{number}]": most},
@@ -223,7 +223,7 @@ def demand_clearance(
 
 
 def demand_ring(spec: PairSpec) -> None:
-    """Refuse a ring that goes all around without more teeth than its wheel.
+    """Refuse a closed ring that does not have more teeth than its wheel.
 
     Parameters
     ----------
@@ -233,19 +233,19 @@ def demand_ring(spec: PairSpec) -> None:
     Raises
     ------
     InfeasibleError
-        With what to give instead.
+        With the tooth counts to use instead.
     """
     z1, z2 = spec.teeth
     if spec.type != "internal" or z2 > z1:
         return
     if z2 == z1:
-        what, counts = "equal tooth counts have no internal pair", [z1, 2 * z1]
-        nearest = "a ring has more teeth than its wheel"
+        what, counts = "an internal pair cannot have equal tooth counts", [z1, 2 * z1]
+        nearest = "a ring needs more teeth than its wheel"
     else:
         what, counts = "the ring has fewer teeth than its wheel", [z2, z1]
         nearest = (
-            f"give the ring second, teeth = {counts}, with the law's inverse: where the ratio is i "
-            "at phi1 and phi2 it is 1/i at phi2 and phi1 then"
+            f"the ring must be wheel 2: teeth = {counts} with the inverse law, whose ratio is 1/i "
+            "at driver angle phi2 where this law has i at driven angle phi2"
         )
     raise InfeasibleError(
         what,
@@ -258,18 +258,18 @@ def demand_ring(spec: PairSpec) -> None:
 
 
 def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> None:
-    """Refuse an outer diameter that leaves no metal outside the roots of a ring.
+    """Refuse an outer diameter that leaves no metal outside a ring's roots.
 
     Parameters
     ----------
     ring : RingSpec
-        What is asked for.
+        Given values of the design.
     roots : float, mm
         Largest radius of its teeth.
     module : float, mm
         Module.
     limit : float, mm
-        Rim that leaves no finding.
+        Least rim without a finding.
 
     Raises
     ------
@@ -278,17 +278,17 @@ def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> Non
     """
     if ring.least_rim(roots, module) <= 0.0:
         raise InfeasibleError(
-            "the outside of the ring reaches the roots of the teeth",
+            "the outer diameter of the ring does not clear the roots of its teeth",
             where="wheel 2, ring.outer_diameter_mm",
             value=ring.outer_diameter,
             limit=2.0 * roots,
             unit="mm",
-            nearest="the limit is the circle around the roots; "
+            nearest="the limit is the circle through the deepest root; "
             f"{shown(2.0 * (roots + limit))} mm leave a rim of {shown(limit)} mm",
             ways=(Way(near={"ring.outer_diameter_mm": 2.0 * (roots + limit)}),),
         )
 
 
 def _short(size: float) -> float:
-    """Return a size that need not be exact in the digits that people type."""
+    """Return a size rounded to the digits that people type."""
     return float(rounded_down(size, 4))

@@ -1,8 +1,8 @@
-"""The ends of open wheels: where their teeth stop, and the body that holds them.
+"""The ends of open wheels: where their teeth stop, and the body that carries them.
 
 The blank ends half a pitch beyond both ends of the centrode: on wheel 1 in the middle of a space,
-on wheel 2 in the middle of a tooth. From there it goes along the normal, below the roots, then
-straight to a hub around the shaft; of a ring, whose metal is outside, to an arc around its teeth.
+on wheel 2 in the middle of a tooth. From there the outline follows the normal to below the roots,
+then runs straight to a hub around the shaft; a ring, whose metal is outside, has an outer arc.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ _BELOW = 1.0
 """Depth of the end faces below the roots, in modules."""
 
 _GAP = 0.1
-"""Angle, rad, that the ends of a wheel leave free between them."""
+"""Least free angle between the two ends of a wheel, rad."""
 
 _WHOLE = 350.0
-"""Travel of a wheel, deg, beyond which no tooth count helps."""
+"""Travel of a wheel, deg, above which no tooth count helps."""
 
 _MORE = 1.001
-"""Times the least rim or diameter that is named as one that does: clear of rounding. Over it, the
-same of the largest travel."""
+"""Factor, clear of rounding, by which a named remedy exceeds the least rim or diameter, or stays
+below the largest travel."""
 
 _HUB = 0.6
-"""Radius of the hub over the smallest radius that the body has room for."""
+"""Radius of the hub over the smallest root radius."""
 
 
 def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
@@ -48,14 +48,14 @@ def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
     toothing : Toothing
         The wheel.
     rows : Rows
-        All curves from the first tooth formed to the last.
+        All curves from the first to the last tooth formed.
     tips : TipEnds
         Ends of its flanks.
 
     Returns
     -------
     Rows
-        From half a pitch before the centrode to half a pitch behind it.
+        From half a pitch before the start of the centrode to half a pitch after its end.
     """
     start, end = toothing.track.angle(toothing.ends)
     if toothing.wheel == 1:
@@ -84,7 +84,7 @@ def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
 def _shortened(rows: Rows, start: float, end: float) -> Rows:
     """Begin the first row, a land or tip, at `start` and end the last at `end`.
 
-    Where a space has lost its land its fillets meet instead, and nothing is cut.
+    A space that has lost its land is left uncut: its fillets already meet there.
     """
     made = deepcopy(rows)
     made.corner[0] = True
@@ -101,7 +101,7 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
 def body_runs(
     toothing: Toothing, toothed: Array, tolerance: float, parts: int, ring: RingSpec
 ) -> tuple[Run, ...]:
-    """Return what joins the last tooth to the first: around the shaft, of a ring behind its teeth.
+    """Return the body outline from the last tooth to the first: around the shaft, or behind a ring.
 
     Parameters
     ----------
@@ -112,20 +112,20 @@ def body_runs(
     tolerance : float, mm
         Chord error of the arc.
     parts : int
-        Dense points for each chord.
+        Dense points per chord.
     ring : RingSpec
         Outside of a ring.
 
     Returns
     -------
     tuple of Run
-        End face, arm, hub (of a ring its outside), arm, end face, counter-clockwise; of a rack
+        End face, arm, hub (a ring: its outside), arm, end face, counter-clockwise; a rack has
         straight lines around its back.
 
     Raises
     ------
     InfeasibleError
-        If the ends meet: the wheel would turn by a full turn or more. If a ring has no metal for
+        If the ends meet, since the wheel turns by a full turn or more; if a ring has no metal for
         its end faces, or its outside is not round.
     """
     points = as_complex(toothed)
@@ -139,7 +139,7 @@ def body_runs(
         corners = [complex(back, point.imag) for point in (inner[1], inner[0])]
         chain = [last, inner[1], *corners, inner[0], first]
         return tuple(_line(start, end) for start, end in pairwise(chain))
-    # the teeth of a ring, counter-clockwise around its metal, run clockwise around the shaft
+    # counter-clockwise around its metal, the teeth of a ring run clockwise around the shaft
     span = float(np.angle(points[1:] / points[:-1]).sum())
     span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))
     radius, sweep = _HUB * min(abs(points).min(), abs(inner).min()), 2.0 * math.pi - span
@@ -162,7 +162,7 @@ def body_runs(
             value=travel,
             limit=limit,
             unit="deg",
-            nearest=f"this is how far the {name} turns; with its end teeth it fills the circle",
+            nearest=f"the value is the travel of the {name}; its end teeth need the rest",
             ways=out,
             more_teeth=travel / limit if travel < _WHOLE else 0.0,
         )
@@ -181,15 +181,15 @@ def body_runs(
 
 
 def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float:
-    """Return the outer radius of an open ring, mm, from those of its roots and its end faces.
+    """Return the outer radius of an open ring, mm, from the radii of its roots and end faces.
 
-    Refused is what is not round, or leaves no metal for the end faces.
+    An outside that is not round, or leaves no metal for the end faces, is refused.
     """
     if ring.outer != "round":
         raise InfeasibleError(
-            "only a ring that goes all around has an outside that follows its roots",
+            "the outside can follow the roots of a closed ring only",
             where="ring.outer",
-            nearest='an open ring has outer = "round"',
+            nearest='use outer = "round" for an open ring',
             ways=(Way(near={"ring.outer": "round"}),),
         )
     rim, least = ring.least_rim(roots, module), max(_BELOW * module, faces - roots)
@@ -199,12 +199,12 @@ def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float
     if ring.outer_diameter is not None:
         key, value, limit = "ring.outer_diameter_mm", ring.outer_diameter, 2.0 * (roots + least)
     raise InfeasibleError(
-        "an open ring has end faces a module deep below its roots, and its outside is within them",
+        "the outside of the open ring leaves its end faces, a module deep, no metal",
         where=f"wheel 2, {key}",
         value=value,
         limit=limit,
         unit="mm",
-        nearest="the limit is the outside that the end faces just reach",
+        nearest="the limit is the size that the end faces just reach",
         ways=(Way(near={key: _MORE * limit}),),
     )
 

@@ -1,10 +1,10 @@
-"""How exact the numbers of a pair are: estimates of their errors, each with how it is known.
+"""Error estimates of the numbers of a pair, each with its method.
 
-Nothing here is a constant times a size unless rounding is all there is, and then it knows by what
-rounding grows: places by the driver angle's own rounding where the centrode moves and turns fast,
-directions by it where the centrode bends, reaches by how flanks run out at their tips.
+Where rounding is the only error, the estimate includes what amplifies it: the driver angle's
+rounding moves points where the centrode runs or turns fast, changes directions where it bends, and
+changes a flank's reach where the flank meets the addendum curve at a small angle.
 
-Depends on the subject of checks.
+Depends on subject.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.sampling import MARGIN
 
 _PLACES: Final = 721
-"""Places of a lobe at which the centrodes' farthest point and fastest place are looked for."""
+"""Points per lobe in the search for the centrodes' farthest point and largest speed."""
 
 Estimates = dict[str, tuple[float, str]]
-"""Estimated error and how it is known, by name."""
+"""Estimated error and its method, by name."""
 
 
 def estimates(subject: Subject) -> Estimates:
-    """Return estimated errors of what a summary tells of a pair.
+    """Return estimated errors of the numbers in a pair's summary.
 
     Parameters
     ----------
@@ -43,12 +43,12 @@ def estimates(subject: Subject) -> Estimates:
     Returns
     -------
     dict
-        The unit is the last part of a name; ratios have none.
+        Estimate and method by name. Names end with the unit; ratios have none.
     """
     pair, gears = subject.pair, subject.gears
     rolling, law = pair.rolling, pair.law
     steepest = [place for place, _ in subject.pressure_angles.values()]
-    function = ", and the Python function against its expansion" if law.function_error else ""
+    function = ", plus the expansion error of the Python function" if law.function_error else ""
     far, rounding = size_of(rolling)
     flank = flank_error(pair, far, rounding)
     reaches, thicknesses = zip(*(tip_errors(gear, rounding) for gear in gears), strict=True)
@@ -56,62 +56,62 @@ def estimates(subject: Subject) -> Estimates:
     return {
         "law": (
             law.error,
-            "rad of the driven angle: against Gauss-Legendre quadrature" + function,
+            "rad of the driven angle: comparison with Gauss-Legendre quadrature" + function,
         ),
-        "closure_rad": (abs(law.closure_error), "miss of the driven angle over a lobe"),
+        "closure_rad": (abs(law.closure_error), "residual of the driven angle over a lobe"),
         "ratio": (
             ratio_error(rolling),
-            "closure, and rounding as it shows and where the radius nears the distance",
+            "closure and rounding, amplified where the radius nears the centre distance",
         ),
         "acceleration_per_rad": (
             acceleration_error(subject),
-            "scatter of the ratio's slope, and the rounding of driver angle and knots" + function,
+            "scatter of the ratio's slope, rounding of driver angle and knots" + function,
         ),
         "arc_length_mm": (
             rolling.arc_error,
-            "against Gauss-Legendre quadrature, and rounding" + function,
+            "comparison with Gauss-Legendre quadrature, and rounding" + function,
         ),
         **_bend_errors(rolling, function),
-        "size": (rolling.size_error, "share of module and centre distance: the arc length's"),
+        "size": (rolling.size_error, "relative error of the arc length, module, centre distance"),
         "flank_mm": (
             flank,
-            "arc length, driven angle and directions, with the rounding of the driver angle",
+            "errors of arc length, driven angle and directions, rounding of the driver angle",
         ),
         "pressure_angle_deg": (
             math.degrees(float(direction_error(rolling, np.array(steepest)).max())),
-            "directions of the centrode, with the rounding of the driver angle",
+            "direction of the centrode, rounding of the driver angle",
         ),
         "contact_ratio": (
             sum(reaches) / pair.toothings[0].pitch,
-            "flanks at their tips, by the angle at which they end",
+            "error of flank points over the angle at which the flank meets the addendum curve",
         ),
         "tip_thickness_mm": (
             max(thicknesses),
-            "both flanks of the thinnest tooth at its tip",
+            "errors of both flanks at the tip of the thinnest tooth",
         ),
         **({} if passed is None else _pass_error(passed, sum(reaches) + flank)),
         "backlash_mm": (FEW * EPS * pair.toothings[0].pitch, "rounding of the pitch"),
         "root_radius_mm": (
             max(root_radius_error(gear) for gear in gears) + flank,
-            "roots and rims: how far chords and the curve come beyond vertices, and flank_mm",
+            "distance of chords and curve beyond the vertices, plus flank_mm",
         ),
         "area_mm2": (
             max(area_error(gear) for gear in gears),
-            "chords times the height of their bows",
+            "chord lengths times chord errors",
         ),
     }
 
 
 def _pass_error(passed: TipPass, corners: float) -> Estimates:
-    """Return the error of the tip-pass margin, by what the places of both corners are off, mm."""
-    how = "flanks at both tips and flank_mm, along the centrode and as the corner's way runs away"
+    """Return the error of the tip-pass margin, mm, from the position errors of both corners."""
+    how = "position errors of both tip corners, projected on the centrode"
     return {"tip_pass_margin_mm": ((1.0 + passed.slope) * corners, how)}
 
 
 def _bend_errors(rolling: Rolling, function: str) -> Estimates:
-    """Return the errors of the least radii of centrodes, the larger of both."""
+    """Return the larger error of the two centrodes' least radii."""
     bends = [bends_of(track) for track in rolling.tracks]
-    how = "scatter beside extremes, ratio and two derivatives at knots, closure, size" + function
+    how = "scatter near extremes, ratio and derivatives at knots, closure, size" + function
     return {
         "convex_radius_mm": (max(one.radius_error for one in bends), how),
         "concave_curvature_per_mm": (max(one.concave_error for one in bends), how),
@@ -121,8 +121,8 @@ def _bend_errors(rolling: Rolling, function: str) -> Estimates:
 def ratio_error(rolling: Rolling) -> float:
     """Return the error of ratios: with ``i = u/(1 - w*u)`` that of u, times ``1 + w*i``.
 
-    A law that was solved so that it closes shares its miss, as a centre distance's, all around; a
-    Python function's own is in it, and the rounding that the extremes show.
+    A law solved to close spreads its residual, as if the centre distance were off by it. Includes
+    the expansion error of a Python function, and rounding as seen at the extremes.
     """
     law = rolling.law
     (low, _), (high, largest) = law.ratio_range
@@ -132,15 +132,15 @@ def ratio_error(rolling: Rolling) -> float:
 
 
 def acceleration_error(subject: Subject) -> float:
-    """Return the error of the largest acceleration, 1/rad (of a rack over its mean speed).
+    """Return the error of the largest acceleration, 1/rad (for a rack over its mean speed).
 
-    That of the ratio's slope, and the rounding of the driver angle where the slope changes.
+    Error of the ratio's slope, plus the rounding of the driver angle where the slope changes.
     """
     law, (places, values) = subject.pair.law, subject.accelerations
     jerk = np.abs(law.ratio.derivatives(places, 2)[2])
     each = systematic_errors(law, places)[1] + law.scatter(places)[1] + EPS * law.period * jerk
     sizes = np.abs(values)
-    # another extreme may be the largest only if it comes up to it
+    # another extreme counts only if its error bound exceeds the largest
     return float((each / subject.pair.rolling.mean_radius - (sizes.max() - sizes)).max())
 
 
@@ -157,9 +157,9 @@ def direction_error(rolling: Rolling, phi: Array) -> Array:
     Returns
     -------
     (n,) array
-        Of the slope psi of the radius, ``tan(psi) = r'/r = i'/(i*(1 + w*i))``: rounding, that of
-        the driver angle where psi changes fast, that which the ratio's slope shows, and what the
-        expansion of a Python function misses.
+        Error of the slope psi of the radius, ``tan(psi) = r'/r = i'/(i*(1 + w*i))``: rounding, also
+        of the driver angle where psi changes fast, scatter of the ratio's slope, and the expansion
+        error of a Python function.
     """
     law = rolling.law
     r, dr, ddr = rolling.radii(phi, 2)
@@ -171,10 +171,10 @@ def direction_error(rolling: Rolling, phi: Array) -> Array:
 
 
 def size_of(rolling: Rolling) -> tuple[float, float]:
-    """Return how far the centrodes go from their shafts, mm, and how points on them are rounded.
+    """Return the largest distance of the centrodes from their shafts and their rounding, both mm.
 
-    By what they are as far off as, as long as the centrode, and as fast as it runs with the driver
-    angle, mm.
+    Rounding grows with distance, with the length of the centrode, and with its speed over the
+    driver angle.
     """
     law = rolling.law
     phi = _places(rolling)
@@ -185,13 +185,13 @@ def size_of(rolling: Rolling) -> tuple[float, float]:
 
 
 def _places(rolling: Rolling) -> Array:
-    """Return driver angles all over a lobe, and those at which a centrode bends most, rad."""
+    """Return driver angles spread over a lobe, and at the extremes of curvature, rad."""
     extremes = [places for places, _ in rolling.curvature_extremes]
     return np.concatenate([np.linspace(0.0, rolling.law.period, _PLACES), *extremes])
 
 
 def own_error(pair: GearPair, phi: Array, rounding: float) -> Array:
-    """Return errors of points on flanks against their own wheel's teeth and tips, mm.
+    """Return errors of flank points relative to their own wheel's teeth and tips, mm.
 
     Parameters
     ----------
@@ -200,12 +200,12 @@ def own_error(pair: GearPair, phi: Array, rounding: float) -> Array:
     phi : (n,) array, rad
         Driver angles in the first lobe.
     rounding : float, mm
-        Of points on the centrode.
+        Rounding of points on the centrode.
 
     Returns
     -------
     (n,) array
-        That, and of the direction of the normal along the way to the flank.
+        Rounding plus the error of the normal's direction over the distance to the flank.
     """
     cutters = [toothing.cutter for toothing in pair.toothings]
     way = max(max(one.addendum, one.dedendum) / math.sin(one.alpha) for one in cutters)
@@ -214,7 +214,7 @@ def own_error(pair: GearPair, phi: Array, rounding: float) -> Array:
 
 
 def flank_error(pair: GearPair, far: float, rounding: float) -> float:
-    """Return the error of points on flanks, mm, in the wheels' frames.
+    """Return the error of flank points in the wheels' frames, mm.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def flank_error(pair: GearPair, far: float, rounding: float) -> float:
     Returns
     -------
     float
-        That of their own teeth's, of arc lengths, and of the driven wheel's angle.
+        Error relative to their teeth, plus those of arc length and of the driven angle.
     """
     rolling, law = pair.rolling, pair.law
     phi = _places(rolling)
@@ -243,14 +243,14 @@ def tip_errors(gear: Gear, rounding: float) -> tuple[float, float]:
     gear : Gear
         The wheel.
     rounding : float, mm
-        Of points on the centrode.
+        Rounding of points on the centrode.
 
     Returns
     -------
     reach : float, mm
-        More where points hardly move along a flank, if it ends where it crosses another curve.
+        Larger where a flank crosses the curve that ends it at a small angle.
     thickness : float, mm
-        That of both flanks of the thinnest tooth.
+        Sum over both flanks of the thinnest tooth.
     """
     flanks, toothing = gear.profile.flanks, gear.toothing
     own = own_error(gear.pair, _in_lobe(gear, flanks.tips.phi), rounding)
@@ -264,16 +264,16 @@ def tip_errors(gear: Gear, rounding: float) -> tuple[float, float]:
 
 
 def _in_lobe(gear: Gear, phi: Array) -> Array:
-    """Return the driver angles of the first lobe, or of an open pair's travel, next to some."""
+    """Return driver angles moved into the first lobe, or clipped to an open pair's travel."""
     law = gear.pair.law
     return np.mod(phi, law.period) if law.closed else np.clip(phi, 0.0, law.period)
 
 
 def root_radius_error(gear: Gear) -> float:
-    """Return by how much a wheel's curve may be nearer to its shaft than its vertices, mm.
+    """Return by how much a wheel's curve may come nearer to its shaft than its vertices, mm.
 
-    A curve is as near its chords as they were measured, or not much farther; chords may be nearer
-    than their ends. Of a ring, whose roots are its farthest places, ends are as far as chords.
+    The curve is off its chords by the measured chord error, and chords may be nearer to the shaft
+    than their ends; not so for a ring, whose roots are its farthest points.
     """
     beside = gear.profile.chord_error / MARGIN
     if gear.ring:
@@ -289,9 +289,9 @@ def root_radius_error(gear: Gear) -> float:
 def area_error(gear: Gear) -> float:
     """Return a bound of the area between an outline's chords and its curve, mm^2.
 
-    A bow is smaller than its chord times its height, by half for flat ones. What is left out where
-    the curve is convex and what is taken in where it is hollow add up. Of a body that joins the
-    ends of an open wheel the dense points are taken.
+    A segment's area is less than its chord times its height. Areas at convex and at concave parts
+    are added, not set off. For the body that joins the ends of an open wheel the dense points are
+    used.
     """
     sampler = gear.profile.sampler
     places, points, _ = sampler.chords
@@ -307,11 +307,11 @@ def area_error(gear: Gear) -> float:
 
 
 def kink_error(outline: Outline) -> float:
-    """Return a bound of the area that cubics miss at bends of tips, mm^2.
+    """Return a bound of the area error of cubics at kinks of tips, mm^2.
 
-    Where a tooth's tip rises along the centrode, a jump of the curvature bends it by an angle,
-    ``delta``. Dense points have one tangent there, so that a cubic of the length l beside it is off
-    by ``delta*l^2/12``.
+    Where a tip rises along the centrode, a jump of the curvature gives it a kink of an angle
+    ``delta``. Dense points have a single tangent there: a cubic of length l next to it is off by
+    ``delta*l^2/12``.
     """
     curves, rows = outline.sampler.curves, outline.rows
     row, place = curves.breaks

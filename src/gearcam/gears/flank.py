@@ -23,12 +23,12 @@ from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _BLOCK = 1 << 15
-"""Points of rows that are found at once: of more, the arrays between leave the processor's cache,
-and the allocator gives them back (see `gearcam.numeric.memory`)."""
+"""Points computed at once: with more, intermediate arrays leave the processor's cache and the
+allocator returns them to the system (see `gearcam.numeric.memory`)."""
 
 
 class Curve(IntEnum):
-    """The kinds of curve that an outline is made of."""
+    """Types of curve in an outline."""
 
     FLANK = 0
     FILLET = 1
@@ -39,22 +39,22 @@ class Curve(IntEnum):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Toothing(Brief):
-    """A track with its cutter and tooth places.
+    """A track with its cutter and tooth positions.
 
     Parameters
     ----------
     track : Track
         Its centrode.
     wheel : {1, 2}
-        Which wheel of a pair: at s = 0 wheel 1 has the middle of a tooth, wheel 2 of a space.
+        Wheel of the pair: at s = 0 wheel 1 has the middle of a tooth, wheel 2 of a space.
     teeth : int
-        Its number of teeth: pitches along its centrode.
+        Number of teeth: pitches along its centrode.
     cutter : Cutter
         Its cutter.
     moved : float, mm
-        How far its teeth are moved on along its centrode.
+        Offset of its teeth along its centrode.
     rounding : float, mm
-        Radius of the rounded edges of its tips.
+        Radius of its rounded tip edges.
     """
 
     track: Track
@@ -66,7 +66,7 @@ class Toothing(Brief):
 
     @property
     def closed(self) -> bool:
-        """Whether its teeth go all around; else its blank ends half a pitch beyond them."""
+        """Whether it is toothed all around; if not its blank ends half a pitch beyond its teeth."""
         return self.track.closed
 
     @property
@@ -99,8 +99,8 @@ class Toothing(Brief):
     def numbers(self) -> range:
         """Numbers of the teeth that are formed.
 
-        An open wheel's blank goes from half a pitch before s = 0 to half a pitch behind s = L. On
-        wheel 1 the first and last tooth formed lie outside it, on wheel 2 half in it.
+        An open wheel's blank extends from half a pitch before s = 0 to half a pitch after s = L.
+        The first and last tooth formed lie outside it on wheel 1, half inside on wheel 2.
         """
         if self.closed:
             return range(1, self.teeth + 1)
@@ -108,7 +108,7 @@ class Toothing(Brief):
 
     @property
     def whole(self) -> slice:
-        """Places in `numbers` of the teeth that are whole."""
+        """Indices in `numbers` of the whole teeth."""
         return slice(None) if self.closed else slice(1, -1)
 
     @cached_property
@@ -119,17 +119,17 @@ class Toothing(Brief):
 
     @cached_property
     def flanks(self) -> tuple[Array, Array]:
-        """Place sf, mm, and sigma of all flanks formed: sigma = +1 of every tooth, then -1."""
+        """Position sf, mm, and sigma of all flanks formed: sigma = +1 of every tooth, then -1."""
         sigma = np.repeat([1.0, -1.0], len(self.numbers))
         return np.tile(self.tooth_places, 2) + sigma * self.half_tooth, sigma
 
     @property
     def whole_flanks(self) -> Mask:
-        """Which of the flanks belong to whole teeth."""
+        """Mask of the flanks that belong to whole teeth."""
         return np.tile(np.isin(self.numbers, self.numbers[self.whole]), 2)
 
     def of_teeth(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Return what is told of all `flanks` for both sides of the whole teeth, (2, n)."""
+        """Return values of all `flanks` as those of both sides of the whole teeth, (2, n)."""
         return values.reshape(2, -1)[:, self.whole]
 
     def frames(self, phi: Array, *, curved: bool = True) -> Frames:
@@ -142,7 +142,7 @@ class Toothing(Brief):
         return frames.t * (np.cos(alpha) + sigma * np.sin(alpha) * self.turn)
 
     def ahead(self, frames: Frames, sf: Array) -> Array:
-        """Return how far flanks `sf` are from the points of `frames`, along the normals, mm."""
+        """Return distances of flanks `sf` from the points of `frames` along the normals, mm."""
         return (sf - frames.s) * np.cos(self.cutter.alpha)
 
     def flank_points(self, frames: Frames, sf: Array, sigma: Array | float) -> Plane:
@@ -150,7 +150,7 @@ class Toothing(Brief):
         return frames.p + self.ahead(frames, sf) * self.normals(frames, sigma)
 
     def flank_motion(self, frames: Frames, sf: Array, sigma: Array | float) -> Plane:
-        """Return how points of flanks (`sf`, `sigma`) move with the driver angle at `frames`."""
+        """Return driver-angle derivatives of points of flanks (`sf`, `sigma`) at `frames`."""
         g = sigma * self.regularity(frames, sf, sigma)
         return -g * frames.speed * self.turn * self.normals(frames, sigma)
 
@@ -161,25 +161,25 @@ class Toothing(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Rows(Brief):
-    """Stretches of curve, one a row, in the order of the outline (rising s).
+    """Segments of the outline, one per row, in order of rising s.
 
     Parameters
     ----------
     kind : (n,) int array
         `Curve`.
     sf, sigma : (n,) arrays
-        Flank that a flank or fillet belongs to; of a rounded edge the flank on which its centre
-        lies; unused for land and tip.
+        Flank of a flank or fillet row; for a rounded edge the flank on which its centre lies;
+        unused for land and tip.
     start, end : (n,) arrays, rad
-        Driver angles at the ends, in the order of travel; of a rounded edge the one at its flank
-        (start for sigma = -1, end for +1), and a rad beyond it.
+        Driver angles at the ends, in order of travel; for a rounded edge the one at its flank
+        (start for sigma = -1, end for +1), and 1 rad from it.
     low, high : (n,) arrays, mm
         For tips: distance from the centrode at the ends; for lands: minus the dedendum; for rounded
         edges the directions of the outward normals at the ends, rad.
     corner : (n,) bool array
         Whether a corner precedes the row.
     tooth : (n,) int array
-        Tooth number, from 1, that the row belongs to (for lands: the tooth before the space).
+        Tooth number, from 1, of the row (for lands: of the tooth before the space).
     """
 
     kind: Ints
@@ -210,7 +210,7 @@ def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plan
     Returns
     -------
     points, tangents : (k,) complex arrays, mm and 1
-        In the wheel's frame; forward is the direction of the outline with rising s.
+        In the wheel's frame; forward means towards rising s.
     """
     cutter, w = toothing.cutter, toothing.turn
     kind, row_sf, row_sigma = rows.kind[index], rows.sf[index], rows.sigma[index]
@@ -307,7 +307,7 @@ class WheelCurves(Brief):
         rows = self.rows
         low, high = np.minimum(rows.start, rows.end), np.maximum(rows.start, rows.end)
         row, place = self.toothing.track.knots_between(low, high)
-        curved = rows.kind[row] != Curve.ROUND  # an arc knows nothing of the law
+        curved = rows.kind[row] != Curve.ROUND  # arcs do not depend on the law
         return row[curved], place[curved]
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:

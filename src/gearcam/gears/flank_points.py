@@ -1,4 +1,4 @@
-"""Points on the flanks of a wheel as made: for inspection, for tools, and as data.
+"""Points on the finished flanks of a wheel: for inspection, for tools, and as data.
 
 Depends on outlines.
 """
@@ -12,14 +12,14 @@ from gearcam.numeric.columns import Columns
 
 
 def flank_points(profile: Outline, count: int) -> Columns:
-    """Return points on every flank of the whole teeth that is left.
+    """Return points on the finished flanks of all whole teeth.
 
     Parameters
     ----------
     profile : Outline
         The wheel's outline.
     count : int
-        Points on each flank, from root to tip at even steps of the rack's roll, both ends included.
+        Points per flank, from root to tip at even steps of the rack's roll, both ends included.
 
     Returns
     -------

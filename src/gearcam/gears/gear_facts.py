@@ -1,4 +1,4 @@
-"""What a wheel knows of itself, as facts."""
+"""Facts of one wheel."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def gear_tree(gear: Gear) -> dict[str, Any]:
-    """Return what is known of a wheel, as a tree of facts (see `gearcam.facts.Facts`)."""
+    """Return the facts of a wheel as a nested dict (see `gearcam.facts.Facts`)."""
     cutter, bends = gear.toothing.cutter, bends_of(gear.pair.rolling.tracks[gear.wheel - 1])
     pinion = cutter.kind == "pinion"
     return {

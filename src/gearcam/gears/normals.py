@@ -1,15 +1,14 @@
-"""Where two flanks touch: at a common normal, with no distance along it.
+"""Where two flanks touch: at a common normal, with zero distance along it.
 
-A flank's normal at roll s passes through the pitch point of that roll, whatever its place `sf`: the
-flanks of one side are parallel curves, involutes of one base curve. So at a phase of the driver
-three equations say at which rolls of both wheels a pair touches, and how far the driven wheel is
-then ahead of its nominal place, its *lead*: equal directions of the normals, and two coordinates.
-As designed the rolls are equal and the lead is 0. It is the same for all pairs of evenly spaced
-flanks: they touch together at any distance of the shafts.
+A flank's normal at roll s passes through the pitch point of that roll, for any position `sf`: the
+flanks of one side are parallel curves, involutes of one base curve. At a phase of the driver three
+equations (equal directions of the normals, and two coordinates) give the rolls of both wheels at
+which a pair touches, and the *lead* of the driven wheel, the angle by which it is ahead of its
+nominal position. As designed the rolls are equal and the lead is 0. The lead is the same for all
+pairs of evenly spaced flanks: they touch together at any centre distance.
 
-Positions are those of the mounted pair, as complex numbers: O1 at 0, O2 at the distance of the
-shafts along x, that of a ring as far the other way. A rack has no O2; its lead is part of its
-travel, mm.
+Positions are those of the mounted pair, as complex numbers: O1 at 0, O2 at the centre distance
+along x, for a ring at the opposite side. A rack has no O2; its lead is a travel in mm.
 """
 
 from __future__ import annotations
@@ -31,30 +30,30 @@ _SMALL = 1e-7
 """Step, in pitches, after which the next one is below rounding."""
 
 _MISS = 1e-9
-"""What may be left of the equations, in pitches and rad."""
+"""Largest residual of the equations, in pitches and rad."""
 
 _FAR = 3.0
-"""Rolls this many pitches from the nominal one belong to no pair of teeth that mesh."""
+"""Largest distance, in pitches, of a roll from the nominal one in a pair of teeth that mesh."""
 
 _FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
-"""Unknowns among phase, roll of both wheels and lead, by which of the first three is known."""
+"""Indices of the unknowns of phase, both rolls and lead, by which of the first three is known."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Mounting(Brief):
-    """Two wheels on their shafts, and which of their flanks are looked at.
+    """Two mounted wheels, and the side of their flanks.
 
     Parameters
     ----------
     toothings : (Toothing, Toothing)
         Driver and driven wheel.
     guide : Guide
-        What guides the driven one.
+        Guide of the driven wheel.
     side : {-1, +1}
         sigma of the driver's flanks.
     distance : float, mm
-        Place of the driven frame as mounted, along x: the distance of the shafts, less than 0 for
-        a ring; of a rack how far it stands off its place.
+        Mounted position of the driven frame along x: the centre distance, negative for a ring;
+        for a rack the offset from its design position.
     """
 
     toothings: tuple[Toothing, Toothing]
@@ -78,16 +77,16 @@ class Mounting(Brief):
 
 
 class Pose(NamedTuple):
-    """How pairs of flanks stand: arrays of one shape.
+    """Positions of pairs of flanks: arrays of one shape.
 
     Parameters
     ----------
     phi1 : array, rad
         Phase of the driver.
     one, two : arrays, rad
-        Driver angles that name the rolls of driver and driven wheel.
+        Rolls of driver and driven wheel, as driver angles.
     lead : array, rad
-        How far the driven wheel is ahead of its nominal place; of a rack in its travel, mm.
+        Angle by which the driven wheel is ahead of its nominal position; for a rack mm of travel.
     """
 
     phi1: Array
@@ -102,7 +101,7 @@ class Pose(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Normals(Brief):
-    """A normal of a driver's flank and one of a driven flank, n of each, in the mounted pair.
+    """Normals of n driver's flanks and of n driven flanks, in the mounted pair.
 
     Parameters
     ----------
@@ -145,18 +144,18 @@ class Normals(Brief):
 def normals(
     mounting: Mounting, pose: Pose, separation: Array, motion: Array | None = None
 ) -> Normals:
-    """Return normals of both wheels' flanks, and what they miss of being one.
+    """Return normals of both wheels' flanks, and the residuals of the equations of contact.
 
     Parameters
     ----------
     mounting : Mounting
         The wheels and the side.
     pose : Pose
-        Of n pairs.
+        Positions of n pairs.
     separation : (n,) array, mm
         sf2 - sf1.
     motion : (2, n) array, optional
-        What the guide tells of the phases (see `Guide.motion`), where it is known.
+        `Guide.motion` at the phases, if already computed.
 
     Returns
     -------
@@ -191,7 +190,7 @@ def normals(
     by_lead = np.conj(n1) * carried
     by_one = -1j * (first.kappa * across + mounting.side * math.sin(alpha))
     by_two = np.conj(n1) * tangent2 - cosine
-    # the driver turns by -phi1, the driven wheel as with the lead
+    # the driver turns by -phi1, the driven wheel as by the lead
     by_phase = 1j * np.conj(n1) * foot2 + ratio * by_lead
     angle = [
         -aligned.real * (1.0 + turns * ratio),
@@ -223,23 +222,23 @@ def touch(
     mounting : Mounting
         The wheels and the side.
     start : (n,) array, rad
-        What is known: the phase, or the driver angle that names the roll of a wheel. As designed
-        all three are equal, so that the search begins there.
+        The known one: the phase, or the roll of a wheel as driver angle. The search begins with
+        all three equal, as designed.
     separation : (n,) array, mm
         sf2 - sf1.
     known : int or (n,) int array
-        Which it is: 0 the phase, 1 the driver's roll, 2 the driven wheel's.
+        Which one is known: 0 the phase, 1 the driver's roll, 2 the driven wheel's.
     limits : ((n,) array, (n,) array), optional
-        Where the phase is known: driver angles, rad, between which both rolls are sought.
+        If the phase is known: driver angles, rad, that bound both rolls.
 
     Returns
     -------
     pose : Pose
-        By Newton's method with steps of half a pitch at most.
+        Solutions by Newton's method, with steps of half a pitch at most.
     at : Normals
-        There.
+        The normals there.
     found : (n,) bool array
-        Whether that led to a contact within `_FAR` pitches of the nominal roll.
+        Whether it converged to a contact within `_FAR` pitches of the nominal roll.
     """
     every = np.stack([start, start, start, np.zeros(start.shape)])
     free, rows = _FREE[np.broadcast_to(known, start.shape)].T, np.arange(start.size)

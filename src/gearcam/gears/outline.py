@@ -1,4 +1,4 @@
-"""The outline of a wheel: flanks, fillets, lands and tips put together, trimmed and proved."""
+"""The outline of a wheel: flanks, fillets, lands and tips, joined, trimmed and verified."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from gearcam.numeric.sampling import MOST, Sampler
 from gearcam.tolerances import Tolerances
 
 _NO_MATE = 3.0
-"""Reach in pitches that no flank has."""
+"""Reach in pitches beyond that of any flank."""
 
 _FOLLOWED = 3e-4
-"""Chord tolerance, in pitches, with which corners are followed at most: a coarser drawing is of the
-same wheels."""
+"""Largest chord tolerance, in pitches, in tracing corners: a coarser outline must not change the
+flanks."""
 
 _AT_TIP = 1e-12
 """Share of a flank's reach within which a cusp is at its tip: rounding."""
@@ -39,20 +39,20 @@ _AT_TIP = 1e-12
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Flanks(Brief):
-    """Every flank of a wheel and where it ends: sigma = +1 of all teeth formed, then sigma = -1.
+    """All flanks of a wheel and their ends: sigma = +1 of all teeth formed, then sigma = -1.
 
     Parameters
     ----------
     sf, sigma : (2z,) arrays, mm and 1
-        CurvePoint on the pitch curve and side.
+        Position on the pitch curve, and side.
     cusps : Undercut
         Cusps.
     tips : TipEnds
         Upper ends.
     lowest, highest : (2z,) arrays, mm
-        Reach w of the ends of what is left of each flank.
+        Reach w of both ends of each finished flank.
     sought : bool
-        Whether the ends of some were found by following corners, to a part of the tolerance only.
+        Whether some ends come from tracing corners, which are exact to a part of the tolerance.
     """
 
     sf: Array
@@ -78,7 +78,7 @@ class Outline(Brief):
     toothing : Toothing
         The wheel.
     rows : Rows
-        Its curves, loops taken out, rising s.
+        Its curves, loops removed, rising s.
     flanks : Flanks
         Where each flank ends.
     tolerance : float, mm
@@ -86,9 +86,9 @@ class Outline(Brief):
     oversampling : int
         Dense points per chord.
     ring : RingSpec, optional
-        Outside of an open ring, as its defaults say if left out.
+        Outside of an open ring; by default that of `RingSpec()`.
     most : float
-        Chords of which more are refused.
+        Largest number of chords; more are refused.
     """
 
     toothing: Toothing
@@ -101,7 +101,7 @@ class Outline(Brief):
 
     @cached_property
     def sampler(self) -> Sampler:
-        """The curves with the density of points that the tolerance asks for."""
+        """The curves, sampled as densely as the tolerance needs."""
         return Sampler(
             curves=WheelCurves(toothing=self.toothing, rows=self.rows),
             tolerance=self.tolerance,
@@ -117,7 +117,7 @@ class Outline(Brief):
 
     @cached_property
     def body(self) -> tuple[Run, ...]:
-        """What joins the ends of an open wheel around its shaft; nothing for a closed one."""
+        """Body between the ends of an open wheel around its shaft; empty for a closed wheel."""
         if self.toothing.closed:
             return ()
         parts = self.oversampling
@@ -135,11 +135,11 @@ class Outline(Brief):
 
     @cached_property
     def teeth(self) -> tuple[Ints, Ints]:
-        """Numbers of the teeth on it, (k,), rising, and the vertices of each, (k, 2).
+        """Tooth numbers, (k,), rising, and the first and last vertex of each tooth, (k, 2).
 
-        Each goes from one to the other end of the chords that follow its flanks and tip, without
-        its fillets; the last of its `points` is the smaller number where the tooth lies over the
-        first of all. An open driven wheel has half a tooth at both ends: its first is number 0.
+        The vertices span the flanks and the tip, without fillets; the last index is less than the
+        first where the tooth spans the start of `points`. An open driven wheel has half a tooth at
+        each end: its first is number 0.
         """
         closed, rows = self.toothing.closed, self.rows
         row = self.sampler.curve_of(self.sampler.chords[0][: -1 if closed else None])
@@ -160,7 +160,7 @@ class Outline(Brief):
 
     @cached_property
     def dense_teeth(self) -> tuple[Run, ...]:
-        """The dense runs of the teeth, counter-clockwise."""
+        """Dense points of the teeth, counter-clockwise."""
         return self.sampler.dense(self.oversampling).runs(self.toothing.track.clockwise)
 
     @cached_property
@@ -208,17 +208,17 @@ def build_outline(
     toothing : Toothing
         The wheel.
     mate : Toothing or None
-        The other wheel: flanks end where its flanks do, since beyond there is nothing to
-        touch but its fillet, and where their corners would meet its root. None: only the addendum
-        curve ends them, for comparison.
+        The other wheel. Flanks end where its flanks end, since beyond there is only its fillet to
+        touch, and where their corners would hit its root. With None only the addendum curve ends
+        them, for comparison.
     tolerance : float, mm
         Largest chord error.
     tolerances : Tolerances
         Inner accuracy.
     follow : bool
-        Whether corners are followed into the mate's roots.
+        Whether corners are traced into the mate's roots.
     ring : RingSpec, optional
-        Outside of an open ring, as its defaults say if left out.
+        Outside of an open ring; by default that of `RingSpec()`.
 
     Returns
     -------
@@ -228,7 +228,7 @@ def build_outline(
     Raises
     ------
     InfeasibleError
-        If a tooth is cut away, or the teeth reach past the shaft.
+        If a tooth is cut off, or the teeth reach past the shaft.
     """
     flanks = _find_flanks(toothing, mate, tolerance if follow else None, tolerances)
     rows = regular_rows(toothing, flanks.tips)
@@ -273,7 +273,7 @@ def _find_flanks(
             )
     tips = _sharpen(toothing, tips)
     highest = sigma * (sf - toothing.track.arc_length(tips.phi))
-    # A cusp beyond the tip is nobody's concern.
+    # a cusp beyond the tip has no effect
     addendum = np.where(cusps.addendum <= highest * (1.0 + _AT_TIP), cusps.addendum, np.inf)
     return Flanks(
         sf=sf,
@@ -287,7 +287,7 @@ def _find_flanks(
 
 
 def _sharpen(toothing: Toothing, tips: TipEnds) -> TipEnds:
-    """End the flanks of pointed teeth where they cross."""
+    """Cut back the flanks of pointed teeth to where they cross."""
     (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     pointed = np.flatnonzero(tips.foot[:z] <= tips.foot[z:])
     if pointed.size == 0:
@@ -317,7 +317,7 @@ def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> t
     pointed = (joined.kind == Curve.TIP) & (joined.start == joined.end)
     joined = select(joined, np.flatnonzero(~pointed))
     highest = flanks.highest
-    if toothing.rounding > near(toothing):  # below, it moves nothing
+    if toothing.rounding > near(toothing):  # below it has no effect
         joined, reach = round_tips(toothing, joined, flanks.tips)
         highest = np.where(np.isfinite(reach), reach, highest)
     return joined, replace(flanks, lowest=lowest, highest=highest)
@@ -329,7 +329,7 @@ def _lowest(toothing: Toothing, rows: Rows) -> Array:
     sigma = rows.sigma[at]
     low = np.where(sigma > 0.0, rows.end[at], rows.start[at])
     lowest = np.full(2 * z, -toothing.cutter.reach)
-    # A flank that crosses itself counts down to its first loop only.
+    # a flank that crosses itself ends at its first loop
     np.maximum.at(
         lowest,
         rows.tooth[at] - toothing.numbers[0] + np.where(sigma > 0.0, 0, z),
@@ -339,7 +339,7 @@ def _lowest(toothing: Toothing, rows: Rows) -> Array:
 
 
 def _demand_simple(outline: Outline) -> None:
-    """Refuse an outline that crosses itself: a tooth has been cut away."""
+    """Refuse an outline that crosses itself: a tooth has been cut off."""
     from shapely import LinearRing, Polygon, is_valid_reason
 
     repeats = np.any(np.all(np.diff(outline.points, axis=0) == 0.0, axis=1))
@@ -349,18 +349,18 @@ def _demand_simple(outline: Outline) -> None:
     radius = toothing.track.convex.radius
     largest = np.sin(toothing.cutter.alpha) ** 2 * radius if np.isfinite(radius) else 0.0
     raise InfeasibleError(
-        f"wheel {toothing.wheel} is not one piece: its cutter cuts teeth off",
+        f"wheel {toothing.wheel} is not in one piece: undercut cuts teeth off",
         where=_crossing(is_valid_reason(Polygon(outline.points)), float(np.ptp(outline.points))),
         value=toothing.pitch / np.pi,
         limit=largest,
         unit="mm",
-        nearest="this is the module, and the largest that is free of undercut at this size",
+        nearest="the value is the module, the limit the largest without undercut at this size",
         more_teeth=toothing.pitch / (np.pi * largest) if largest else 2.0,
     )
 
 
 def _crossing(reason: str, size: float) -> str:
-    """Return where an outline of a `size`, mm, crosses itself; shapely tells it in brackets."""
+    """Return where an outline of `size`, mm, crosses itself; shapely puts it in brackets."""
     kind, _, place = reason.rstrip("]").partition("[")
     if not place:
         return "its outline touches itself"
@@ -369,7 +369,7 @@ def _crossing(reason: str, size: float) -> str:
 
 
 def _demand_shaft(outline: Outline) -> None:
-    """Refuse a wheel whose root passes its own shaft."""
+    """Refuse a wheel whose roots reach past its own shaft."""
     if not outline.toothing.closed:
         return
     points = outline.sampler.chords[1]
@@ -382,12 +382,12 @@ def _demand_shaft(outline: Outline) -> None:
     module = toothing.pitch / np.pi
     largest = module * radius / toothing.cutter.dedendum
     raise InfeasibleError(
-        f"the teeth of wheel {toothing.wheel} reach past its own shaft",
+        f"the roots of wheel {toothing.wheel} reach past its own shaft",
         where=angle_text(float(around[radii.argmin()])),
         value=module,
         limit=largest,
         unit="mm",
-        nearest="this is the module, and the one whose roots would reach the shaft at this size; "
-        f"there the centrode comes within {shown(radius)} mm of it",
+        nearest="the value is the module; at the limit the roots reach the shaft, where the "
+        f"centrode comes within {shown(radius)} mm of it",
         more_teeth=module / largest,
     )

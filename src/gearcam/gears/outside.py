@@ -1,8 +1,7 @@
 """The outside of a ring that follows its roots: a parallel of the centrode on the metal's side.
 
-The land of a root is such a parallel too, a dedendum away.
-
-Refused: parallels with corners, and those that cross themselves.
+The land of a root is such a parallel too, a dedendum away. Parallels that have corners or cross
+themselves are refused.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from gearcam.numeric.sampling import Sampler
 
 
 def outside(gear: Gear, rim: float) -> Contour:
-    """Return the outside of a ring, `rim` outside its roots everywhere.
+    """Return the outside of a ring at a constant distance `rim` from its roots.
 
     Parameters
     ----------
@@ -32,19 +31,19 @@ def outside(gear: Gear, rim: float) -> Contour:
     Returns
     -------
     Contour
-        Counter-clockwise, with the tolerance of its teeth.
+        Counter-clockwise, with the chord tolerance of the teeth.
 
     Raises
     ------
     InfeasibleError
-        If a hollow of the centrode is too tight for the rim.
+        If a concave part of the centrode is too tight for the rim.
     """
     toothing, profile = gear.toothing, gear.profile
     away = toothing.cutter.dedendum + rim
     most = toothing.track.convex.radius - toothing.cutter.dedendum
     if rim >= most:
-        raise _refusal("the hollow of the pitch curve is too tight", rim, most)
-    # a piece for each tooth: as dense as its bends ask for
+        raise _refusal("a concave part of the pitch curve is too tight", rim, most)
+    # a piece for each tooth, as dense as its curvature needs
     ends = np.linspace(0.0, toothing.track.around, toothing.teeth + 1)
     none = np.zeros(toothing.teeth)
     rows = Rows(
@@ -73,17 +72,17 @@ def outside(gear: Gear, rim: float) -> Contour:
 
 
 def _refusal(why: str, rim: float, most: float) -> InfeasibleError:
-    """Return the refusal of a parallel, `most` being the largest rim that bends allow, if any."""
+    """Return the error for a parallel; `most` is the largest rim the curvature allows, if any."""
     ways = [Way(near={"ring.outer": "round"})]
     bent = 0.0 < most < math.inf
     if bent:
         ways.insert(0, Way(near={"ring.rim_mm": 0.99 * most}, far={"ring.rim_mm": 0.1 * most}))
     return InfeasibleError(
-        f"no outside of the ring can follow its roots: {why}",
+        f"the outside of the ring cannot follow its roots: {why}",
         where="ring.rim_mm",
         value=rim,
         limit=most if bent else None,
         unit="mm",
-        nearest="the limit is where the outside would have a corner" if bent else "",
+        nearest="at the limit the outside gets a corner" if bent else "",
         ways=ways,
     )

@@ -1,4 +1,4 @@
-"""The pair: two wheels on their shafts."""
+"""The gear pair: two wheels on their shafts."""
 
 from __future__ import annotations
 
@@ -31,27 +31,27 @@ from gearcam.numeric.columns import Columns
 from gearcam.tolerances import Tolerances
 
 FINEST = 1e-9
-"""Smallest tolerance of an outline, in modules: finer ones would be lost in rounding."""
+"""Smallest tolerance of an outline, in modules: rounding hides finer ones."""
 
 _USUAL = 1e-3
 """Default tolerance of an outline, mm: a micrometre is finer than any machine that cuts teeth."""
 
 _PARTS = 1000.0
-"""Parts of a module of which one is the default where that is finer."""
+"""The default tolerance is the module over this where that is finer."""
 
 PICTURED = 721
-"""Points of a centrode in a picture."""
+"""Points of a centrode in a drawing."""
 
 FLANK_POINTS = 17
-"""Points on each flank where nobody says how many."""
+"""Default number of points on each flank."""
 
 COARSEST = 1.0 / 50.0
-"""Coarsest tolerance of an outline, in modules: beyond it teeth are no longer teeth."""
+"""Coarsest tolerance of an outline, in modules: beyond it teeth lose their shape."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GearPair(Brief):
-    """Two centrodes with their cutters and tooth places.
+    """Two centrodes with their cutters and tooth positions.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ class GearPair(Brief):
 
     @property
     def center_distance(self) -> float:
-        """Distance of the shafts, mm; of a rack, what the law's radius is multiplied by."""
+        """Centre distance, mm; for a rack the factor of the law's radius."""
         return self.rolling.center_distance
 
     @property
     def shift(self) -> float:
-        """Place of wheel 2's frame in that of wheel 1 at phi1 = 0, mm along x."""
+        """Position of wheel 2's frame in that of wheel 1 at phi1 = 0, mm along x."""
         return self.rolling.guide.place
 
     @property
@@ -100,11 +100,11 @@ class GearPair(Brief):
 
     @property
     def closed(self) -> bool:
-        """Whether both wheels go all around."""
+        """Whether both wheels are toothed all around."""
         return all(toothing.closed for toothing in self.toothings)
 
     def chord_tolerance(self, asked: float | None) -> float:
-        """Return the tolerance of the outlines, mm: as asked, or ``min(0.001 mm, m/1000)``.
+        """Return the tolerance of the outlines, mm: as given, or ``min(0.001 mm, m/1000)``.
 
         Raises
         ------
@@ -131,7 +131,7 @@ class GearPair(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Gear(Brief, Displayed):
-    """One wheel.
+    """One wheel of a pair.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class Gear(Brief, Displayed):
     wheel : {1, 2}
         Driver or driven.
     profile : Outline
-        Its outline with all that is known of it.
+        Its outline, with its curves and the ends of its flanks.
     """
 
     pair: GearPair
@@ -154,7 +154,7 @@ class Gear(Brief, Displayed):
 
     @property
     def toothing(self) -> Toothing:
-        """Centrode, cutter and tooth places."""
+        """Centrode, cutter and tooth positions."""
         return self.pair.toothings[self.wheel - 1]
 
     @property
@@ -164,21 +164,21 @@ class Gear(Brief, Displayed):
 
     @property
     def ring(self) -> bool:
-        """Whether it is a ring or a sector of one: its metal is outside its teeth."""
+        """Whether it is a ring, or a sector of one: its metal is outside its teeth."""
         return self.pair.internal and self.wheel == 2
 
     @property
     def hollow(self) -> bool:
-        """Whether its outline is the edge of a hole: a ring that goes all around."""
+        """Whether its outline is the edge of a hole: a closed ring."""
         return self.ring and self.toothing.closed
 
     @cached_property
     def flanks(self) -> Columns:
-        """Points on the flanks as made, `FLANK_POINTS` on each (see `flank_points`)."""
+        """Points on the finished flanks, `FLANK_POINTS` on each (see `flank_points`)."""
         return self.flank_points(FLANK_POINTS)
 
     def flank_points(self, count: int) -> Columns:
-        """Return points on the exact flanks of all whole teeth as made.
+        """Return points on the exact finished flanks of all whole teeth.
 
         Parameters
         ----------
@@ -193,25 +193,25 @@ class Gear(Brief, Displayed):
             metal; ``curvature_per_mm``, positive where the flank is convex, infinite at a cusp;
             ``reach_mm``, the rack's roll from the pitch curve, positive towards the tip;
             ``phi1_deg``, the driver angle at which the point touches as designed. By tooth, then
-            side (+1 first), then from root to tip. What clearance, rounding or undercut takes
-            away has no points.
+            side (+1 first), then from root to tip. Parts removed by clearance, rounding or
+            undercut have no points.
 
         Raises
         ------
         DesignError
-            If `count` is no whole number, or less than 2.
+            If `count` is not a whole number, or less than 2.
         """
         return flank_points(self.profile, whole("count", count, 2))
 
     @cached_property
     def facts(self) -> Facts:
-        """What the wheel knows of itself, by the names that docs/conventions.md explains."""
+        """Facts of the wheel; docs/conventions.md explains their names."""
         return Facts(gear_tree(self), ("teeth",), self.name)
 
     def picture(self) -> str:
-        """Return a picture of the outline and the centrode, SVG, in the wheel's frame.
+        """Return a drawing of the outline and the centrode, SVG, in the wheel's frame.
 
-        Around the teeth of a ring there is metal, a module of which is drawn.
+        A ring is drawn with one module of metal around its teeth.
         """
         from gearcam.markup import outlines
 
@@ -233,13 +233,13 @@ class Gear(Brief, Displayed):
 
     @cached_property
     def least_radius(self) -> float:
-        """Smallest distance of the outline from the axis, mm."""
+        """Smallest distance of the outline from the shaft's axis, mm."""
         x, y = self.outline.T
         return float(np.hypot(x, y).min())
 
     @cached_property
     def largest_radius(self) -> float:
-        """Largest distance of the teeth from the axis, mm: of a ring where its root is deepest."""
+        """Largest distance of the teeth from the shaft's axis, mm: for a ring, of its roots."""
         x, y = self.profile.toothed.T
         return float(np.hypot(x, y).max())
 
@@ -256,33 +256,33 @@ def make_pair(
     finish: tuple[Finish, Finish] = (Finish(), Finish()),
     cutter_teeth: float | None = None,
 ) -> GearPair:
-    """Put a law on two shafts.
+    """Return the gear pair of a ratio law: centrodes at size, rack and cutters chosen.
 
     Parameters
     ----------
     law : RatioLaw
-        For the lobes of the tooth counts.
+        With the lobes that the tooth counts give.
     spec : PairSpec
         Sizes.
     asked : Rack
-        Basic rack as it is asked for.
+        Given values of the basic rack.
     tolerances : Tolerances
         Inner accuracy.
     finish : (Finish, Finish)
-        What is taken off the edges of both wheels' teeth.
+        Clearance and rounding of both wheels' teeth.
     cutter_teeth : float, optional
-        Teeth of the pinion that cuts a ring.
+        Number of teeth of the pinion cutter of a ring.
 
     Returns
     -------
     GearPair
-        With cutters chosen, nothing cut yet.
+        The pair; no outline is computed yet.
 
     Raises
     ------
     InfeasibleError
-        If the rack cannot be made, or a concave part is too tight for the teeth, or a ring for its
-        cutter.
+        If the rack is impossible, or a concave part is too tight for the teeth, or the cutter too
+        large for a ring.
     """
     rolling = roll(
         law,
@@ -293,11 +293,11 @@ def make_pair(
     )
     if rolling.mate == RACK and spec.center_distance is not None:
         raise InfeasibleError(
-            "a rack has no shaft",
+            "a rack has no shaft, and so no centre distance",
             where="pair.center_distance_mm",
             value=spec.center_distance,
             unit="mm",
-            nearest="module_mm is given instead: with the tooth count it is the size of the wheel",
+            nearest="give module_mm instead: with the tooth count it sets the size of the wheel",
         )
     module = spec.module or rolling.tracks[0].length / (math.pi * spec.teeth[0])
     rack = settle_rack(asked, spec.x)
@@ -341,7 +341,7 @@ def make_gear(
     tolerances: Tolerances,
     ring: RingSpec | None = None,
 ) -> Gear:
-    """Cut a wheel.
+    """Return one wheel of a pair with its outline.
 
     Parameters
     ----------
@@ -354,7 +354,7 @@ def make_gear(
     tolerances : Tolerances
         Inner accuracy.
     ring : RingSpec, optional
-        Outside of an open ring, as its defaults say if left out.
+        Outside of an open ring; by default that of `RingSpec()`.
 
     Returns
     -------
@@ -363,7 +363,7 @@ def make_gear(
     Raises
     ------
     InfeasibleError
-        If the wheel does not stay in one piece.
+        If the wheel would not be in one piece.
     """
     mate = pair.toothings[2 - wheel]
     profile = build_outline(pair.toothings[wheel - 1], mate, tolerance, tolerances, ring=ring)
@@ -371,7 +371,7 @@ def make_gear(
 
 
 def lobes_of(spec: PairSpec) -> Lobes:
-    """Return the lobes of a pair's tooth counts: ``z1 : z2`` in lowest terms."""
+    """Return the numbers of lobes of a pair's wheels: ``z1 : z2`` in lowest terms."""
     common = math.gcd(*spec.teeth)
     z1, z2 = spec.teeth
     return Lobes(z1 // common, z2 // common, RING if spec.type == "internal" else WHEEL)

@@ -1,4 +1,4 @@
-"""Centrodes and their parallels by polar angles, roughly: to sort points of an internal pair."""
+"""Centrodes and their parallels in polar coordinates, approximate: to sort points of ring pairs."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from gearcam.gears.flank import Toothing
 from gearcam.numeric.arrays import Array, Plane
 
 _PLACES = 8
-"""Places in a pitch between which a curve is taken as straight."""
+"""Points per pitch; between them a curve is taken as straight."""
 
 _FEET = 2.0
-"""Pitches to either side within which feet lie, where polar angles have told them roughly."""
+"""Pitches to either side of a first guess by polar angle within which a foot lies."""
 
 _OFF = 0.25
-"""Part of a curve's least radius that ways measured by polar angles keep off the shaft."""
+"""Share of a curve's least radius by which paths measured by polar angle stay off the shaft."""
 
 
 class PolarCurve:
-    """A parallel of a centrode whose polar angle rises with the driver angle, in polar coordinates.
+    """A parallel of a centrode in polar coordinates; its angle rises with the driver angle.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class PolarCurve:
     """
 
     def __init__(self, toothing: Toothing, height: float) -> None:
-        more = 0 if toothing.closed else 1  # pitches at each end, for the outer half teeth
+        more = 0 if toothing.closed else 1  # pitches added at each end for the outer half teeth
         count = _PLACES * (toothing.teeth + 2 * more)
         s = toothing.pitch * (np.arange(count + 1) / _PLACES - more)
         reach = _FEET * toothing.pitch
@@ -46,29 +46,29 @@ class PolarCurve:
         return first + (np.angle(points) - first) % (2.0 * math.pi)
 
     def feet(self, points: Plane) -> tuple[Array, Array, Array]:
-        """Return between which driver angles feet of points near it lie, and guesses, rad."""
+        """Return bounds and guesses of the feet of points near it, driver angles, rad."""
         places = self._places(points)
         low, high, guess = (np.interp(places, self._polar, phi) for phi in self._phi)
         return low, high, guess
 
     def beyond(self, points: Plane) -> Array:
-        """Return how much farther from the shaft points are than it, mm; what is open ends."""
+        """Return radii of points less those of the curve, mm; -inf beyond the last angle."""
         return np.abs(points) - np.interp(
             self._places(points), self._polar, self._radii, right=math.inf
         )
 
     def clear(self, points: Plane, beyond: Array) -> Array:
-        """Return how far points have to go at least until what is beyond the curve changes.
+        """Return lower bounds of the distance from points to the curve, mm.
 
-        On a way that keeps off the shaft it changes by the length and by the radius that is turned
-        past; any other way leads through the space within the least radius.
+        Along a path off the shaft `beyond` changes by at most the length, plus the change of radius
+        over the angle passed; any other path leads through the circle of the least radius.
 
         Parameters
         ----------
         points : (n,) complex array, mm
             In the frame of its wheel or ring.
         beyond : (n,) array, mm
-            What `PolarCurve.beyond` tells of them.
+            `PolarCurve.beyond` of them.
 
         Returns
         -------

@@ -1,11 +1,10 @@
 """Two centrodes of a ratio law that roll on each other: the tracks of a wheel and its mate.
 
 Both share one parameter, the driver angle `phi` (rad, any number of turns), and one arc length
-``s(phi)``: rolling gives equal lengths. What the mate is, an external wheel, a rack or a ring, is
-told by the law's span and is one number, `mate`: with ``w = 1`` for a wheel, ``w = 0`` for a rack,
-whose shaft is infinitely far, and ``w = -1`` for a ring the driver's radius is ``r1 = A*i/(1 +
-w*i)``, the shaft of its mate stands at w*A, and the curvatures obey ``kappa1 + kappa2 = (1 +
-w*i)/v`` (Euler and Savary).
+``s(phi)``, since rolling gives equal lengths. The type of the mate follows from the law's span and
+is one number w, `mate`: 1 for an external wheel, 0 for a rack, whose shaft is infinitely far, and
+-1 for a ring. The driver's radius is ``r1 = A*i/(1 + w*i)``, the mate's shaft is at w*A, and the
+curvatures obey ``kappa1 + kappa2 = (1 + w*i)/v`` (Euler and Savary).
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from gearcam.numeric.quadrature import missed
 from gearcam.tolerances import Tolerances
 
 _MARGIN = 2.0
-"""Pitches beyond an open pair's end in which its last teeth are formed, fillets included."""
+"""Pitches beyond an open pair's ends over which its last teeth and fillets are formed."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -42,8 +41,8 @@ class Rolling(Brief):
     law : RatioLaw
         Their ratio.
     arc : ArcLength
-        Arc length over a lobe; of an open pair also beyond its ends. Its size is the distance of
-        the shafts, A; of a rack, what the law's radius is multiplied by.
+        Arc length over a lobe, for an open pair also beyond its ends. Its size is the centre
+        distance A; for a rack the factor of the law's radius.
     margin : float, mm
         Length beyond each end of an open pair in which its teeth are formed.
     """
@@ -54,12 +53,12 @@ class Rolling(Brief):
 
     @property
     def mate(self) -> int:
-        """What the driver rolls on: w above."""
+        """Type of the mate: w above."""
         return self.law.mate
 
     @property
     def center_distance(self) -> float:
-        """Distance of the shafts, A, mm; of a rack, what the law's radius is multiplied by."""
+        """Centre distance A, mm; for a rack the factor of the law's radius."""
         return self.arc.size
 
     @cached_property
@@ -82,7 +81,7 @@ class Rolling(Brief):
 
     @cached_property
     def guide(self) -> Guide:
-        """What guides the driven element."""
+        """Guide of the driven element."""
         size = self.center_distance
         if self.mate == RACK:
             return Slideway(law=self.law, place=0.0, scale=size)
@@ -91,7 +90,7 @@ class Rolling(Brief):
 
     @property
     def mean_radius(self) -> float:
-        """What the law's ratios are told in: 1, of a rack the mean radius for unit size."""
+        """Unit of the law's ratios: 1, for a rack the mean radius for unit size."""
         return 1.0 if self.mate else self.law.lobes.advance / self.law.lobes.period
 
     def radii(self, phi: Array, order: int) -> list[Array]:
@@ -122,10 +121,10 @@ class Rolling(Brief):
         return np.array([first, both - first]) / self.center_distance
 
     def cells(self, knots: Array) -> Array:
-        """Return `knots` and between them those of the arc length, which tell how fast it changes.
+        """Return `knots`, and between them those of the arc length, dense where it changes fast.
 
-        What a ratio does in a degree or less is not lost between places taken in each (see
-        `gearcam.numeric.piecewise.places_between`).
+        So points taken in each interval miss no feature of the ratio, even one of a degree or less
+        (see `gearcam.numeric.piecewise.places_between`).
         """
         found = self.arc.unit.knots
         inside = found[(found > knots[0]) & (found < knots[-1])]
@@ -141,7 +140,7 @@ class Rolling(Brief):
 
     @property
     def size_error(self) -> float:
-        """Error of module or centre distance, whichever was solved, as a share of it."""
+        """Relative error of module or centre distance, whichever was solved."""
         longest = max(track.length for track in self.tracks)
         return self.arc_error / longest + float(np.finfo(float).eps)
 
@@ -149,8 +148,8 @@ class Rolling(Brief):
     def arc_error(self) -> float:
         """Estimated error of the centrodes' length, mm, and of arc lengths along them.
 
-        That of a lobe is measured against another quadrature, twice that since both are rounded;
-        the law's miss of a Python function, which changes the radius; and rounding.
+        Difference from another quadrature over a lobe, doubled since both are rounded; expansion
+        error of a Python function, which changes the radius; and rounding.
         """
         arc, law = self.arc, self.law
         measured = 2.0 * missed(arc.unit, arc.speed, arc.unit.knots) + law.function_error
@@ -168,8 +167,8 @@ class Centrode(Track):
     rolling : Rolling
         The pair that it belongs to.
     wheel : {1, 2}
-        Which one: in its own coordinates wheel 1 has the polar angle phi1, wheel 2 pi - phi2, a
-        ring phi2.
+        Wheel: in its own coordinates wheel 1 has the polar angle phi1, wheel 2 pi - phi2, a ring
+        phi2.
     """
 
     rolling: Rolling
@@ -181,7 +180,7 @@ class Centrode(Track):
         Notes
         -----
         With ``q = r1' + 1j*r1`` the points move by ``q*exp(1j*phi1)`` and ``q*exp(-1j*w*phi2)``,
-        so that the speed ``|q|`` is common to both. Curvatures from the second derivatives.
+        so that both have the speed ``|q|``. Curvatures are from the second derivatives.
         """
         phi = np.asarray(phi, dtype=float)
         law, size = self.rolling.law, self.arc.size
@@ -210,11 +209,11 @@ class Centrode(Track):
         return Frames(point, tangent, kappa, speed, self.arc.at(turns, x))
 
     def rotation(self, phi: Array) -> Array:
-        """Return how far it has turned at driver angles, rad (see `Track.rotation`)."""
+        """Return its angle of rotation at driver angles, rad (see `Track.rotation`)."""
         return phi if self.wheel == 1 else self.rolling.guide.nominal(phi)
 
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
-        """Return the law's knots in stretches of driver angle (see `Track.knots_between`)."""
+        """Return the law's knots in intervals of driver angle (see `Track.knots_between`)."""
         return self.rolling.law.knots_between(low, high)
 
     @property
@@ -224,14 +223,14 @@ class Centrode(Track):
 
 
 def _complex(real: Array, imag: Array) -> Plane:
-    """Return ``real + 1j*imag`` without the products."""
+    """Return ``real + 1j*imag`` without multiplication."""
     result = np.empty(np.shape(real), dtype=np.complex128)
     result.real, result.imag = real, imag
     return result
 
 
 def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
-    """Return w*i, and r1 for unit size with its derivatives to the third, of a ratio's."""
+    """Return w*i, and r1 for unit size with three derivatives, from those of the ratio."""
     i, di, *more = ratios
     wi = mate * i
     a = 1.0 / (1.0 + wi)
@@ -246,7 +245,7 @@ def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
 
 
 def _bends(wi: Any, r: Any, dr: Any, ddr: Any) -> tuple[Any, Any, Any]:
-    """Return the speed for unit size, the driver's curvature, and that of both together."""
+    """Return the speed for unit size, the driver's curvature, and the sum of both curvatures."""
     speed = np.sqrt(r * r + dr * dr)
     first = (r * r + 2.0 * dr * dr - r * ddr) / (speed * speed * speed)
     return speed, first, (1.0 + wi) / speed
@@ -260,7 +259,7 @@ def roll(
     module: float | None,
     tolerances: Tolerances,
 ) -> Rolling:
-    """Roll the centrodes of a law at a given centre distance or module.
+    """Return the centrodes of a law at a given centre distance or module.
 
     Parameters
     ----------
@@ -281,7 +280,7 @@ def roll(
     Raises
     ------
     InfeasibleError
-        Where the ratio changes so fast that the centrodes have no smooth length.
+        If the ratio changes so fast that the centrodes' length cannot be computed.
     ValueError
         If not exactly one of the two sizes is given.
     """
@@ -290,7 +289,7 @@ def roll(
         _, r, dr = _radii(law.ratio.derivatives(phi, 1), law.mate)
         return np.sqrt(r * r + dr * dr)
 
-    with demand_smooth("the way along the centrodes"):
+    with demand_smooth("the arc length of the centrodes"):
         unit = expand(unit_speed, law.ratio.knots, tolerances.expansion).antiderivative()
     lobes = law.lobes
     if not lobes.closed:

@@ -1,10 +1,10 @@
 """Rounded tips: arcs that touch flank and addendum curve, or both flanks of a narrow tooth.
 
-The centre of such an arc lies on the flank moved into the tooth by the radius, which is the flank
-of another `sf`, and on the addendum curve moved inwards, a parallel as well. So its end on the
-flank is known as exactly as the flank itself.
+The centre of such an arc lies on two parallels, each offset into the tooth by the radius: that of
+the flank, which is a flank of another `sf`, and that of the addendum curve. So its end on the
+flank is as exact as the flank itself.
 
-Refused: radii for which an arc would leave nothing of a flank above the pitch curve.
+A radius that would leave nothing of a flank above the pitch curve is refused.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ _EDGE = 1e-12
 """Driver angle, rad, by which an arc may touch a tip beyond its end: rounding."""
 
 _HALVINGS = 30
-"""Of the radius in search of the largest one: to a billionth."""
+"""Relative tolerance in the search for the largest radius."""
 
 _INSIDE = 1e-6
-"""Share by which the radius named stays below the largest: it is printed with six digits."""
+"""Share by which the radius named stays below the largest, since it is printed with six digits."""
 
 
 class _Tops(NamedTuple):
-    """What is at the top of the flanks of all teeth formed, (2z,): sigma = +1, then sigma = -1.
+    """Upper ends of the flanks of all teeth formed, (2z,): sigma = +1, then sigma = -1.
 
-    Rows of flank and tip, -1 for flanks outside an open blank and pointed teeth; what the rows'
-    angles are ahead of the teeth's, rad: a turn at the seam; the tip's first angle, its height
-    there, mm, and how that grows.
+    Rows of flank and tip, -1 for flanks outside an open blank and for pointed teeth; the angle by
+    which rows are ahead of their teeth, rad (one turn at the seam); the tip's first angle, its
+    height there, mm, and the slope of that height.
     """
 
     row: Ints
@@ -53,28 +53,28 @@ class _Tops(NamedTuple):
 
 
 def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Array]:
-    """Round the edges of the tips.
+    """Return the rows of a wheel with rounded tip edges.
 
     Parameters
     ----------
     toothing : Toothing
         The wheel, with the radius ``rounding``.
     rows : Rows
-        Its curves, loops taken out, open ends cut.
+        Its curves, loops removed, open ends cut.
     tips : TipEnds
         Ends of the flanks of all teeth formed.
 
     Returns
     -------
     rows : Rows
-        With the arcs, each a row of its own.
+        With each arc as a row of its own.
     highest : (2z,) array, mm
         Reach w of the flanks at the upper end; nan of those outside an open blank.
 
     Raises
     ------
     InfeasibleError
-        Naming the largest radius.
+        If the radius is too large; with the largest.
     """
     tops = _tops(toothing, rows, tips)
     found = _arcs(toothing, rows, tips, tops, toothing.rounding)
@@ -86,12 +86,12 @@ def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Arr
         )
         largest = float(f"{largest * (1.0 - _INSIDE):.6g}")
         raise InfeasibleError(
-            "tips rounded so much leave nothing of a flank above the pitch curve",
+            "the tip rounding is too large: it leaves no flank above the pitch curve",
             where=f"wheel {toothing.wheel}, blank.tip_rounding_mm",
             value=toothing.rounding,
             limit=largest,
             unit="mm",
-            nearest=f"a radius up to {shown(largest)} mm",
+            nearest=f"use a radius up to {shown(largest)} mm",
         )
     return found
 
@@ -101,7 +101,7 @@ def _tops(toothing: Toothing, rows: Rows, tips: TipEnds) -> _Tops:
     row, tip = np.full(2 * z, -1), np.full(z, -1)
     flank, top = (np.flatnonzero(rows.kind == kind) for kind in (Curve.FLANK, Curve.TIP))
     rising, falling = flank[rows.sigma[flank] < 0.0], flank[rows.sigma[flank] > 0.0][::-1]
-    # where loops are taken out a flank can be several rows: the last one written is at the tip
+    # with loops removed a flank can be several rows: the last one written is at the tip
     row[rows.tooth[rising] - first + z] = rising
     row[rows.tooth[falling] - first] = falling
     tip[rows.tooth[top] - first] = top
@@ -117,7 +117,7 @@ def _tops(toothing: Toothing, rows: Rows, tips: TipEnds) -> _Tops:
 def _arcs(
     toothing: Toothing, rows: Rows, tips: TipEnds, tops: _Tops, radius: float
 ) -> tuple[Rows, Array] | None:
-    """Return what `round_tips` does, or None where the radius is too large."""
+    """Return the rows and reaches of `round_tips`, or None if the radius is too large."""
     (sf, sigma), z = toothing.flanks, len(toothing.numbers)
     centers = sf - sigma * radius / math.cos(toothing.cutter.alpha)
     curve = partial(_moved_tip, toothing, tops, radius)
@@ -130,7 +130,7 @@ def _arcs(
     place = foot + tops.tip_turn
     fits = (tops.tip >= 0) & (miss <= ROUGH * near(toothing))
     fits &= (place >= rows.start[tops.tip] - _EDGE) & (place <= rows.end[tops.tip] + _EDGE)
-    # arcs that leave no tip between them become one; so do those of pointed teeth
+    # two arcs with no tip between them are merged, as on pointed teeth
     narrow = ~(fits[:z] & fits[z:]) | (foot[z:] >= foot[:z])
     both = np.flatnonzero(narrow & there[:z] & there[z:]) + np.array([[z], [0]])
     if both.size:
@@ -147,7 +147,7 @@ def _arcs(
     others[both[0]] = normals[both[1]]
     ends = _put_in(rows, tops, sigma, phi, foot, both)
     at = np.flatnonzero(there)
-    at = at[~np.isin(at, both[1])]  # one arc a merged tooth, told by its rising flank
+    at = at[~np.isin(at, both[1])]  # a merged tooth has one arc, that of its rising flank
     rising = sigma[at] < 0.0
     turns = np.where(rising, np.angle(others[at] / normals[at]), np.angle(normals[at] / others[at]))
     first = np.angle(np.where(rising, normals[at], others[at]))
@@ -167,14 +167,14 @@ def _arcs(
     kept[tops.tip[both[0]][tops.tip[both[0]] >= 0]] = False
     order = np.argsort(place, kind="stable")
     made = select(join([ends, arcs]), order[kept[order]])
-    made.corner[0] = True  # where a chain without corners begins
+    made.corner[0] = True  # start of a chain without corners
     return made, np.where(there, reach, np.nan)
 
 
 def _moved_tip(
     toothing: Toothing, tops: _Tops, radius: float, foot: Array, base: Frames
 ) -> tuple[Plane, Plane]:
-    """Return points over feet of tips moved inwards, and how they move on, mm and mm/rad."""
+    """Return points of tips offset inwards, over their feet, and derivatives, mm and mm/rad."""
     w = toothing.turn
     height = tops.height + (foot - tops.start) * tops.slope
     move = base.t * (base.speed * (1.0 + base.kappa * height) + tops.slope * w)
@@ -184,7 +184,7 @@ def _moved_tip(
 
 
 def _put_in(rows: Rows, tops: _Tops, sigma: Array, phi: Array, foot: Array, both: Ints) -> Rows:
-    """Return the rows with flanks and tips that end at arcs."""
+    """Return the rows with flanks and tips cut back to the arcs."""
     made, whole = deepcopy(rows), tops.row >= 0
     tips = whole & (tops.tip >= 0)
     tips[both] = False

@@ -1,10 +1,10 @@
-"""The chain of curves around a wheel, space by space, with loops taken out.
+"""The chain of curves around a wheel, space by space, with loops removed.
 
-Between two teeth run five curves: flank, fillet, root land, fillet, flank; over a tooth runs the
-tip. Where nothing is undercut they join smoothly. An undercut flank crosses its fillet, sharp
-roots let fillets cross each other, a root curvature below the dedendum makes the land cross
-itself: then the chain has loops, which the cutter has swept away. `untangle` finds each crossing
-on the true curves and takes the loop out.
+A space has five curves: flank, fillet, root land, fillet, flank; each tooth has its tip. Without
+undercut they join smoothly. An undercut flank crosses its fillet, in narrow roots fillets cross
+each other, and where the radius of curvature is below the dedendum the land crosses itself: then
+the chain has loops, which the cutter removes. `untangle` finds each crossing on the true curves and
+removes the loop.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ from gearcam.numeric.crossings import (
 
 ROWS_PER_TOOTH = 6
 _ABOUT, _WIDE = 32, 0.25
-"""Places on each side of a jump, and how far from it they lie, in lengths of the curve."""
+"""Points on each side of a jump, and their distances from it, in lengths of the curve."""
 
 _SHARP = 0.9
-"""Curvature of a root, in dedenda, from which on it is looked at: at 1 the land has a cusp."""
+"""Curvature times dedendum from which a root is examined: at 1 the land has a cusp."""
 
 _SAMPLES, _DENSER = 49, 4
-"""Places on each curve between which its chords are drawn, and times that they are doubled where
-chords cross and the curves do not."""
+"""Points of the chords of each curve, and how often they are doubled where chords cross but the
+curves do not."""
 
 
 def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
-    """Return the rows of a wheel as if nothing were undercut: five a space and one a tip.
+    """Return the rows of a wheel as if without undercut: five per space and one per tip.
 
     Parameters
     ----------
@@ -51,11 +51,11 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     Returns
     -------
     Rows
-        Row ``6*j + k`` is curve k of the space after the tooth formed as number j; k = 5 is the
-        tip of the tooth after it.
+        Row ``6*j + k`` is curve k of the space after the j-th tooth formed; k = 5 is the tip of the
+        next tooth.
     """
     cutter, half, z = toothing.cutter, toothing.half_tooth, len(toothing.numbers)
-    # A closed wheel's last space ends at its first tooth, one turn on; an open one has none there.
+    # a closed wheel's last space ends at its first tooth, a turn later; an open one has none there
     count = z if toothing.closed else z - 1
     turn, following = np.divmod(np.arange(1, count + 1), z)
     wrap = turn * toothing.track.around
@@ -102,7 +102,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Ints:
     Returns
     -------
     (k,) int array
-        Spaces with an undercut flank, with a root sharper than the dedendum, or without a land.
+        Spaces with an undercut flank, a root radius below the dedendum, or no land.
     """
     z = len(toothing.numbers)
     undercut = np.isfinite(cusps.dedendum)
@@ -117,7 +117,7 @@ def entangled(toothing: Toothing, rows: Rows, cusps: Undercut) -> Ints:
 
 
 def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
-    """Take the loops out of spaces.
+    """Return spaces with their loops removed.
 
     Parameters
     ----------
@@ -126,12 +126,12 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
     rows : Rows
         From `regular_rows`.
     spaces : (k,) int array
-        Which spaces, from 0.
+        Numbers of the spaces, from 0.
 
     Returns
     -------
     list of Rows
-        For each space the curves that are left, with the tip behind them.
+        For each space its remaining curves, followed by the tip.
     """
     curves, samples = WheelCurves(toothing=toothing, rows=rows), _SAMPLES
     made: dict[int, Rows] = {}
@@ -147,7 +147,7 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
 
 
 def _along(curves: WheelCurves, space: int, ring: Ring) -> Rows:
-    """Return the rows of what is left of a space, and the tip behind it."""
+    """Return the remaining rows of a space, followed by the tip."""
     tip = ROWS_PER_TOOTH * (space + 1) - 1
     *inner, last = ring.branches
     branches = [*inner, Branch(last.begin, CurvePoint(tip, float(curves.rows.end[tip])))]
@@ -156,12 +156,12 @@ def _along(curves: WheelCurves, space: int, ring: Ring) -> Rows:
 
 
 def select(rows: Rows, index: Ints) -> Rows:
-    """Return some rows, in the order of `index`."""
+    """Return the rows `index`, in that order."""
     return Rows(**{name: getattr(rows, name)[index] for name in Rows.__dataclass_fields__})
 
 
 def join(parts: list[Rows]) -> Rows:
-    """Return rows one after the other."""
+    """Return the rows joined into one."""
     return Rows(
         **{
             name: np.concatenate([getattr(part, name) for part in parts])
@@ -171,9 +171,9 @@ def join(parts: list[Rows]) -> Rows:
 
 
 def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:
-    """Draw the five curves of spaces, ever denser to where loops can be tiny.
+    """Return points of the five curves of spaces, denser towards places of possible tiny loops.
 
-    These are the form points, and the jumps of the curvature, at which flanks may turn back.
+    These are the form points and the jumps of curvature, at which flanks may turn back.
     """
     t = np.linspace(0.0, 1.0, samples)
     towards_start, towards_end = t**3, 1.0 - (1.0 - t) ** 3
@@ -196,9 +196,9 @@ def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:
 
 
 def _about_jumps(curves: WheelCurves, curve: Ints) -> Array:
-    """Return shares of curves about the jumps of the curvature in them, (*curve.shape, n).
+    """Return parameters from 0 to 1 around the jumps of curvature in curves, (*curve.shape, n).
 
-    Where a curve has fewer than another its beginning is told instead, which is no place more.
+    Curves with fewer jumps are padded with 0, their beginning.
     """
     rows, toothing = curves.rows, curves.toothing
     start, end = rows.start[curve.ravel()], rows.end[curve.ravel()]
@@ -215,6 +215,6 @@ def _about_jumps(curves: WheelCurves, curve: Ints) -> Array:
 
 
 def _points(curves: WheelCurves, index: Ints, phi: Array) -> Plane:
-    """Return points of rows at driver angles, mirrored where the metal is right of rising s."""
+    """Return points of rows at driver angles, mirrored if the metal is to the right of rising s."""
     points = curves.at(index.ravel(), phi.ravel())[0].reshape(phi.shape)
     return np.conj(points) if curves.toothing.turn.imag > 0.0 else points

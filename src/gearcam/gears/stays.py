@@ -1,8 +1,8 @@
-"""Where corners of a wheel stand between the teeth of its ring, while both roll.
+"""Intervals in which a tip corner of a wheel lies inside a tooth space of its ring.
 
-Each corner is followed over as many rolls as the wheel has teeth, but looked at only where it comes
-in or out, and where it is deepest: how far it moves between two rolls is known, and how far it is
-from the tips of the ring at both. Where that is more, it neither comes in nor out between them.
+Each corner is traced over as many rolls as the wheel has teeth, but computed only near its entry,
+its exit and its deepest point: if its distance from the ring's tips at two rolls exceeds its
+largest movement between them, it neither enters nor leaves in between.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from gearcam.gears.polar import PolarCurve
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _FIRST = 16
-"""Stretches of the rolls of a corner that are looked at first."""
+"""Intervals into which the rolls of a corner are divided at first."""
 
 
 class Rolls(NamedTuple):
@@ -29,11 +29,11 @@ class Rolls(NamedTuple):
     pitch_point : complex array, mm
         In the wheel's frame.
     turn, shift : complex arrays, 1 and mm
-        A point p of the wheel stands at ``shift + turn*p`` in the ring's frame.
+        A point p of the wheel is at ``shift + turn*p`` in the ring's frame.
     turned : array, rad
-        How far the wheel has turned in the ring's frame, to and fro.
+        Total angle of the wheel in the ring's frame, reversals added.
     way : array, mm
-        How far the pitch point has gone.
+        Path length of the pitch point.
     """
 
     phi: Array
@@ -45,10 +45,10 @@ class Rolls(NamedTuple):
 
 
 class Stays(NamedTuple):
-    """Stays of corners between the ring's teeth, and the ends that are seen of them.
+    """Ends of the intervals that corners spend between the ring's teeth, one entry per end.
 
-    `corner` tells whose; `deep` is the driver angle, rad, in the middle, and `edge` one beyond the
-    end; where a corner never gets out it is the nearest to that.
+    `corner` is the corner's number; `deep` is a driver angle, rad, inside, and `edge` one just
+    beyond the end, or nearest to an end where the corner never leaves.
     """
 
     corner: Ints
@@ -57,10 +57,10 @@ class Stays(NamedTuple):
 
 
 class _Seen(NamedTuple):
-    """Corners where they were looked at, by corner and roll, (n,) each.
+    """Computed states of corners, by corner and roll, (n,) each.
 
-    `roll` is counted from the corner's first; `depth` tells how far it is in the ring, mm, and
-    `clear` how far it has to go at least to come in or out.
+    `roll` is counted from the corner's first; `depth` is its depth inside the ring, mm, and
+    `clear` the least distance that it must move to enter or leave.
     """
 
     corner: Ints
@@ -69,7 +69,7 @@ class _Seen(NamedTuple):
     clear: Array
 
     def before(self, index: Ints, more: _Seen) -> _Seen:
-        """Return these with `more`, one before each of numbers `index`."""
+        """Return these with `more`, inserted before the entries `index`."""
         return _Seen(
             np.insert(self.corner, index, more.corner),
             np.insert(self.roll, index, more.roll),
@@ -79,7 +79,7 @@ class _Seen(NamedTuple):
 
 
 def rolls_of(own: Toothing, mate: Toothing, phi: Array) -> Rolls:
-    """Return a wheel `own` and its `mate` at driver angles `phi`, rad, that do not fall."""
+    """Return the rolls of a wheel `own` and its `mate` at rising driver angles `phi`, rad."""
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
     turn = there.t * np.conj(here.t)
     steps = np.abs(np.angle(turn[1:] * np.conj(turn[:-1])))
@@ -88,18 +88,18 @@ def rolls_of(own: Toothing, mate: Toothing, phi: Array) -> Rolls:
 
 
 def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: PolarCurve) -> Stays:
-    """Find the stays of corners in the ring, and both ends of each that are seen.
+    """Return the ends of all intervals in which corners are inside the ring.
 
     Parameters
     ----------
     rolls : Rolls
-        Where corners may be looked at.
+        Possible roll positions.
     points : (n,) complex array, mm
         The corners, in the wheel's frame.
     first : (n,) int array
-        The roll from which each is followed.
+        First roll of each.
     count : int
-        Over how many rolls.
+        Number of rolls of each.
     edge : PolarCurve
         The ring's tips.
 
@@ -129,10 +129,10 @@ def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: Polar
 
 
 def _open(seen: _Seen, moved: Array) -> Mask:
-    """Tell in which stretches more is to be seen.
+    """Return which intervals need to be divided.
 
-    Those in which a corner may come in or out, which moves by `moved` at most, and those beside
-    which it is deepest, or least deep without coming out.
+    Those in which a corner, which moves by `moved` at most, may enter or leave, and those next to
+    a largest depth, or to a smallest depth inside.
     """
     depth, same = seen.depth, np.diff(seen.corner) == 0
     inside, rises = depth > 0.0, depth[1:] > depth[:-1]
@@ -143,7 +143,7 @@ def _open(seen: _Seen, moved: Array) -> Mask:
 
 
 def _ends(seen: _Seen, last: int) -> tuple[Ints, Ints, Ints]:
-    """Return corners, and their rolls in the middle and beyond the end, of all ends of stays."""
+    """Return the corner, the deepest roll and the roll beyond the end, for all ends."""
     inside, other = seen.depth > 0.0, np.pad(np.diff(seen.corner) != 0, 1, constant_values=True)
     before, after = np.pad(inside, 1)[:-2], np.pad(inside, 1)[2:]
     starts = np.flatnonzero(inside & (other[:-1] | ~before))
@@ -151,7 +151,7 @@ def _ends(seen: _Seen, last: int) -> tuple[Ints, Ints, Ints]:
     found: list[tuple[int, int, int]] = []
     for start, stop in zip(starts.tolist(), stops.tolist(), strict=True):
         depth, roll = seen.depth[start : stop + 1], seen.roll[start : stop + 1]
-        # one roll further out, since the places are rough
+        # one roll further out, since positions are approximate
         ends = [max(int(roll[0]) - 2, 0)] if roll[0] > 0 else []
         ends += [min(int(roll[-1]) + 2, last)] if roll[-1] < last else []
         deep = int(roll[np.argmax(depth)])

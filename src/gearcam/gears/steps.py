@@ -1,7 +1,6 @@
-"""Stepped wheels: the same pair again, its teeth moved on along the pitch curves.
+"""Stepped wheels: layers of the same pair, the teeth of each offset along the pitch curves.
 
-Both centrodes have the same arc length, so teeth that are moved by the same way on both wheels mesh
-as before: each step is a rolled copy.
+Both centrodes have the same arc length, so teeth offset by equal arcs on both wheels still mesh.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from gearcam.gears.spec import StepsSpec
 
 
 def leads(pair: GearPair, spec: StepsSpec) -> tuple[float, ...]:
-    """Return how far the teeth of each step are moved, mm along the pitch curves.
+    """Return the tooth offsets of the steps, mm along the pitch curves.
 
     Parameters
     ----------
@@ -26,12 +25,12 @@ def leads(pair: GearPair, spec: StepsSpec) -> tuple[float, ...]:
     Returns
     -------
     tuple of float
-        Within one pitch, since whole pitches change nothing; the first is 0.
+        Reduced to one pitch, since whole pitches change nothing; the first is 0.
 
     Raises
     ------
     InfeasibleError
-        If open wheels are to be stepped.
+        If the wheels are open.
     """
     if spec.count > 1 and not pair.closed:
         raise InfeasibleError(
@@ -39,7 +38,7 @@ def leads(pair: GearPair, spec: StepsSpec) -> tuple[float, ...]:
             where="steps.count",
             value=spec.count,
             limit=1,
-            nearest="they have one step",
+            nearest="open wheels have one step",
             ways=(Way(near={"steps.count": 1}),),
         )
     pitch = pair.toothings[0].pitch
@@ -48,7 +47,7 @@ def leads(pair: GearPair, spec: StepsSpec) -> tuple[float, ...]:
 
 
 def stepped(pair: GearPair, moved: float) -> GearPair:
-    """Return the pair with its teeth moved on by `moved`, mm (see `leads`)."""
+    """Return the pair with its teeth offset by `moved`, mm (see `leads`)."""
     if moved == 0.0:
         return pair
     first, second = (replace(toothing, moved=moved) for toothing in pair.toothings)

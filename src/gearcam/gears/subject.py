@@ -1,4 +1,4 @@
-"""What the checks of a gear pair look at."""
+"""The input of a gear pair's checks."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from gearcam.numeric.piecewise import extremes
 from gearcam.quantities import NUMBER, Param
 
 KIND = "teeth"
-"""The checks of a pair's teeth and centrodes."""
+"""Registered checks of a pair's teeth and centrodes."""
 
 pair_check = partial(check, kind=KIND)
-"""Makes a function one of them (see `gearcam.findings.check`)."""
+"""Decorator that registers a check (see `gearcam.findings.check`)."""
 
 CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
-"""Limit of the contact ratio, for all checks that ask for it."""
+"""Limit of the contact ratio, shared by several checks."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Subject(Brief):
-    """A pair as built, for checks.
+    """A built pair, with what its checks need.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Subject(Brief):
 
     @property
     def rims(self) -> list[tuple[float, Gear]]:
-        """Metal between bore and root, or outside the roots of a ring, mm, and of which wheel."""
+        """Metal between bore and root, or outside a ring's roots, mm, each with its wheel."""
         found = [
             (gear.least_radius - 0.5 * bore, gear)
             for gear, bore in zip(self.gears, self.bores, strict=True)
@@ -59,7 +59,7 @@ class Subject(Brief):
         return found + ([(self.rim, self.gears[1])] if self.rim is not None else [])
 
     def with_teeth(self, factor: float) -> str:
-        """Return in words with how many teeth, in the same ratio, all is `factor` times as wide."""
+        """Return in words the tooth counts, in the same ratio, that are `factor` times as large."""
         common = math.gcd(*self.pair.teeth)
         each = math.ceil(common * factor * (1.0 + ROUNDING))
         counts = ", ".join(str(count // common * each) for count in self.pair.teeth)
@@ -78,7 +78,7 @@ class Subject(Brief):
 
     @cached_property
     def pressure_angles(self) -> dict[str, tuple[float, float]]:
-        """Largest pressure angle of the flanks that drive each way: phi1 and angle, rad.
+        """Largest pressure angle of the flanks for each direction of driving: phi1 and angle, rad.
 
         The rack's angle and the slope of the centrode add up: on the flanks that drive forward it
         is ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
@@ -93,7 +93,7 @@ class Subject(Brief):
 
     @cached_property
     def accelerations(self) -> tuple[Array, Array]:
-        """Extremes of ``d(i21)/dphi1``: phi1, rad, and values; of a rack over its mean speed."""
+        """Extremes of ``d(i21)/dphi1``: phi1, rad, and values; for a rack over its mean speed."""
         law = self.pair.law
         scale = 1.0 / self.pair.rolling.mean_radius
 
@@ -105,22 +105,22 @@ class Subject(Brief):
 
     @cached_property
     def sides(self) -> tuple[FlankPairs, FlankPairs]:
-        """The pairs of flanks that hold back and those that drive, at the designed distance."""
+        """Pairs of flanks on the coast and driving sides, at the design centre distance."""
         return flank_pairs(self.gears, COAST), flank_pairs(self.gears, DRIVE)
 
     @property
     def contact_ratio(self) -> float:
-        """Smallest contact ratio of any flank, both sides."""
+        """Smallest contact ratio of any flank, on both sides."""
         return min(float(pairs.contact_ratios.min()) for pairs in self.sides)
 
     @property
     def driven(self) -> bool:
-        """Whether flanks touch in every phase, both sides."""
+        """Whether flanks touch in every phase, on both sides."""
         return all(bool(pairs.stretches[2].all()) for pairs in self.sides)
 
     @cached_property
     def tip_pass(self) -> TipPass | None:
-        """Where tips pass each other most closely outside the mesh of an internal pair."""
+        """Least distance of tips outside the mesh of an internal pair."""
         if not self.pair.internal:
             return None
         wheel, ring = self.gears
@@ -129,6 +129,6 @@ class Subject(Brief):
 
     @property
     def backlash(self) -> float:
-        """What the spaces are wider than the teeth along the pitch curve, both wheels', mm."""
+        """Backlash along the pitch curve with the clearances of both wheels, mm."""
         one, two = (toothing.cutter for toothing in self.pair.toothings)
         return 2.0 * (one.half_space + two.half_space) - one.pitch

@@ -1,11 +1,10 @@
-"""Tips that meet outside the mesh of a wheel and a ring, and by how much they pass each other.
+"""Tip interference (trochoid interference) of a wheel and a ring outside the mesh.
 
-A corner of wheel 1, an upper end of a flank, comes into a space of the ring pitches before its
-contact and leaves it pitches behind. Where it is as high as a tip corner beside that space, the
-arc length along the ring's centrode between the feet of both is what they pass each other by: the
-*tip-pass margin*, less than 0 where tips collide. Corners are followed over half a turn of wheel 1
-either way, so that those that come back into the ring elsewhere are found too. Rounded edges are
-taken as sharp.
+A tip corner of wheel 1, the upper end of a flank, enters a space of the ring some pitches before
+its contact and leaves it some pitches after. Where it is level with a tip corner beside that space,
+the arc length along the ring's centrode between the feet of both is the *tip-pass margin*, negative
+where tips collide. Corners are traced over half a turn of wheel 1 in both directions, so that those
+that enter the ring again elsewhere are found too. Rounded edges are taken as sharp.
 
 On circles the margin is ``r2*(theta1*z1/z2 + inv(alpha_w) - inv(alpha_a2) - theta2)``.
 """
@@ -26,25 +25,25 @@ from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import bracketed_root
 
 _ROLLS = 4
-"""Rolls in a pitch at which corners are looked for; they stay in a space for pitches."""
+"""Roll positions per pitch in the search for corners, which stay in a space for several pitches."""
 
 _ANGLE = 1e-14
-"""Driver angle in turns to which a crossing is found: feet are no better."""
+"""Tolerance of a crossing, in turns of the driver: feet are no more exact."""
 
 _NEAR = 1e-6
-"""Part of a turn over which a corner's way is taken as straight, where it crosses a height."""
+"""Part of a turn over which a corner's path is taken as straight where it crosses a height."""
 
 _DIGITS = 9
-"""Digits of margins in pitches that tell which is the least: of equal ones the first is named."""
+"""Digits by which margins, in pitches, are compared: of equal ones the first is reported."""
 
 
 class TipPass(NamedTuple):
-    """Where a corner of wheel 1 passes a tip corner of the ring most closely.
+    """The closest passage of a corner of wheel 1 and a tip corner of the ring.
 
     Parameters
     ----------
     margin : float, mm
-        Along the ring's centrode; less than 0 where tips collide, infinite where none meet.
+        Along the ring's centrode; negative where tips collide, infinite where none come near.
     tooth : int
         Number of the tooth of wheel 1.
     sigma : float
@@ -52,8 +51,8 @@ class TipPass(NamedTuple):
     phi1 : float, rad
         Driver angle.
     slope : float
-        How far it goes along the centrode there while it goes away from it by as much as 1; 0 where
-        it is looked at an angle that is given.
+        Movement of the corner along the centrode per unit of movement away from it; 0 for a
+        passage at a fixed angle.
     """
 
     margin: float
@@ -64,7 +63,7 @@ class TipPass(NamedTuple):
 
 
 class _Corners(NamedTuple):
-    """Corners that are followed: points, mm, numbers of teeth, sides; (n,) each."""
+    """Corners to trace: points, mm, tooth numbers, sides; (n,) each."""
 
     points: Plane
     tooth: Ints
@@ -77,12 +76,12 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     Parameters
     ----------
     wheel, ring : Outline
-        Both, with the ends of their flanks.
+        Both outlines, with the ends of their flanks.
 
     Returns
     -------
     TipPass
-        Of closed wheels the first of what repeats with the lobes.
+        For closed wheels the first of those that repeat with the lobes.
     """
     own, edge = wheel.toothing, PolarCurve(ring.toothing, ring.toothing.cutter.addendum)
     corners = _corners(wheel, ring.toothing)
@@ -107,7 +106,7 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
 
 
 def _corners(wheel: Outline, mate: Toothing) -> _Corners:
-    """Return the corners of whole teeth, of closed wheels of those of a lobe."""
+    """Return the corners of whole teeth; for closed wheels those of one lobe."""
     own, tips = wheel.toothing, wheel.flanks.tips
     points = own.flank_points(own.frames(tips.phi, curved=False), *own.flanks)
     numbers = np.array(own.numbers)[own.whole]
@@ -120,9 +119,9 @@ def _corners(wheel: Outline, mate: Toothing) -> _Corners:
 
 
 def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve) -> Stays:
-    """Follow corners over half a turn either way from the middle of their tooth.
+    """Trace corners over half a turn to both sides of the middle of their tooth.
 
-    Those of an open wheel over all of its travel.
+    Corners of an open wheel are traced over its whole travel.
     """
     half = math.ceil(0.5 * own.teeth) if own.closed else own.teeth
     count, each = 2 * half * _ROLLS + 1, len(corners.points) // 2
@@ -136,9 +135,9 @@ def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve) 
 def _margins(
     own: Toothing, ring: Outline, points: Plane, edge: PolarCurve, stays: Stays
 ) -> tuple[Array, Array, Mask]:
-    """Return margins, mm, driver angles, rad, and which cross a tip's height, of all stays, (2n,).
+    """Return margins, mm, driver angles, rad, and a mask of height crossings, for all ends, (2n,).
 
-    First to the tooth that begins a space, with its flank sigma = 1, then to that which ends it.
+    First relative to the tooth before the space, with its flank sigma = 1, then to the one after.
     """
     mate, tips = ring.toothing, ring.flanks.tips
     corner = np.tile(points[stays.corner], 2)
@@ -156,7 +155,7 @@ def _margins(
     height = tips.height[index]
     low, high = low - height, seen(out)[1] - height
     meets &= low < 0.0
-    # a corner that never gets out is looked at where it is nearest to that
+    # a corner that never leaves is evaluated where it is nearest to leaving
     crosses = meets & (high > 0.0)
     phi = bracketed_root(
         lambda x: np.where(crosses, seen(x)[1] - height, 0.0),
@@ -174,7 +173,7 @@ def _margins(
 def _feet(
     own: Toothing, mate: Toothing, edge: PolarCurve, points: Plane | complex, phi: Array
 ) -> tuple[Array, Array]:
-    """Return arc lengths of feet of corners on the ring's centrode, and heights, mm."""
+    """Return arc lengths of the feet of corners on the ring's centrode, and heights, mm."""
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
     path = there.p + there.t * np.conj(here.t) * (points - here.p)
     foot = feet(mate, path, *edge.feet(path))

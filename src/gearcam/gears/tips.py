@@ -1,4 +1,4 @@
-"""Where flanks end at the top: at the addendum curve, at the mate's reach, or at a cusp."""
+"""Upper ends of flanks: at the addendum curve, at the limit set by the mate, or at a cusp."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import newton_in_bracket
 
 _MISS = 1e-12
-"""Distance at which curves meet, in pitches."""
+"""Distance, in pitches, at which curves count as crossing."""
 
 _ROUNDING = 2e-14
-"""The same in lengths of the centrode: places are rounded, and where the driver's radius grows
-fastest, along an ellipse of eccentricity 0.99, so far."""
+"""The same in lengths of the centrode: the rounding of points where the driver's radius grows
+fastest, on an ellipse of eccentricity 0.99."""
 
 ROUGH = 1e3
-"""Times that distance within which curves meet that Newton's method has no better place of."""
+"""Multiple of that distance that is accepted where Newton's method gets no nearer."""
 
 _STEPS, _QUICK = 25, 8
-"""Steps of Newton's method, and where there is another way; four or five serve where curves do
-cross."""
+"""Steps of Newton's method, and fewer where another method can follow; curves that cross need four
+or five."""
 
 _SHORT = 0.9
-"""Share of the way to the end of a curve that a step goes at most."""
+"""Largest step, as a share of the distance to the end of the curve."""
 
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
@@ -40,7 +40,7 @@ _Way = Callable[[Array, Frames], tuple[Plane, Plane]]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TipEnds(Brief):
-    """Where flanks end at the top: one entry a flank.
+    """Upper ends of flanks, one entry per flank.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class TipEnds(Brief):
     full: Mask
 
     def replaced(self, which: Ints, ends: TipEnds) -> TipEnds:
-        """Return the same with the `ends` of flanks `which` in place of theirs."""
+        """Return these with the ends of flanks `which` replaced by `ends`."""
         made = deepcopy(self)
         made.phi[which], made.foot[which] = ends.phi, ends.foot
         made.height[which], made.full[which] = ends.height, ends.full
@@ -68,7 +68,7 @@ class TipEnds(Brief):
 
 
 def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> TipEnds:
-    """Find where flanks meet the addendum curve, the parallel of the centrode at the addendum.
+    """Return where flanks meet the addendum curve, the parallel of the centrode at the addendum.
 
     Parameters
     ----------
@@ -82,12 +82,12 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
     Returns
     -------
     TipEnds
-        By distance from the centrode, never by rack height: the two differ where it is curved.
+        Height is the distance from the centrode, not rack height: they differ where it is curved.
 
     Notes
     -----
-    Newton's method on the two curves is tried first and kept where its root is one, inside the
-    allowed reach; the others are searched in their bracket.
+    Newton's method on the two curves is tried first and kept where it converges inside the allowed
+    reach; the others are bracketed.
     """
     addendum = toothing.cutter.addendum
     phi, foot, height = _quick(toothing, sf, sigma)
@@ -103,7 +103,7 @@ def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> Ti
 
 
 def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, Array]:
-    """Driver angles of the crossings with the addendum curve, and feet; height nan if none."""
+    """Driver angles of crossings with the addendum curve, and feet; height is nan without one."""
     addendum, alpha, w = toothing.cutter.addendum, toothing.cutter.alpha, toothing.turn
     reach = 0.85 * addendum / (np.sin(alpha) * np.cos(alpha))
     guess = np.stack([sf - sigma * reach, sf - sigma * reach * np.sin(alpha) ** 2])
@@ -118,14 +118,14 @@ def _quick(toothing: Toothing, sf: Array, sigma: Array) -> tuple[Array, Array, A
 
 
 def near(toothing: Toothing) -> float:
-    """Return the distance at which curves of a wheel meet, mm: rounding."""
+    """Return the distance, mm, at which curves of a wheel count as crossing: rounding."""
     return max(_MISS * toothing.pitch, _ROUNDING * toothing.track.length)
 
 
 def flank_at(
     toothing: Toothing, sf: Array, sigma: Array, _: Array, frames: Frames
 ) -> tuple[Plane, Plane]:
-    """Return points of flanks (`sf`, `sigma`) of a `toothing` at `frames`, and how they move on."""
+    """Return points of flanks (`sf`, `sigma`) at `frames`, and their driver-angle derivatives."""
     return toothing.flank_points(frames, sf, sigma), toothing.flank_motion(frames, sf, sigma)
 
 
@@ -137,9 +137,9 @@ def cross(
     limits: tuple[Array, Array] | None = None,
     most: int = _STEPS,
 ) -> tuple[Array, Array, Array]:
-    """Find where curves of a toothing cross, n pairs at once, by Newton's method.
+    """Return crossings of curves of a toothing, n pairs at once, by Newton's method.
 
-    A step that leads no nearer is halved: where curvatures jump, whole ones may go to and fro.
+    A step that gets no nearer is halved: where curvatures jump, full steps may oscillate.
 
     Parameters
     ----------
@@ -148,9 +148,9 @@ def cross(
     one, two : callable
         ``one(phi, frames)`` returns points, mm, and their derivatives by the driver angle.
     phi : (2, n) array, rad
-        Driver angles to begin with, on both: not at a cusp, where no step is known.
+        First guesses on both curves: not at a cusp, where the derivative is 0.
     limits : two (2, n) arrays, rad, optional
-        Ends of the curves, on either side: beyond a cusp there is no way back.
+        Lower and upper ends of the curves: steps beyond a cusp would not return.
     most : int
         Steps at most.
 
@@ -159,7 +159,7 @@ def cross(
     x, y : (n,) arrays, rad
         Driver angles on both curves.
     miss : (n,) array, mm
-        How far their points are apart, before a last step that is no longer than the one to it.
+        Distance of their points, before a last step that is no longer than the one before it.
     """
     place, step, last = phi, np.zeros_like(phi), np.zeros_like(phi)
     miss, nearer = np.full(phi.shape[1:], np.inf), np.zeros(phi.shape[1:], dtype=bool)
@@ -168,7 +168,7 @@ def cross(
             frames = toothing.frames(phi)
             (p, move), (q, slide) = one(phi[0], frames.some(0)), two(phi[1], frames.some(1))
             gap = p - q
-            # both steps over one determinant: the curves' directions against each other
+            # both steps share one determinant, the cross product of the curves' directions
             ahead = np.imag(np.conj(np.stack([-slide, move])) * gap)
             ahead = ahead / np.imag(np.conj(np.stack([slide, move])) * np.stack([move, slide]))
             ahead = np.where(np.isfinite(ahead).all(axis=0), ahead, 0.0)
@@ -189,7 +189,7 @@ def cross(
 def flank_crossings(
     toothing: Toothing, sf: Array, sigma: Array, foot: Array, end: Array
 ) -> tuple[Array, Mask]:
-    """Find where two flanks of teeth cross.
+    """Return where two flanks of teeth cross.
 
     Parameters
     ----------
@@ -198,12 +198,12 @@ def flank_crossings(
     sf, sigma : (2, n) arrays, mm and 1
         The flanks, both of a tooth on one turn.
     foot, end : (2, n) arrays, rad
-        Driver angles between which they are sought: at the pitch curve, and at the upper ends.
+        Driver angles that bound the crossing: at the pitch curve, and at the upper ends.
 
     Returns
     -------
     phi : (2, n) array, rad
-        Driver angles of the crossing on both.
+        Driver angles of the crossing on both flanks.
     met : (n,) bool array
         Whether they cross.
     """
@@ -216,7 +216,7 @@ def flank_crossings(
 def _search(
     toothing: Toothing, sf: Array, sigma: Array, highest: Array
 ) -> tuple[Array, Array, Array, Mask]:
-    """Search tip ends in their bracket: driver angles, feet, heights, whether they are full."""
+    """Return driver angles, feet, heights and the `full` mask of tip ends, by bracketing."""
     track, addendum, w = toothing.track, toothing.cutter.addendum, toothing.turn
     around = _around(toothing)
     below = sf - sigma * highest * np.sin(toothing.cutter.alpha) ** 2
@@ -251,7 +251,7 @@ def _search(
 
 
 def _around(toothing: Toothing) -> float:
-    """How far the feet of flanks may be from them along the centrode, mm."""
+    """Largest distance along the centrode between flanks and the feet of their points, mm."""
     return 3.0 * toothing.cutter.half_space + toothing.cutter.addendum
 
 

@@ -1,18 +1,16 @@
-"""Tracks: the curves that teeth are set along.
+"""Tracks: the curves along which teeth are placed.
 
-A *track* is the pitch curve of one wheel, ring or rack in its own coordinates. Its places are named
+A *track* is the pitch curve of one wheel, ring or rack in its own coordinates. Its points are given
 by one *parameter* phi, rad, which rises along it; two tracks that roll on each other share the
-parameter (of a pair made from a ratio law the driver angle) and the arc length ``s(phi)``. At phi a
-track carries the *frame* of its pitch point: point P, unit tangent T (rising s), unit normal ``N =
+parameter (for a pair from a ratio law the driver angle) and the arc length ``s(phi)``. At phi a
+track has the *frame* of its pitch point: point P, unit tangent T (rising s), unit normal ``N =
 turn*T`` from the metal to the tips of the teeth, and the curvature kappa, so that ``dT/ds =
 -kappa*N`` and ``dN/ds = +kappa*T``; a track that is convex towards its tips has kappa > 0. `turn`
 is -1j where s runs counter-clockwise with the metal inside (a driver), +1j where s runs clockwise
 (an external wheel, a rack), and also where it runs counter-clockwise with the metal outside (a
-ring). So `turn` and `clockwise`, the sense of rising s about the metal's outline, are two things.
+ring). So `turn` is not the same as `clockwise`, the sense of rising s around the metal.
 
-A toothing needs nothing else of what it is cut on: neither the law nor the mate.
-
-Refused: nothing. Depends on numeric.
+A toothing depends on nothing but its track: neither the law nor the mate. Depends on numeric.
 """
 
 from __future__ import annotations
@@ -37,25 +35,25 @@ Wheel = Literal[1, 2]
 WHEELS: tuple[Wheel, Wheel] = (1, 2)
 
 _ROWS = 1025
-"""Rows of the table from which the inverse of an arc length starts: Newton then takes two steps."""
+"""Rows of the table that starts the inverse of an arc length: Newton then takes two steps."""
 
 _JUMP = 1e-3
-"""Change of the curvature at a knot, over a pitch, that neither turns a flank back nor makes two
-places of contact."""
+"""Change of the curvature at a knot, times the pitch, that is too small to turn a flank back or to
+make a second point of contact."""
 
 _BESIDE = 1e-9
 """Periods on both sides of a knot at which the curvature is compared."""
 
 _PAD = 1e-12
-"""What brackets of the inverse are widened by, in periods: the table is rounded."""
+"""Widening of the inverse's brackets, in periods, for the rounding of the table."""
 
 _ANGLE = 1e-10
-"""Step of Newton's method at which the inverse ends, in periods: what it misses then goes with the
-square of the step, and is less than rounding wherever the arc length has an expansion."""
+"""Step of Newton's method, in periods, at which the inverse ends: the remaining error goes with its
+square, and is below rounding wherever the arc length has an expansion."""
 
 _ROUNDING = 4e-16
-"""What an arc length is missed by at which it ends too, in those of a period: rounding; steps stay
-larger where the curve hardly moves."""
+"""Residual, in lengths of a period, at which it also ends: rounding. Steps stay larger where the
+curve hardly moves."""
 
 
 class Frames(NamedTuple):
@@ -80,20 +78,20 @@ class Frames(NamedTuple):
     s: Array
 
     def some(self, which: Ints | Mask | int) -> Frames:
-        """Return those at some of the parameters; a curvature that is left out stays so."""
+        """Return the frames at some of the parameters; an empty curvature stays empty."""
         kappa = self.kappa[which] if self.kappa.size else self.kappa
         return Frames(self.p[which], self.t[which], kappa, self.speed[which], self.s[which])
 
 
 class LeastRadius(NamedTuple):
-    """Where a track bends most to one side.
+    """The sharpest bend of a track to one side.
 
     Parameters
     ----------
     phi : float, rad
         Parameter.
     radius : float, mm
-        Radius of curvature there; infinite where nothing bends to that side.
+        Radius of curvature there; infinite if it never bends to that side.
     """
 
     phi: float
@@ -113,9 +111,9 @@ class ArcLength(Brief):
     period : float, rad
         The parameter of one period.
     periodic : bool
-        Whether it goes on by repeating.
+        Whether it repeats beyond the period.
     size : float, mm
-        What unit lengths are multiplied by.
+        Factor of unit lengths.
     """
 
     unit: Expansion
@@ -135,18 +133,18 @@ class ArcLength(Brief):
         return self.size * self.unit_length
 
     def within(self, phi: Array) -> tuple[Array, Array]:
-        """Return how many periods lie before parameters, and the parameters within theirs, rad."""
+        """Return the whole periods before parameters, and the parameters within theirs, rad."""
         if not self.periodic:
             return np.zeros(np.shape(phi)), phi
         turns = np.floor(phi / self.period)
         return turns, phi - turns * self.period
 
     def at(self, turns: Array, x: Array) -> Array:
-        """Return s, mm, at parameters as told by `within`."""
+        """Return s, mm, at parameters as split by `within`."""
         return (self.unit(x) + turns * self.unit_length) * self.size
 
     def angle(self, s: ArrayLike) -> Array:
-        """Return the parameters, rad, at arc lengths, mm: a table, then Newton bracketed."""
+        """Return the parameters, rad, at arc lengths, mm, by table and bracketed Newton steps."""
         unit = np.asarray(s, dtype=float) / self.size
         angles, arcs, slopes = self._table
         if self.periodic:
@@ -158,7 +156,7 @@ class ArcLength(Brief):
         low, high = angles[index], angles[index + 1]
         width = arcs[index + 1] - arcs[index]
         t = (rest - arcs[index]) / width
-        # Hermite's cubic on the inverse: Newton then has little left to do.
+        # Hermite's cubic on the inverse leaves Newton little to do
         ends = slopes[index] * width, slopes[index + 1] * width
         start = np.clip(low + hermite_cubic(high - low, *ends, t)[0], low, high)
 
@@ -171,7 +169,7 @@ class ArcLength(Brief):
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
-        """Parameters, unit arc lengths and dphi/ds over a period, or all that is known."""
+        """Parameters, unit arc lengths and dphi/ds over a period, or over the whole range."""
         angles = np.linspace(self.unit.knots[0], self.unit.knots[-1], _ROWS)
         arcs = np.append(self.unit(angles[:-1]), self.unit.last)
         return angles, arcs, 1.0 / self.speed(angles)
@@ -179,22 +177,22 @@ class ArcLength(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Track(Brief, ABC):
-    """A curve that teeth are set along (see above).
+    """A curve along which teeth are placed (see above).
 
     Parameters
     ----------
     arc : ArcLength
         Its arc length; two tracks that roll on each other share it.
     periods : int
-        How often the period of `arc` fits into it.
+        Number of periods of `arc` in it.
     closed : bool
-        Whether it comes back to its beginning.
+        Whether it returns to its beginning.
     slides : bool
-        Whether it is a rack's, which has no shaft; a wheel turns about the origin.
+        Whether it belongs to a rack, which has no shaft; a wheel turns about the origin.
     turn : complex
         ``N = turn*T``.
     clockwise : bool
-        Whether rising s runs clockwise around what is inside the outline.
+        Whether rising s runs clockwise around the inside of the outline.
     """
 
     arc: ArcLength
@@ -231,26 +229,26 @@ class Track(Brief, ABC):
         phi : array, rad
             Parameters.
         curved : bool
-            Whether the curvature is wanted; else it is an empty array, and time is saved.
+            Whether to compute the curvature; if not it is an empty array.
 
         Returns
         -------
         Frames
-            In the own coordinates of the wheel or rack.
+            In the coordinates of the wheel or rack.
         """
 
     @abstractmethod
     def rotation(self, phi: Array) -> Array:
-        """Return how far the wheel has turned at parameters, rad; of a rack how far it moved."""
+        """Return the wheel's angle of rotation at parameters, rad; for a rack its travel, mm."""
 
     @abstractmethod
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
-        """Return the knots, where kappa may jump, in stretches.
+        """Return the knots, where kappa may jump, in intervals.
 
         Parameters
         ----------
         low, high : (n,) arrays, rad
-            Ends of the stretches; the low one belongs to its stretch, the high one does not.
+            Ends of the intervals; the low end is included, the high end is not.
 
         Returns
         -------
@@ -259,14 +257,14 @@ class Track(Brief, ABC):
         """
 
     def jumps_between(self, low: Array, high: Array, pitch: float) -> tuple[Ints, Array]:
-        """Return the knots in stretches where kappa does jump.
+        """Return the knots in intervals at which kappa does jump.
 
         Parameters
         ----------
         low, high : (n,) arrays, rad
             See `knots_between`.
         pitch : float, mm
-            Of the teeth: a change that bends them by next to nothing is no jump.
+            Pitch of the teeth: changes too small to affect them do not count.
 
         Returns
         -------
@@ -292,17 +290,17 @@ class Track(Brief, ABC):
 
     @property
     def hollow(self) -> bool:
-        """Whether the outline is the edge of a hole: of a ring that goes all around."""
+        """Whether the outline is the edge of a hole: a closed ring."""
         return self.ring and self.closed
 
     @property
     def convex(self) -> LeastRadius:
-        """The least convex radius."""
+        """The bend of least convex radius."""
         return self._least_radius(1.0)
 
     @property
     def concave(self) -> LeastRadius:
-        """The least concave radius."""
+        """The bend of least concave radius."""
         return self._least_radius(-1.0)
 
     def _least_radius(self, sign: float) -> LeastRadius:

@@ -1,8 +1,8 @@
-"""Undercut: where a flank turns back on itself, tooth by tooth and side by side.
+"""Undercut: where a flank turns back on itself, for each tooth and side.
 
-A flank is regular while ``sigma*g = sin(alpha) + w*kappa*cos(alpha)`` is positive, with the
+A flank is regular where ``sigma*g = sin(alpha) + w*kappa*cos(alpha)`` is positive, with the
 curvature at the rolling point. On a convex centrode it can vanish below the pitch curve, on a
-concave one above; at a knot the curvature may jump, and g with it.
+concave one above; at a knot the curvature, and so g, may jump.
 """
 
 from __future__ import annotations
@@ -18,24 +18,24 @@ from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.roots import bracketed_root
 
 _STEPS = 33
-"""Places along a flank at which a change of sign is looked for, the knots' apart."""
+"""Points along a flank in the search for a change of sign, besides the knots."""
 
 _BESIDE = 1e-9
-"""How far from a knot its two sides are looked at, over the length of the flank."""
+"""Distance from a knot at which its two sides are evaluated, over the length of the flank."""
 
 _NEAR = 0.05
-"""Regularity below which a minimum is looked at closer: it may hide two changes of sign."""
+"""Regularity below which a minimum is refined: it may hide two changes of sign."""
 
 _SECTIONS = 45
-"""Golden sections of a minimum: its place to rounding."""
+"""Golden-section steps of a minimum: exact to rounding."""
 
 _ANGLE = 1e-14
-"""Driver angle in periods to which a cusp is found: rounding."""
+"""Tolerance of a cusp's driver angle, in periods: rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Undercut(Brief):
-    """Where flanks turn back on themselves: one entry a flank.
+    """Cusps at which flanks turn back on themselves, one entry per flank.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Undercut(Brief):
 def find_cusps(
     toothing: Toothing, sf: Array, sigma: Array, lowest: float, highest: float
 ) -> Undercut:
-    """Find the first cusp of every flank on either side of the pitch curve, exactly.
+    """Return the first cusp of every flank on both sides of the pitch curve.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def find_cusps(
     sf, sigma : (n,) arrays
         Flanks.
     lowest, highest : float, mm
-        Range of reach that a flank could have: down to the form point, up to the tip.
+        Range of reach: down to the form point, up to the tip.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def find_cusps(
 
 
 def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
-    """First zero of the regularity between w = 0 and `reach`, or an infinity of its sign."""
+    """First zero of the regularity from w = 0 to `reach`, or infinity of the sign of `reach`."""
 
     def regularity(phi: Array, at: Ints) -> Array:
         return toothing.regularity(toothing.frames(phi), sf[at], sigma[at])
@@ -105,7 +105,7 @@ def _first_cusp(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Ar
 
 
 def _cusp_grid(toothing: Toothing, sf: Array, sigma: Array, reach: float) -> Array:
-    """Driver angles from w = 0 to `reach`, a flank a row, both sides of every knot among them."""
+    """Driver angles from w = 0 to `reach`, one row per flank, with both sides of every knot."""
     start, end = toothing.track.angle(np.stack([sf, sf - sigma * reach]))
     span = end - start
     flank, knots = toothing.track.knots_between(np.minimum(start, end), np.maximum(start, end))
