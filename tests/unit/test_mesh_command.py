@@ -132,7 +132,7 @@ def test_a_wrong_setting_is_refused(
     ("options", "words"),
     [
         (["--center", "500"], "do not mesh"),
-        (["--teeth", "12"], "take more steps or another range"),
+        (["--teeth", "12"], "use more steps or another range"),
         (["--overclosure", "1e-9"], "is enough"),
     ],
 )

@@ -1,7 +1,6 @@
-"""Contact: where flanks touch at a phase, how they slide and roll, and in which direction.
+"""Points of contact at given phases, with sliding, relative curvature and direction of force.
 
-For the wheels as they are made and mounted (see `gearcam.gears.contact`): `points` of contact at
-phases, with sliding, curvature and force.
+For wheels as designed or as mounted (see `gearcam.gears.contact`).
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _NEAR, _FARTHER = 0.5, 20.0
-"""Flanks may touch at more than one place near a jump of the curvature: so many pitches from it at
-most, and no more times than they are apart where they would touch as designed."""
+"""Near a jump of the curvature flanks may touch at more than one place: within this many pitches of
+it, and within this multiple of their distance at the nominal contact."""
 
 _ROUNDING = 1e-9
-"""Share of that reach by which both sides of a jump are told apart."""
+"""Offset of the two sides of a jump, as a share of that range."""
 
 _DIGITS = 12
-"""Decimal places of leads, rad or mm, that are not rounding."""
+"""Decimal places of leads, rad or mm, above rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,22 +37,22 @@ class Contacts:
     pair : (n,) int array
         j.
     lead : (n,) array, rad
-        The driven wheel's turn from its nominal place when this pair touches; of a rack mm.
+        Angle of the driven wheel from its nominal position when this pair touches; for a rack mm.
     point, force : (n,) complex arrays, mm and 1
-        The point, and the unit direction in which the driver presses.
+        The point, and the unit direction of the driver's force.
     pressure_angle : (n,) array, rad
-        Between the force and the perpendicular to the line of centres; positive pushes the teeth
-        out of mesh: both shafts apart, those of a ring and its wheel together.
+        Between the force and the perpendicular to the line of centres; positive if the force
+        separates the teeth: it pushes the shafts apart, those of a ring and its wheel together.
     sliding : (n,) array, mm/rad
-        Sliding speed along the driver's flank, tip outward, per rad of the driver: driver's arc
-        less the driven one's.
+        Sliding speed along the driver's flank, towards its tip, per rad of the driver: driver's
+        arc less driven arc.
     specific : (2, n) array
-        Specific sliding of both wheels: the difference of the arcs over the wheel's own
+        Specific sliding of both wheels: the difference of the arcs over the wheel's own arc
         (000, eqs. 4.84, 4.85).
     curvature : (n,) array, 1/mm
         Relative curvature of the flanks.
     lever : (2, n) array, mm
-        Distance of the line of the force from both axes; a rack has none.
+        Distance of the line of force from both shafts; nan for a rack.
     """
 
     step: Ints
@@ -136,10 +135,10 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
 def sought(
     pairs: FlankPairs, phi1: Array, nominal: Pose
 ) -> tuple[Ints, Ints, tuple[Array, Array] | None]:
-    """Return where the common normals of flanks are sought.
+    """Return the intervals in which to search for common normals of flanks.
 
-    Beside a jump of the curvature flanks that are mounted otherwise than designed may share more
-    than one, and Newton's method find none: they are sought on each side of the jump, too.
+    Near a jump of the curvature flanks mounted at another distance may have more than one, and
+    Newton's method may find none: there each side of the jump is searched too.
 
     Parameters
     ----------
@@ -148,14 +147,14 @@ def sought(
     phi1 : (n,) array, rad
         Phases.
     nominal : Pose
-        Where the search begins: what flanks miss of touching there is how far they stand apart.
+        Start of the search.
 
     Returns
     -------
     step, pair : (k,) int arrays
         Numbers of phases, and j; some more than once.
     limits : ((k,) array, (k,) array) or None
-        Driver angles, rad, between which rolls are sought; None where no jump is near.
+        Driver angles, rad, that bound the rolls; None if no jump is near.
     """
     step, pair = pairs.beside(phi1)
     track, speed = pairs.track, pairs.track.frames(phi1, curved=False).speed
@@ -167,7 +166,7 @@ def sought(
     at = normals(pairs, nominal.take(some), pairs.separation(pair[first]))
     apart = np.zeros(phi1.shape)
     apart[some] = np.abs(at.equations[1:]).max(axis=0)
-    # the nearest jump of each phase
+    # the jump nearest to each phase
     away = np.abs(knot - phi1[near]) * speed[near]
     nearest = np.argsort(away, kind="stable")
     nearest = nearest[(away <= _FARTHER * apart[near])[nearest]]
@@ -184,21 +183,21 @@ def sought(
 
 
 def outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Ints:
-    """Choose of each pair at a phase the normal at which the driver pushes furthest.
+    """Return for each pair at each phase the normal at which the driver pushes furthest.
 
     Parameters
     ----------
     step, pair : (n,) int arrays
         Numbers of phases, and j.
     outward : (n,) array
-        How far: a lead, rad or mm, or a depth, mm.
+        Push at each normal: a lead, rad or mm, or a depth, mm.
     touching : (n,) bool array
-        Which come into question.
+        Mask of the candidates.
 
     Returns
     -------
     (k,) int array
-        Those chosen, by phase, then by pair.
+        Indices, ordered by phase, then by pair.
     """
     at = np.flatnonzero(touching)
     at = at[np.lexsort((-np.round(outward[at], _DIGITS), pair[at], step[at]))]
@@ -207,19 +206,19 @@ def outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Ints:
 
 
 def contact_columns(found: Contacts, distance: float) -> dict[str, Array]:
-    """Return what tables tell of points of contact.
+    """Return the table columns of points of contact.
 
     Parameters
     ----------
     found : Contacts
         The points.
     distance : float, mm
-        As mounted (see `Mounting`).
+        Mounted distance (see `Mounting`).
 
     Returns
     -------
     dict of str to (n,) array
-        Columns; what is not finite does not exist.
+        Columns by name; entries that are not finite do not exist.
     """
     return {
         "contact_radius1_mm": np.abs(found.point),

@@ -1,7 +1,7 @@
-"""The checks of what drives: of a pair as designed and, in a study, as mounted.
+"""Checks of continuous drive: of a pair as designed and, in a study, as mounted.
 
-A check sees what has `sides`: the pairs of flanks that hold back and those that drive. Importing
-this room registers them.
+A check takes an object with `sides`, the pairs of flanks of the coast and driving side. Importing
+this module registers the checks.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from gearcam.meshing.settings import KIND
 from gearcam.numerals import shown
 
 _SHOWN = 3
-"""Ranges of driver angles that a finding names."""
+"""Largest number of driver-angle ranges that a finding lists."""
 
-_FEW = "Few teeth carry at a time."
+_FEW = "Too few tooth pairs are in contact at a time."
 
 
 class Sided(Protocol):
-    """What these checks look at."""
+    """Input of these checks."""
 
     @property
     def sides(self) -> tuple[FlankPairs, ...]:
@@ -34,7 +34,7 @@ class Sided(Protocol):
 
 
 def ranges_text(ranges: list[tuple[float, float]]) -> str:
-    """Return ranges of driver angles, rad, in degrees, with the number of those left out."""
+    """Return ranges of driver angles, rad, as text in degrees; with the number of those omitted."""
     degrees = [(math.degrees(a), math.degrees(b)) for a, b in ranges[:_SHOWN]]
     named = [f"{shown(a)}" if a == b else f"{shown(a)} to {shown(b)}" for a, b in degrees]
     more = f" and {len(ranges) - _SHOWN} more" if len(ranges) > _SHOWN else ""
@@ -42,12 +42,12 @@ def ranges_text(ranges: list[tuple[float, float]]) -> str:
 
 
 def arcs_text(found: list[NonContact]) -> str:
-    """Return the stretches in words."""
+    """Return the stretches as text."""
     return ranges_text([(each.start, each.end) for each in found])
 
 
 def side_name(pairs: FlankPairs) -> str:
-    """Return what the flanks of a side do."""
+    """Return the driving direction of a side, as text."""
     return "driving forward" if pairs.side == DRIVE else "driving backward"
 
 
@@ -67,7 +67,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
     It is an error below 1, or where no flanks touch. `gearcam mesh` checks the pair as mounted.
     Equal values for both directions are reported once.
 
-    Looks at: smallest contact ratio of any flank, both sides; what drives where no flanks touch.
+    Looks at: smallest contact ratio of any flank, both sides; stretches without contact of flanks.
     """
     told: dict[str, list[tuple[float, str]]] = {}
     for pairs in subject.sides:
@@ -79,38 +79,38 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
         if found and all(stretch.edges for stretch in found):
             apart = max(stretch.apart for stretch in found)
             message = (
-                f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}. Meanwhile ends of flanks "
-                f"drive: they scratch, and the driven wheel is up to {shown(apart, 3)} mm off its "
-                "place along the pitch curve."
+                f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}. There tooth edges drive: "
+                f"they scrape, and the driven wheel is up to {shown(apart, 3)} mm off its position "
+                "along the pitch curve."
             )
         elif found:
             message = (
                 f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}, and in part of this "
-                "nothing drives at all."
+                "range nothing drives at all."
             )
         elif worst < 1.0:
-            message = "This flank carries for less than a pitch; its neighbours drive meanwhile."
+            message = "This flank is in contact for less than a pitch; its neighbours then drive."
         place = f"{side_name(pairs)}, wheel 1, tooth {tooth}"
         told.setdefault(message, []).append((worst, place))
     for message, sides in told.items():
         where = "; ".join(place for _, place in sides)
         severity: Severity = "warning" if message == _FEW else "error"
         worst = min(sides)[0]
-        # flanks that carry long enough may still leave phases without any
+        # even with a contact ratio above 1 some phases may have no contact
         yield Remark(message, where, worst, severity, limit=limit if worst < limit else math.inf)
 
 
 @check("nothing-drives", kind=KIND, severity="error", unit="deg")
 def nothing_drives(subject: Sided, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Report the arcs on which neither flanks nor their ends touch.
+    """Report the arcs on which neither flanks nor tooth edges touch.
 
-    Looks at: arcs of the driver's turn on which nothing touches.
+    Looks at: arcs of the driver's turn without any contact.
     """
     for pairs in subject.sides:
         empty = [stretch for stretch in non_contact(pairs) if not stretch.edges]
         if empty:
             yield Remark(
-                "On these arcs neither flanks nor their ends reach the mate all along: "
+                "On parts of these arcs neither flanks nor tooth edges reach the mate: "
                 "the pair jumps or stops there.",
                 f"{side_name(pairs)}, {arcs_text(empty)}{_repeats(pairs)}",
                 math.degrees(sum(stretch.end - stretch.start for stretch in empty)),

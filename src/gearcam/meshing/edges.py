@@ -1,17 +1,17 @@
-"""First touch: how far the driven wheel can turn until flanks or their ends, the edges, touch.
+"""First contact: how far the driven wheel can turn until flanks or their ends, the edges, touch.
 
-Where flanks share a tangent, `gearcam.gears.normals` knows it without a search. This is for the
+Where flanks share a tangent, `gearcam.gears.normals` solves for it directly. This module is for
 phases in which none do, and for wheels whose teeth are not evenly spaced.
 
-With wheel 1 held at a phase, the points of a driver's flank and those of its mate are compared at
-equal heights seen from what guides the driven wheel (see `gearcam.gears.guide`): the angle
-between them is what it may turn until these points meet; of a rack, the way that it may move. The
-extreme over the common range of heights is the touch of the pair, where the flanks share a tangent
-or at the end of one of them (an edge). The driven wheel lies between the largest of these turns on
-the driving side and the smallest on the other: the first is its transmission error, the difference
-its backlash. Negative backlash means that the pair cannot be assembled.
+With wheel 1 held at a phase, points of a driver's flank and of its mate are compared at equal
+heights relative to the guide of the driven wheel (see `gearcam.gears.guide`): the angle between
+them is the turn that brings these points together; for a rack, the travel. The extreme over the
+common range of heights is the first contact of the pair, where the flanks share a tangent or at the
+end of one of them (an edge). The driven wheel lies between the largest of these turns on the
+driving side and the smallest on the other: the first is its transmission error, the difference its
+backlash. Negative backlash means that the pair cannot be assembled.
 
-Flanks only: that an edge meets the mate's fillet is seen by the stepwise overlap.
+Flanks only: contact of an edge with the mate's fillet is found by the stepwise overlap.
 """
 
 from __future__ import annotations
@@ -29,37 +29,37 @@ from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import bracketed_root
 
 _SAMPLES = 13
-"""Points of a flank between which the extreme is sought: on a smooth flank there is one."""
+"""Points of a flank that bracket the extreme: a smooth flank has one."""
 
 _FOUND = 1e-14
-"""Driver angle, rad, to which a point of a given height is found: rounding, so that the turns of
-points compared differ by no more."""
+"""Tolerance, rad, of the driver angle of a point of given height: rounding, so that compared turns
+differ by no more."""
 
 _EXTREME = 1e-10
-"""Driver angle, rad, to which an extreme is found: the turn there changes with its square."""
+"""Tolerance, rad, of the driver angle of an extreme: the turn changes with its square."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Facing(PlacedFlanks):
-    """Pairs of flanks at phases, seen from the driven wheel's guide, compared at equal heights."""
+    """Pairs of flanks at phases, compared at equal heights relative to the driven wheel's guide."""
 
     def heights(self, points: Plane, directions: Plane) -> tuple[Array, Array]:
-        """Return the heights of points, mm, and how they grow in directions."""
+        """Return the heights of points, mm, and their derivatives along directions."""
         guide = self.pairs.guide
         return guide.height(points), guide.rates(points, directions)[0]
 
     def compare(self, angle: Array) -> tuple[Array, Array]:
-        """Compare flanks at points of the driver's.
+        """Return the turn between flanks at points of the driver's.
 
         Parameters
         ----------
         angle : (n,) array, rad
-            Driver angles that name the points.
+            Driver angles of the points.
 
         Returns
         -------
-        turn, slope : (n,) arrays, rad (of a rack mm) and their change by the height
-            The driven wheel's turn until it meets the points, and its derivative.
+        turn, slope : (n,) arrays, rad (for a rack mm) and the same per mm of height
+            The driven wheel's turn until it meets the points, and its derivative by height.
         """
         guide, (point, direction) = self.pairs.guide, self.at(1, angle, unit=True)
         height = guide.height(point)
@@ -72,15 +72,15 @@ class Facing(PlacedFlanks):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Touches:
-    """Where the flanks of pairs come nearest at phases, one entry a pair that faces its mate.
+    """First contacts of pairs of flanks at phases, one entry per pair with common heights.
 
     Parameters
     ----------
     step, pair : (n,) int arrays
         Number of the phase; j.
-    turn : (n,) array, rad, of a rack mm
-        The driven wheel's turn from its nominal place at which the pair touches: it must lie above
-        on the driving side and below on the other.
+    turn : (n,) array, rad, for a rack mm
+        The driven wheel's turn from its nominal position at which the pair touches: a lower bound
+        of its position on the driving side, an upper bound on the other.
     edge : (n,) bool array
         Whether an end of a flank touches first.
     """
@@ -92,9 +92,9 @@ class Touches:
 
 
 def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
-    """Find the pairs that share a range of heights at phases, rad.
+    """Return the pairs that share a range of heights at phases, rad.
 
-    Returns them with the driver angles, rad, of the range's ends on the driver, root first.
+    With the driver angles, rad, of the ends of the range on the driver, root first.
     """
     step, pair = pairs.beside(phi1)
     turn, offset = pairs.guide.stand(pairs.guide.nominal(phi1)[step])
@@ -105,7 +105,7 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
         turn=np.stack([np.exp(-1j * phi1[step]), turn]),
         offset=np.stack([np.full_like(offset, -pairs.distance), offset]),
     )
-    # seen from the guide heights fall from root to tip of the driver's flank
+    # relative to the guide, heights fall from root to tip of the driver's flank
     (highest, lowest), (root, tip) = (
         [pairs.guide.height(every.at(wheel, end, unit=True)[0]) for end in ends]
         for wheel, ends in zip(WHEELS, every.ends, strict=True)
@@ -122,7 +122,7 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
 
 
 def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
-    """Return where the flanks of a side come nearest at phases.
+    """Return the first contacts of a side's pairs at phases.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     # on the driving side the largest turn counts, on the other the smallest
     turn = -pairs.side * turn
     rows, best = np.arange(len(low)), turn.argmax(axis=1)
-    # the extreme lies where the slope, taken towards the driver's tip, turns from rising to falling
+    # at the extreme the slope towards the driver's tip changes from positive to negative
     falling = pairs.side * slope
     before, after = np.maximum(best - 1, 0), np.minimum(best + 1, _SAMPLES - 1)
     left = np.where(falling[rows, best] > 0.0, best, before)
@@ -163,7 +163,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
 
 
 def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array, Mask]:
-    """Return how the driven wheel stands where a side touches first, and whether by an edge.
+    """Return the driven wheel's lead at first contact of a side, and whether an edge touches.
 
     Parameters
     ----------
@@ -177,14 +177,14 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     Returns
     -------
     lead : (n,) array, rad
-        Turn from the nominal place (of a rack mm); infinite where nothing touches.
+        Turn from the nominal position (for a rack mm); infinite where nothing touches.
     edge : (n,) bool array
-        Whether an end of a flank decides it.
+        Whether an end of a flank touches first.
 
     Notes
     -----
-    Evenly spaced flanks of a side are parts of curves that touch all together, so that none of
-    their ends can be ahead of a tangency. Elsewhere ends are searched.
+    Evenly spaced flanks of a side lie on curves that all touch together, so that no edge can be
+    ahead of a tangency. Otherwise edges are searched.
     """
     outward = of_leading_pair(pairs.side, len(phi1), found.step, found.lead)
     searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
@@ -197,7 +197,7 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
 
 
 def of_leading_pair(side: int, count: int, step: Ints, turn: Array) -> Array:
-    """Return how far the leading tooth pair of a side pushes the driven wheel at each phase.
+    """Return the turn to which the leading tooth pair of a side pushes the driven wheel.
 
     Parameters
     ----------
@@ -208,12 +208,12 @@ def of_leading_pair(side: int, count: int, step: Ints, turn: Array) -> Array:
     step : (n,) int array
         Phase of each touch.
     turn : (n,) array, rad
-        The driven wheel's turn from its nominal place at it; of a rack mm.
+        The driven wheel's turn from its nominal position at the touch; for a rack mm.
 
     Returns
     -------
     (count,) array
-        ``-side`` times the turn that decides; -inf where nothing touches.
+        ``-side`` times the turn of the leading pair, by phase; -inf where nothing touches.
     """
     outward = np.full(count, -np.inf)
     np.maximum.at(outward, step, -side * turn)
@@ -221,7 +221,7 @@ def of_leading_pair(side: int, count: int, step: Ints, turn: Array) -> Array:
 
 
 def to_pitch_line(pairs: FlankPairs, phi1: Array) -> Array:
-    """Return what turns of the driven wheel are along the pitch curve at phases, mm/rad.
+    """Return arcs along the pitch curve per turn of the driven wheel at phases, mm/rad.
 
     Parameters
     ----------
@@ -233,7 +233,7 @@ def to_pitch_line(pairs: FlankPairs, phi1: Array) -> Array:
     Returns
     -------
     (n,) array
-        The driven radius times the cosine of the pitch line's slope; of a rack the cosine alone.
+        The driven radius times the cosine of the pitch line's slope; for a rack the cosine alone.
     """
     guide, one = pairs.guide, pairs.toothings[0].frames(phi1, curved=False)
     pitch_point = (np.abs(one.p) - guide.place).astype(complex)

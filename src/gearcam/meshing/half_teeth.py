@@ -1,10 +1,10 @@
-"""Half-teeth: the outlines as the stepwise overlap cuts them.
+"""Half-teeth: the pieces into which outlines are cut for the stepwise overlap.
 
 Each wheel is divided into *half-teeth*, from the middle of a tip to the middle of a root and a
-little below; h counts them from the + side of tooth 1 as 0, wheel 2 from the one that faces it.
-Half-tooth h of the driver faces half-tooth h of the driven wheel. Closed wheels count on over their
-turns; an open one has the half-teeth -1 to 2z, from one end of its blank to the other, and a *body*
-below them.
+little below. They are numbered by h, from 0 at the + side of tooth 1; on wheel 2 from the one that
+faces it, so that half-tooth h of the driver faces half-tooth h of the driven wheel. On closed
+wheels h continues over the turns; an open one has the half-teeth -1 to 2z, from one end of its
+blank to the other, and a *body* below them.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 
 _BELOW = 0.5
-"""Depth of the half-teeth below the root, in dedendums: more than any overlap worth a name."""
+"""Depth of the half-teeth below the root, in dedendums: more than any overlap of interest."""
 
 _SAME = 1e-12
-"""Share of the outline within which a middle is a vertex: two so near may cross when turned."""
+"""Share of the outline within which a middle counts as a vertex: closer edges may cross."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -35,23 +35,23 @@ class HalfTeeth:
     Parameters
     ----------
     points : complex array, mm
-        Vertices of all half-teeth in the wheel's frame, one after another: each from the middle of
-        the tip to the middle of the root, below that, and below the tip. Of an open wheel those of
-        its body follow.
-    starts : (n + 1,) int array, of an open wheel (n + 2,)
-        Where each half-tooth begins, and the end.
+        Vertices of all half-teeth in the wheel's frame, in order: each from the middle of the tip
+        to the middle of the root, below that, and below the tip. For an open wheel those of its
+        body follow.
+    starts : (n + 1,) int array, for an open wheel (n + 2,)
+        Index of the first vertex of each half-tooth, and the end.
     chord_error : float, mm
         Largest distance of the curve from its chords.
     tips : (n,) complex array, mm
-        Middle of the tip of each one's tooth.
+        Middle of the tip of each half-tooth's tooth.
     teeth : (n,) int array
-        Number of each one's tooth.
+        Number of each half-tooth's tooth.
     first : int
-        h of the first one: 0, of an open wheel -1.
+        h of the first one: 0, for an open wheel -1.
     pitch : float, mm
         Pitch along the centrode: two half-teeth.
     closed : bool
-        Whether they go all around.
+        Whether the wheel is toothed all around.
     """
 
     points: Plane
@@ -65,42 +65,42 @@ class HalfTeeth:
 
     @property
     def count(self) -> int:
-        """Number of half-teeth: 2z of a closed wheel, 2z + 2 of an open one."""
+        """Number of half-teeth: 2z on a closed wheel, 2z + 2 on an open one."""
         return len(self.tips)
 
     def index(self, half: Ints) -> Ints:
-        """Return the places in arrays of half-teeth h, however counted; -1 where there is none."""
+        """Return the array indices of half-teeth h, in any turn; -1 where there is none."""
         if self.closed:
             return half % self.count
         index = half - self.first
         return np.where((index >= 0) & (index < self.count), index, -1)
 
     def of_pair(self, pair: Ints, side: int) -> Ints:
-        """Return the half-teeth h, in the first turns, of pairs j of a driver's `side`: `pair`."""
+        """Return the half-teeth h, in the first turn, of pairs j of a driver's `side`."""
         return self.index(2 * pair - (side < 0)) + self.first
 
     def tooth(self, half: Ints) -> Any:
-        """Return the numbers of the teeth of half-teeth h, masked where it is the body, (n,)."""
+        """Return the tooth numbers of half-teeth h, (n,), masked for the body."""
         index = half - self.first
         body = index == self.count
         return np.ma.masked_array(self.teeth[np.where(body, 0, index)], mask=body)
 
     @cached_property
     def polygons(self) -> Any:
-        """The half-teeth as shapely polygons, prepared, (n,), then the body of an open wheel."""
+        """The half-teeth as prepared shapely polygons, (n,), then the body of an open wheel."""
         polygons = as_polygons(self.points, np.diff(self.starts))
         shapely.prepare(polygons)
         return polygons
 
     @property
     def sound(self) -> bool:
-        """Whether none crosses itself, as those of very few, deep teeth may."""
+        """Whether no half-tooth crosses itself, as those of very few, deep teeth may."""
         return bool(np.all(shapely.is_valid(self.polygons)))
 
     def distance(self, points: Plane) -> Array:
         """Return the distances of points from the half-teeth, mm; 0 inside."""
         at: Any = shapely.points(points.real, points.imag)
-        body = self.points[self.starts[self.count] :]  # by its edges, of which it has many
+        body = self.points[self.starts[self.count] :]  # by its edges, since it has many
         ends = np.stack([body, np.roll(body, -1)], axis=1)
         edges: Any = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
         tree = shapely.STRtree(np.concatenate([self.polygons[: self.count], edges]))
@@ -111,12 +111,12 @@ class HalfTeeth:
 
     @cached_property
     def circles(self) -> tuple[Plane, Array]:
-        """Centres and radii of circles about the half-teeth, (n,), mm."""
+        """Centres and radii of circles around the half-teeth, (n,), mm."""
         left, low, right, high = shapely.bounds(self.polygons[: self.count]).T
         return 0.5 * (left + right + 1j * (low + high)), 0.5 * np.hypot(right - left, high - low)
 
     def placed(self, which: Ints, turn: Plane, offset: Plane) -> Any:
-        """Return those of numbers `which` as polygons, each with its `turn` and `offset`, mm."""
+        """Return half-teeth `which` as polygons, each moved by its `turn` and `offset`, mm."""
         sizes = self.starts[which + 1] - self.starts[which]
         owner = np.repeat(np.arange(len(which)), sizes)
         first = np.cumsum(sizes) - sizes
@@ -125,7 +125,7 @@ class HalfTeeth:
 
 
 def half_teeth(outline: Outline) -> HalfTeeth:
-    """Divide a wheel into half-teeth.
+    """Return a wheel divided into half-teeth.
 
     Parameters
     ----------
@@ -135,8 +135,8 @@ def half_teeth(outline: Outline) -> HalfTeeth:
     Returns
     -------
     HalfTeeth
-        In the order of rising s: from the middle of tooth 1 (wheel 1) or from the middle of the
-        space before tooth 1 (wheel 2), of an open wheel from its end.
+        In order of rising s: from the middle of tooth 1 (wheel 1) or from the middle of the space
+        before tooth 1 (wheel 2); for an open wheel from its end.
     """
     toothing, (_, points, chord_error) = outline.toothing, outline.sampler.chords
     middles, low, high, tip_first = _middles(outline)
@@ -165,7 +165,7 @@ def half_teeth(outline: Outline) -> HalfTeeth:
 
 
 def _teeth(toothing: Toothing) -> Ints:
-    """Return the number of each half-tooth's tooth."""
+    """Return the tooth number of each half-tooth."""
     teeth = np.repeat(np.array(toothing.numbers), 2)
     if toothing.closed:
         return np.roll(teeth, -1) if toothing.wheel == 1 else teeth
@@ -177,15 +177,15 @@ def _teeth(toothing: Toothing) -> Ints:
 def _middles(outline: Outline) -> tuple[Plane, Ints, Ints, bool]:
     """Middles of lands, mm, vertices before and after them, and whether a tip is the first.
 
-    From the first tooth's tip to the same one again; of an open wheel from end to end. Vertices
-    are counted on where the outline closes. A middle may be a vertex: it is both then.
+    From the first tooth's tip to the same tip again; for an open wheel from end to end. Vertex
+    numbers continue past the closing point. A middle that is a vertex is both its neighbours.
     """
     j, points, _ = outline.sampler.chords
     lands, tip_first = _lands(outline, j[-1])
     size = len(j) - 1
     ring = np.append(points, points[:1])[: size + 1]
     way = np.append(0.0, np.cumsum(np.abs(np.diff(ring))))
-    # the first tip of a closed wheel begins before the outline closes
+    # the first tip of a closed wheel begins before the closing point
     j, way = (np.concatenate([one[:-1] - one[-1], one]) for one in (j, way))
     ring = np.concatenate([ring[:-1], ring])
     chord = np.minimum(np.searchsorted(j, lands, side="right"), len(j) - 1) - 1
@@ -202,7 +202,7 @@ def _middles(outline: Outline) -> tuple[Plane, Ints, Ints, bool]:
 
 
 def _lands(outline: Outline, whole: float) -> tuple[Array, bool]:
-    """J at the ends of lands, (n, 2), `whole` at the end; and whether a tip is the first."""
+    """Vertex numbers at the ends of lands, (n, 2), and whether a tip is the first."""
     (front, front_end), (back, back_end) = _flanks(outline)
     roots = np.stack([front_end, back], axis=1)
     tips = np.stack([back_end[:-1], front[1:]], axis=1)
@@ -219,10 +219,10 @@ def _lands(outline: Outline, whole: float) -> tuple[Array, bool]:
 
 
 def _flanks(outline: Outline) -> Array:
-    """J at which the front of each space begins and ends, and the back, (2, 2, spaces).
+    """Vertex numbers at start and end of the front and back of each space, (2, 2, spaces).
 
-    A space begins with the + flank of its tooth and ends with the - flank of the next one. At the
-    ends of an open driver there is half a space.
+    A space begins with the + flank of its tooth and ends with the - flank of the next one. An open
+    driver has half a space at each end.
     """
     rows, toothing, joints = outline.rows, outline.toothing, outline.sampler.joints
     flank = np.flatnonzero(rows.kind == Curve.FLANK)
@@ -239,7 +239,7 @@ def _flanks(outline: Outline) -> Array:
 
 
 def _inner(outline: Outline, count: int) -> Plane:
-    """Points below the middles of lands; at the ends of an open wheel the corners of its body."""
+    """Points below the middles of lands; at the ends of an open wheel corners of its body."""
     toothing = outline.toothing
     start = toothing.tooth_places[0] if toothing.closed else toothing.ends[0]
     angle = toothing.track.angle(start + 0.5 * toothing.pitch * np.arange(count))
@@ -254,13 +254,13 @@ def _inner(outline: Outline, count: int) -> Plane:
 
 
 def _counted(outline: Outline) -> Plane:
-    """Vertices of what joins the ends of an open wheel, in the order of rising s."""
+    """Vertices of the body between the ends of an open wheel, in order of rising s."""
     points = as_complex(outline.points[len(outline.toothed) :])
     return points if outline.toothing.wheel == 1 else points[::-1]
 
 
 def as_polygons(points: Plane, sizes: Ints) -> Any:
-    """Return polygons of `sizes` vertices each, whose `points` stand one after another."""
+    """Return polygons of `sizes` vertices each, from consecutive `points`."""
     coordinates = np.stack([points.real, points.imag], axis=1)
     owner = np.repeat(np.arange(len(sizes)), sizes)
     return shapely.polygons(shapely.linearrings(coordinates, indices=owner))

@@ -1,4 +1,4 @@
-"""Non-contact stretches: no flanks share a tangent, and ends of flanks drive, or nothing does."""
+"""Non-contact stretches: no flanks share a tangent, and only edges drive, or nothing does."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from gearcam.gears.normals import touch
 from gearcam.meshing.edges import of_leading_pair, to_pitch_line, touches
 
 _ROUNDING = 1e-12
-"""Share of a lobe by which the driver angle of its end may be off by rounding."""
+"""Rounding of the driver angle at the end of a lobe, as a share of it."""
 
 _BETWEEN = np.linspace(0.02, 0.98, 9)
-"""Shares of a stretch at which it is asked what drives."""
+"""Positions in a stretch, as shares of it, at which edge contact is tested."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class NonContact:
-    """A stretch of the driver's way on which no flanks share a tangent.
+    """A range of driver angles in which no flanks share a tangent.
 
     Parameters
     ----------
     start, end : float, rad
         Driver angles.
     edges : bool
-        Whether ends of flanks touch all along it, and so drive.
+        Whether ends of flanks touch, and so drive, all along it.
     apart : float, mm
-        Largest difference of the driven wheel's place, along its pitch curve, from where flanks
-        without ends would hold it.
+        Largest deviation of the driven wheel, along its pitch curve, from its position with
+        unlimited flanks.
     """
 
     start: float
@@ -39,7 +39,7 @@ class NonContact:
 
 
 def non_contact(pairs: FlankPairs) -> list[NonContact]:
-    """Return the stretches of a lobe, or of an open pair's way, on which no flanks touch.
+    """Return the stretches of a lobe, or of an open pair's travel, in which no flanks touch.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The numbers of a study: what its rows come to, for the summary."""
+"""Summary numbers of a meshing study."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask
 
 LEAST_STEPS = 8
-"""Steps a tooth below which harmonics are not told."""
+"""Steps per tooth needed for harmonics."""
 
 WHOLE = 1e-9
-"""Part of a turn by which whole turns, written in degrees, may be off: rounding."""
+"""Rounding of whole turns given in degrees, in turns."""
 
 MOST_ORDERS = 3
-"""Harmonics that are told, in harmonics of the mesh."""
+"""Number of harmonics reported, in multiples of the tooth frequency."""
 
 
 def numbers(meshing: Meshing) -> dict[str, Any]:
-    """Return the numbers of a study, for JSON; what does not exist is left out.
+    """Return the summary numbers of a study; numbers that do not exist are left out.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
     Returns
     -------
     dict
-        As described in docs/conventions.md.
+        Ready for JSON; docs/conventions.md explains the names.
     """
     setup = meshing.setup
     pairs = setup.pairs[setup.side]
@@ -73,7 +73,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
 
 
 def transmission(meshing: Meshing) -> dict[str, Any]:
-    """Return what the driven wheel lags behind: on the whole, and by how much that changes.
+    """Return the mean lag of the driven wheel and its transmission error.
 
     Parameters
     ----------
@@ -83,8 +83,8 @@ def transmission(meshing: Meshing) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``lag_mm``, by which the driven wheel is behind its nominal place, along the pitch curve,
-        when the backlash is taken up; ``transmission_error``: its deviation from that on the mean.
+        ``lag_mm``, the mean lag behind the nominal position along the pitch curve with the
+        backlash taken up; ``transmission_error``, the deviation from that mean.
     """
     lead, along = meshing.every("lead"), meshing.every("along")
     touching = np.isfinite(lead)
@@ -105,7 +105,7 @@ def transmission(meshing: Meshing) -> dict[str, Any]:
 
 
 def without_harmonics(meshing: Meshing, touching: Mask) -> str:
-    """Return why a study has no harmonics, or nothing.
+    """Return why a study has no harmonics; an empty string if it has them.
 
     Parameters
     ----------
@@ -117,36 +117,36 @@ def without_harmonics(meshing: Meshing, touching: Mask) -> str:
     Returns
     -------
     str
-        With what would give them.
+        Reason and remedy.
     """
     spec, pairs = meshing.setup.spec, meshing.setup.pairs[DRIVE]
     teeth = pairs.toothings[0].teeth
     turns = (meshing.setup.stretch[1] - meshing.setup.stretch[0]) / (2.0 * np.pi)
     if not pairs.closed:
-        return "the driver does not turn for ever"
+        return "the driver does not turn all around"
     if round(turns) < 1 or abs(turns - round(turns)) > WHOLE:
-        return "the study is not of whole turns of the driver"
+        return "the study does not cover whole turns of the driver"
     if spec.teeth is not None or not meshing.complete:
         return "not every phase was studied"
     if not touching.all():
         return "in some phases nothing touches"
     if meshing.asked < LEAST_STEPS * teeth * round(turns):
         return (
-            f"{shown(meshing.asked / (teeth * turns), 3)} steps a tooth, {LEAST_STEPS} are needed: "
+            f"{shown(meshing.asked / (teeth * turns), 3)} steps per tooth, needed: {LEAST_STEPS}; "
             f"steps = {LEAST_STEPS * teeth * round(turns)}"
         )
     return ""
 
 
 def harmonics(meshing: Meshing, lead: Array) -> list[dict[str, float]]:
-    """Return the harmonics of a driver turn in the driven wheel's lead, the first to 3*z1.
+    """Return the harmonics of the driver's turn in the driven wheel's lead, from 1 to 3*z1.
 
     Parameters
     ----------
     meshing : Meshing
         A study of whole turns.
     lead : (n,) array, rad
-        At its phases.
+        Lead at each phase.
 
     Returns
     -------
@@ -170,14 +170,14 @@ def _extent(values: Array | Ints) -> dict[str, float]:
 
 
 def pairs_in_contact(meshing: Meshing) -> Ints:
-    """Return how many pairs overlap at each phase, as the outlines say, (n,)."""
+    """Return the number of pairs whose outlines overlap at each phase, (n,)."""
     rows = meshing.columns
     good = meshing.on_side & (rows["depth_mm"].filled(0.0) > meshing.setup.noise)
     return np.bincount(rows["step"].data[good].astype(np.int64), minlength=len(meshing.phi1))
 
 
 def agreement(meshing: Meshing, stepwise: Ints) -> dict[str, Any]:
-    """Compare the outlines' overlaps with those that the exact flanks predict.
+    """Return differences of the outlines' overlaps from those predicted by the exact flanks.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def agreement(meshing: Meshing, stepwise: Ints) -> dict[str, Any]:
     dict
         ``inside``: largest relative difference of the area from the closed form where that holds;
         ``clipped_mm2``: largest difference from the integrated depth elsewhere; ``steps_apart``:
-        phases at which outlines and exact flanks, both with the overclosure, count different pairs.
+        phases at which outlines and exact flanks, both with the overclosure, give different pairs.
     """
     area, predicted, closed = (
         meshing.columns[name] for name in ("area_mm2", "predicted_mm2", "closed_mm2")

@@ -1,11 +1,11 @@
 """Stepwise overlap: the outlines of the pair, turned phase by phase and intersected.
 
-This is the source texts' study of the contact patch (003, section 2.3.3.1), and the proof that
-looks at nothing but outlines. The wheels are taken in `half_teeth`, the driver's turned into the
-driven wheel's frame. Half-tooth h of the driver faces half-tooth h of the driven wheel, and can
-touch the two beside it: so all overlap of the wheels is looked at, and each piece of it belongs to
-a pair of half-teeth. So does what an open wheel or a rack may run into far from the pitch point:
-its other end, or the body below its teeth.
+This is the source texts' study of the contact patch (003, section 2.3.3.1), and a proof from the
+outlines alone. The wheels are cut into `half_teeth`, and the driver's are turned into the driven
+wheel's frame. Half-tooth h of the driver faces half-tooth h of the driven wheel and can touch the
+two beside it: so all overlap of the wheels is found, and each piece belongs to a pair of
+half-teeth. That includes collisions of an open wheel or a rack far from the pitch point: with the
+other end, or with the body below the teeth.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ class Overlaps:
     step : (n,) int array
         Number of the phase.
     half : (2, n) int array
-        Half-teeth h of driver and driven wheel that overlap, counted within the first turn; the
-        number after the last one is the body of an open wheel.
+        Half-teeth h of driver and driven wheel that overlap, in the first turn; the number after
+        the last one is the body of an open wheel.
     facing : (n,) bool array
-        Whether these half-teeth face each other, so that their flanks are a pair.
+        Whether these half-teeth face each other, so that their flanks form a pair.
     area : (n,) array, mm^2
         Area.
     length : (n,) array, mm
-        Diagonal of its box: the length of a thin patch.
+        Diagonal of its bounding box: the length of a thin patch.
     radius : (2, n) array, mm
-        Smallest and largest distance of its corners from the driver's axis.
+        Smallest and largest distance of its vertices from the driver's shaft.
     """
 
     step: Ints
@@ -53,13 +53,13 @@ class Overlaps:
 
     @property
     def depth(self) -> Array:
-        """Depth of a patch, a parabola's segment, of this area and length, mm."""
+        """Depth, mm, of a patch of this area and length, taken as a parabolic segment."""
         return 1.5 * self.area / self.length
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Turning:
-    """Two wheels on their shafts, ready to be turned.
+    """Outlines of two mounted wheels, to be turned against each other.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ class Turning:
     driver, driven : HalfTeeth
         The wheels.
     distance : float, mm
-        As mounted (see `Mounting`).
+        Mounted distance (see `Mounting`).
     moved : float, mm
-        How far the teeth are moved on along the centrodes: a step of stepped wheels.
+        Offset of the teeth along the centrodes, for a step of stepped wheels.
     """
 
     rolling: Rolling
@@ -85,7 +85,7 @@ class Turning:
 
     @cached_property
     def _teeth(self) -> Any:
-        """The half-teeth alone: a body has as many corners as the wheel has teeth."""
+        """Search tree of the half-teeth, without the body, which has very many vertices."""
         return shapely.STRtree(self.driven.polygons[: self.driven.count])
 
     @cached_property
@@ -96,16 +96,16 @@ class Turning:
     def pose(
         self, phi1: Array, overclosure: float, lead: Array | float = 0.0
     ) -> tuple[Plane, Plane]:
-        """Return the turn and offset that take the driver's points into the driven wheel's frame.
+        """Return the rotation and offset of the driver's points into the driven wheel's frame.
 
         Parameters
         ----------
         phi1 : (n,) array, rad
             Phases.
         overclosure : float, rad
-            How far the driver is ahead of them.
-        lead : (n,) array or float, rad, of a rack mm
-            How far the driven wheel is.
+            Angle by which the driver is ahead of them.
+        lead : (n,) array or float, rad, for a rack mm
+            Angle by which the driven wheel is ahead of them.
 
         Returns
         -------
@@ -124,7 +124,7 @@ class Turning:
         polygons = self.driver.placed(one, turn, offset)
         own, mate = self._tree.query(polygons)
         mates = self.driven.polygons[mate]
-        # the prepared ones first: twice as fast as the tree's own test
+        # prepared polygons first: twice as fast as the tree's own test
         hit = shapely.intersects(mates, polygons[own])
         shared = shapely.intersection(polygons[own[hit]], mates[hit])
         area = shapely.area(shared)
@@ -152,7 +152,7 @@ class Turning:
         phi1 : (n,) array, rad
             Phases.
         one, two : (n,) int arrays
-            Half-teeth h of driver and driven wheel, counted within the first turns.
+            Half-teeth h of driver and driven wheel, in the first turn.
 
         Returns
         -------
@@ -160,7 +160,7 @@ class Turning:
         """
         driver, at = self.driver, self.rolling.tracks[0].arc_length(phi1) - self.moved
         count = one
-        if driver.closed:  # counted on over the turns, to the one nearest the pitch point
+        if driver.closed:  # moved by whole turns to the one nearest to the pitch point
             past = 2.0 * at / driver.pitch
             count = one + driver.count * np.rint((past - 0.5 - one) / driver.count).astype(np.int64)
         mate = self.driven.index(count)
@@ -170,7 +170,7 @@ class Turning:
     def flank_distance(
         self, side: int, phi1: Array, overclosure: float, lead: Array | float = 0.0
     ) -> Array:
-        """Return the least distance of facing half-teeth of a side at phases.
+        """Return the least distance between facing half-teeth of a side at phases.
 
         Parameters
         ----------
@@ -200,7 +200,7 @@ class Turning:
     def _candidates(self, turn: Plane, offset: Plane) -> tuple[Ints, Ints]:
         """Phases and half-teeth of the driver that may touch the driven wheel.
 
-        The driver's body is the last of all.
+        The driver's body has the last number.
         """
         center, radius = self.driver.circles
         seen = center * turn[:, None] + offset[:, None]

@@ -1,11 +1,11 @@
-"""Contact patches: the overlap that the exact flanks predict on each pair as the driver is ahead.
+"""Contact patches: overlap of each pair predicted from the exact flanks with the driver ahead.
 
-Where the driver's flank stands deeper in its mate than their common normal is long, both are graphs
-over their common tangent, and the area between them is the difference of two integrals, over the
-stretch on which the driver's is above. That holds also where an end of a flank or a knot of the law
-clips the patch; only what lies beyond the end of a flank, on a fillet or a tip, is left out. Inside
-smooth flanks the patch has the closed form ``(4/3)*delta*sqrt(2*delta/kr)`` with the penetration
-delta and the relative curvature kr.
+Near their common normal both flanks are graphs over the common tangent. Where the driver's flank
+penetrates its mate, the area between them is the difference of two integrals over the interval of
+penetration. That also holds where an end of a flank or a knot of the law clips the patch; only the
+parts beyond the end of a flank, on a fillet or a tip, are left out. Inside smooth flanks the patch
+has the closed form ``(4/3)*delta*sqrt(2*delta/kr)`` with the penetration delta and the relative
+curvature kr.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ _SMALL = 1e-9
 """Step, in pitches, at which the search for a common normal ends."""
 
 _MISS = 1e-9
-"""What two normals may miss of being one, in rad and pitches."""
+"""Largest residual of a common normal, in rad and pitches."""
 
 _CLOSE = 1e-6
-"""Place, in pitches, to which ends of patches are found: the depth there is next to nothing."""
+"""Tolerance of the ends of patches, in pitches: the depth there is negligible."""
 
 _ANGLE = 1e-8
-"""Step of Newton's method, rad, after which the next would be below rounding."""
+"""Step of Newton's method, rad, after which the next is below rounding."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -49,9 +49,9 @@ class Patches:
     step, pair : (n,) int arrays
         Number of the phase; j.
     area : (n,) array, mm^2
-        By integrating the depth.
+        Integral of the depth.
     closed : (n,) array, mm^2
-        By the closed form; nan where the patch is clipped, holds a knot or lies near a cusp.
+        Closed form; nan where the patch is clipped, contains a knot or is near a cusp.
     depth : (n,) array, mm
         Largest penetration, along the normal.
     """
@@ -65,17 +65,17 @@ class Patches:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Graphs(PlacedFlanks):
-    """Flanks of n pairs as graphs over the tangent at the normal that they share.
+    """Flanks of n pairs as graphs over the tangent at their common normal.
 
-    x rises along the tangent to the driver's tip, y in the direction in which the driver presses;
-    both are 0 at the driver's point on the normal.
+    x is along the tangent towards the driver's tip, y in the direction of the driver's force; both
+    are 0 at the driver's point on the normal.
 
     Parameters
     ----------
     center : (2, n) array, rad
         Driver angles of the points on the normal.
     penetration : (n,) array, mm
-        How deep the driver's flanks stand on the normal.
+        Penetration of the driver's flanks along the normal.
     curvature : (n,) array, 1/mm
         Relative curvature of the flanks there.
     """
@@ -87,12 +87,12 @@ class Graphs(PlacedFlanks):
     @property
     def rising(self) -> Array:
         """Driver angles, rad, of both flanks at their lower and upper end in x, (2, 2, n)."""
-        # x rises to the driver's tip, and so to the driven wheel's root
+        # x rises towards the driver's tip, and so towards the driven wheel's root
         return np.stack([self.ends[0], self.ends[1, ::-1]])
 
     @property
     def places(self) -> Array:
-        """Ends in x of what both flanks share, and the place between nearest to 0: (3, n)."""
+        """Ends in x of the range common to both flanks, and its point nearest to 0: (3, n)."""
         x = [
             [self.at(wheel, end, unit=True)[0].real for end in ends]
             for wheel, ends in zip(WHEELS, self.rising, strict=True)
@@ -102,14 +102,14 @@ class Graphs(PlacedFlanks):
 
     @cached_property
     def along(self) -> Array:
-        """How x grows with the driver angles at `center`, (2, n), mm/rad."""
+        """Derivatives of x by the driver angles at `center`, (2, n), mm/rad."""
         each = zip(WHEELS, self.center, strict=True)
         return np.stack([self.at(wheel, center)[1].real for wheel, center in each])
 
     def depth(self, x: Array) -> tuple[Array, Array, Array]:
-        """Return how deep the driver's flanks stand at `x`, mm, and what leads there.
+        """Return the penetration of the driver's flanks at `x`, mm.
 
-        Returns the depth, its derivative by x, and both driver angles, (2, n).
+        With its derivative by x, and both driver angles, (2, n).
         """
         angles, y, slope = [], [], []
         rows = zip(WHEELS, self.center, self.along, self.rising, strict=True)
@@ -117,7 +117,7 @@ class Graphs(PlacedFlanks):
             angles.append(self.find(wheel, _along, x, ends, center + x / along, _ANGLE))
             point, direction = self.at(wheel, angles[-1], unit=True)
             y.append(self.pairs.side * point.imag)
-            with np.errstate(divide="ignore", invalid="ignore"):  # upright at an end
+            with np.errstate(divide="ignore", invalid="ignore"):  # a vertical tangent at an end
                 slope.append(self.pairs.side * direction.imag / direction.real)
         return y[0] - y[1], slope[0] - slope[1], np.stack(angles)
 
@@ -138,18 +138,18 @@ def patches(
     phi1 : (n,) array, rad
         Phases.
     overclosure : float, rad
-        How far the driver is ahead of them.
+        Angle by which the driver is ahead of them.
     lead : (n,) array or float, rad
-        How far the driven wheel is ahead of its nominal place; of a rack mm.
+        Angle by which the driven wheel is ahead of its nominal position; for a rack mm.
 
     Returns
     -------
     Patches
-        Only of pairs that overlap.
+        Of the pairs that overlap.
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     graphs = _overlapping(pairs, phi1, overclosure, np.broadcast_to(lead, phi1.shape))
-    # past a cusp the normal is not where the flanks are deepest: that is at an end then
+    # past a cusp the largest depth is not at the normal but at an end
     places = graphs.places
     values = np.stack([graphs.depth(place)[0] for place in places])
     real = np.flatnonzero((places[0] < places[2]) & (values.max(axis=0) > 0.0))
@@ -174,7 +174,7 @@ def patches(
 
 
 def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array) -> Graphs:
-    """Find the normals that pairs share, and the pairs that overlap along them."""
+    """Return the common normals of pairs, and the pairs that overlap along them."""
     side, guide, ahead = pairs.side, pairs.guide, phi1 + overclosure
     moved, motion = guide.nominal(phi1) + lead, guide.motion(ahead)
     nominal = Pose(ahead, phi1, phi1, moved - motion[0])
@@ -189,7 +189,7 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
     turn = np.stack([np.exp(-1j * ahead), guide.stand(moved)[0]])
     origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
     offset = at.foot - np.stack([first.p, second.p]) * turn - origin
-    # the tangent towards the driver's tip becomes the x-axis
+    # the tangent towards the driver's tip is the x-axis
     level = 1j * np.conj(at.normal[0])
     every = Graphs(
         pairs=pairs,
@@ -213,12 +213,12 @@ def _shared(
     motion: Array,
     limits: tuple[Array, Array] | None,
 ) -> tuple[Array, Normals]:
-    """Find the rolls at which two flanks of a given pose have one normal, at any distance.
+    """Return the rolls at which two flanks in a given pose have a common normal, at any distance.
 
-    What the guide tells of the phases is given as `motion`, and between which `limits` they lie.
-    Returns them as driver angles, rad, (2, n), and the normal.
+    As driver angles, rad, (2, n), with the normal. `motion` is `Guide.motion` at the phases,
+    `limits` bound the rolls.
     """
-    # the third unknown is the distance along it
+    # the third unknown is the distance along the normal
     none = np.zeros_like(separation)
     by_distance = np.stack([none, none - 1.0, none])
 
@@ -236,9 +236,9 @@ def _shared(
 
 
 def _end(graphs: Graphs, top: Array, limit: Array, cut: Mask, guess: Array) -> Array:
-    """Find where patches end between their deepest place and a limit, in x; `cut` at the limit.
+    """Return the ends in x of patches between their deepest point and a limit; `cut` at the limit.
 
-    Returns the driver angles on both flanks, (2, n).
+    As driver angles on both flanks, (2, n).
     """
     x, at = limit.copy(), np.flatnonzero(~cut)
     some = graphs.select(at)
@@ -254,7 +254,7 @@ def _end(graphs: Graphs, top: Array, limit: Array, cut: Mask, guess: Array) -> A
 
 
 def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
-    """Integrate flanks over x between driver angles, (2, n), rad: mm^2."""
+    """Return integrals of flanks over x between driver angles, (2, n), rad: mm^2."""
     n, count = len(_NODES), angles.shape[1]
     many = graphs.select(np.repeat(np.arange(count), n))
     half = 0.5 * (angles[1] - angles[0])
@@ -264,10 +264,10 @@ def _below(graphs: Graphs, wheel: Wheel, angles: Array) -> Array:
 
 
 def _uneven(pairs: FlankPairs, angles: Array) -> Mask:
-    """Whether stretches of flank between driver angles, (2, n), hold a knot of the law."""
+    """Return whether flanks between driver angles, (2, n), contain a knot of the law."""
     law, (start, end) = pairs.guide.law, np.sort(angles, axis=0)
     stretch, knots = pairs.track.knots_between(start, end)
-    # a smooth law has no knots but the ends of its lobe
+    # a smooth law has knots only at the ends of its lobe
     smooth = law.lobes.closed and len(law.knots) == 2
     uneven = np.zeros(len(start), dtype=bool)
     uneven[stretch[knots > start[stretch]]] = not smooth

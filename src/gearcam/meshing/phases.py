@@ -1,4 +1,4 @@
-"""The phases of a study: evenly over its stretch, or those of some teeth."""
+"""The phases of a study: evenly spaced over its range, or those of some teeth."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _BESIDE = 0.15
-"""Phases studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""
+"""Range studied with `teeth`, before and after the teeth's arcs of contact, in pitches."""
 
 _STOP = 1e-7
-"""Share of the travel by which written degrees may pass a stop."""
+"""Share of the travel by which given degrees may pass a stop: rounding."""
 
 
 def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:
-    """Return the driver angles, rad, between which a pair is studied.
+    """Return the first and last driver angle of a study, rad.
 
     Parameters
     ----------
@@ -44,24 +44,24 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     spec : MeshingSpec
         Settings.
     pairs : FlankPairs
-        The side that is pressed together.
+        The side pressed together.
 
     Returns
     -------
     (n,) array
-        All, or with `teeth` those at which the teeth are in contact or nearly.
+        All phases, or with `teeth` those with these teeth in or near contact.
 
     Raises
     ------
     InfeasibleError
-        If there is none, or the stretch leaves the travel of open wheels or a rack.
+        If there are none, or the range leaves the travel of open wheels or a rack.
     """
     first, last = stretch(spec, pairs)
     if not last > first:
         raise InfeasibleError(
             f"the study ends at {shown(np.degrees(last))} deg before it begins",
             where="meshing.from_deg",
-            nearest=f"below {shown(np.degrees(last))} deg",
+            nearest=f"give a start below {shown(np.degrees(last))} deg",
         )
     phi1 = np.linspace(first, last, spec.steps, endpoint=not pairs.closed)
     if not pairs.closed:
@@ -80,17 +80,17 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     if not chosen.size:
         angles = np.degrees(track.angle(0.5 * (start + end)))
         raise InfeasibleError(
-            "none of the phases has one of these teeth in contact",
+            "these teeth are in contact in none of the phases",
             where="meshing.teeth",
-            nearest="their contact is about phi1 = "
+            nearest="they are in contact near phi1 = "
             + ", ".join(f"{shown(angle, 4)}" for angle in angles)
-            + " deg; take more steps or another range",
+            + " deg; use more steps or another range",
         )
     return chosen
 
 
 def _demand_travel(first: float, last: float, travel: float) -> None:
-    """Refuse phases beyond the stops of open wheels and racks."""
+    """Refuse phases beyond the ends of travel of open wheels and racks."""
     early = first < -_STOP * travel
     if early or last > (1.0 + _STOP) * travel:
         raise InfeasibleError(
@@ -99,5 +99,5 @@ def _demand_travel(first: float, last: float, travel: float) -> None:
             value=float(np.degrees(first if early else last)),
             limit=0.0 if early else float(np.degrees(travel)),
             unit="deg",
-            nearest=f"between 0 and {shown(np.degrees(travel), 8)} deg",
+            nearest=f"the travel lies between 0 and {shown(np.degrees(travel), 8)} deg",
         )

@@ -1,4 +1,4 @@
-"""Flanks of pairs where they stand: what the searches for first touch and contact patches share."""
+"""Flanks of pairs in their mounted positions, for first contact and contact patches."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gearcam.numeric.roots import newton_in_bracket
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PlacedFlanks:
-    """Flanks of n pairs, both wheels turned and moved to where they stand.
+    """Flanks of n pairs, both wheels turned and moved to their positions.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class PlacedFlanks:
     step, pair : (n,) int arrays
         Number of the phase; j.
     turn, offset : (2, n) complex arrays, 1 and mm
-        What turns the points of both wheels, and what is added to them then.
+        Rotation of the points of both wheels, and the offset added after it.
     """
 
     pairs: FlankPairs
@@ -36,13 +36,13 @@ class PlacedFlanks:
     offset: Plane
 
     def select(self, index: Ints | Mask) -> Self:
-        """Return some of the pairs, by `index`."""
+        """Return the pairs `index`."""
         _, *each = (one.name for one in fields(self))
         return replace(self, **{name: getattr(self, name)[..., index] for name in each})
 
     @cached_property
     def sf(self) -> Array:
-        """Place sf of both flanks, (2, n), mm."""
+        """Position sf of both flanks, (2, n), mm."""
         return np.stack([self.pairs.place(wheel, self.pair) for wheel in WHEELS])
 
     @cached_property
@@ -62,7 +62,7 @@ class PlacedFlanks:
         wheel : {1, 2}
             Driver or driven wheel.
         angle : (n,) array, rad
-            Driver angles that name the points.
+            Driver angles of the points.
         unit : bool
             Whether the directions are unit vectors, of either sense, instead of derivatives by
             `angle`.
@@ -90,14 +90,14 @@ class PlacedFlanks:
         start: Array,
         tolerance: float,
     ) -> Array:
-        """Return the driver angles, rad, of the flank points that have given values of a measure.
+        """Return the driver angles, rad, of flank points at which a measure has given values.
 
         Parameters
         ----------
         wheel : {1, 2}
             Driver or driven wheel.
         measure : callable
-            ``measure(points, directions)``: values, and how they grow in these directions.
+            ``measure(points, directions)`` returns values and their directional derivatives.
         value : (n,) array
             The values.
         ends : two (n,) arrays, rad

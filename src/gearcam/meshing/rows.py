@@ -1,4 +1,4 @@
-"""What a study finds at some phases, and the rows of ``meshing.csv`` that say it."""
+"""Results of a study at some phases, and the rows of ``meshing.csv``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gearcam.numeric.arrays import Array, Mask
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Block:
-    """Some phases of a study.
+    """Results of some phases of a study.
 
     Parameters
     ----------
@@ -24,24 +24,24 @@ class Block:
     phi1, phi2 : (n,) arrays, rad
         Driver and nominal driven angles.
     lead : (n,) array, rad
-        The driven wheel's turn from its nominal place at first touch on the side that the
-        overclosure presses together (of a rack its way, mm); not finite where nothing touches.
+        The driven wheel's turn from its nominal position at first contact on the side pressed
+        together (for a rack its travel, mm); not finite where nothing touches.
     along : (n,) array, mm/rad
-        What such turns are along the pitch curve.
+        Arcs along the pitch curve per such turn.
     backlash : (n,) array, mm
-        What the driven wheel can turn between both touches, along the pitch curve.
+        Free travel of the driven wheel between both contacts, along the pitch curve.
     edge : (n,) bool array
-        Whether an edge decides the first touch.
+        Whether an edge touches first.
     held_back_gap : (n,) array, mm
         Distance of the flanks when the driver is held back by the overclosure.
     overlaps : Overlaps
-        Of the outlines, with the driver ahead.
+        Overlaps of the outlines, with the driver ahead.
     contacts : Contacts
         Exact ones, without overclosure.
     patches : Patches
         Predicted overlaps.
     interferes : (n,) bool array
-        Whether flanks overlap that should not, or deeper than the overclosure explains.
+        Whether flanks overlap that should not, or more deeply than the overclosure explains.
     """
 
     first: int
@@ -59,7 +59,7 @@ class Block:
 
 
 def on_side(found: Overlaps, side: int) -> Mask:
-    """Return which overlaps lie on facing half-teeth of a side.
+    """Return which overlaps are of facing half-teeth of a side.
 
     Parameters
     ----------
@@ -76,21 +76,21 @@ def on_side(found: Overlaps, side: int) -> Mask:
 
 
 def columns_of(blocks: list[Block], turning: Turning, side: int) -> dict[str, Array]:
-    """Return the rows of a study: one for each phase and pair that overlaps or is in contact.
+    """Return the rows of a study: one per phase and pair that overlaps or is in contact.
 
     Parameters
     ----------
     blocks : list of Block
-        What was found.
+        Results, in order.
     turning : Turning
         The wheels.
     side : {-1, +1}
-        sigma of the driver's flanks that are pressed together.
+        sigma of the driver's flanks pressed together.
 
     Returns
     -------
     dict of str to (n,) array
-        Columns; what does not exist is masked.
+        Columns by name; values that do not exist are masked.
     """
     parts = [_columns(block, turning, side) for block in blocks]
     if not parts:

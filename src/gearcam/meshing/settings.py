@@ -1,4 +1,4 @@
-"""What a design says of its meshing study."""
+"""Settings of the meshing study in a design."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from gearcam.display import Brief
 from gearcam.quantities import ANGLE, COUNT, LENGTH, param
 
 KIND = "meshing"
-"""The checks of a study."""
+"""Registered checks of a study."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MeshingSpec(Brief):
-    """Phases of the driver, its overclosure, and how the wheels are mounted.
+    """Phases of the driver, overclosure, and mounted centre distance.
 
-    The phases divide the stretch from `start` to `end` into `steps` equal parts, its end left out;
-    open wheels and racks are studied at both of its ends. Without `end` it is a turn of the driver,
-    or the travel of open wheels and racks to the stop.
-    The driver is turned ahead by `overclosure` at each (a negative one holds it back, so that the
-    other flanks touch). With `teeth` only the phases in which these teeth of the driver are near
-    the pitch point are studied. Without `center_distance` the wheels stand as designed; a larger
-    one gives backlash, but presses a wheel into its ring.
+    The phases divide the range from `start` to `end` into `steps` equal parts, without its end;
+    open wheels and racks are studied at both ends. The default `end` is a turn of the driver, or
+    the travel of open wheels and racks. At each phase the driver is turned ahead by `overclosure`;
+    a negative one holds it back, so that the coast flanks touch. With `teeth` only the phases in
+    which these teeth of the driver are near the pitch point are studied. By default the wheels are
+    mounted at the design centre distance; a larger `center_distance` gives backlash, but presses a
+    wheel into its ring.
 
     Examples
     --------
@@ -42,7 +42,7 @@ class MeshingSpec(Brief):
         ge=-36000,
         le=36000,
         word="to",
-        doc="driver angle at which the study ends; a turn, or the last stop, if left out",
+        doc="driver angle at the end of the study; by default a turn, or the end of travel",
     )
     overclosure: float = param(
         ANGLE,

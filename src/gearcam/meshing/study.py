@@ -1,10 +1,10 @@
-"""The meshing study: exact contact, first touch and stepwise overlap side by side, by phases.
+"""The meshing study: exact contact, first contact and stepwise overlap, by phases.
 
-At every phase the driven wheel is first turned until it touches, as in a machine: this takes up the
-backlash. Then the driver is turned ahead by a small angle, and the outlines are intersected; the
-exact flanks say which pairs must overlap, how much, and how far the driven wheel could turn. The
-outlines are made anew, so fine that the chord errors of both together are at most a hundredth of
-the penetration. An interruption keeps the phases done.
+At each phase the driven wheel is first turned until it touches, as in a machine: this takes up the
+backlash. Then the driver is turned ahead by a small angle, and the outlines are intersected. The
+exact flanks predict which pairs must overlap, by how much, and how far the driven wheel could turn.
+The outlines are computed anew, so finely that the chord errors of both add up to at most a
+hundredth of the penetration. An interrupted study keeps the phases done.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ from gearcam.numeric.arrays import Array, Mask
 Progress = Callable[[str, int, int], None]
 
 SHARE = 1.0 / 200.0
-"""Chord error of each outline over the penetration: both together are a hundredth."""
+"""Chord error of each outline over the penetration: a hundredth for both together."""
 
 _MOST = 1e7
-"""Chords of a studied outline: of more, its half-teeth do not fit into memory."""
+"""Largest number of chords of a studied outline: more half-teeth would not fit into memory."""
 
 BLOCK = 120
-"""Phases that are studied at once: few enough for progress, many enough to be fast."""
+"""Phases studied at once: few enough to report progress, many enough to be fast."""
 
 DEEPER = 1.6
-"""Depth of overlap, over what the overclosure explains, from which flanks count as interfering.
+"""Depth of overlap, over that explained by the overclosure, above which flanks interfere.
 
-Depths are told as if patches ended in points: of one as long as its flanks, a strip between flanks
-that hug each other as in a ring, it is 1.5 times what it is."""
+Depths are computed for patches that end in points: for a strip as long as its flanks, as between
+closely fitting flanks in a ring, the result is 1.5 times the true depth."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -63,13 +63,13 @@ class Setup:
     turning : Turning
         The outlines.
     side : {-1, +1}
-        The side that the overclosure presses together.
+        The side pressed together by the overclosure.
     stretch : (float, float), rad
-        Driver angles between which the pair is studied.
+        First and last driver angle of the study.
     penetration : float, mm
-        Smallest penetration of a full contact: overclosure times lever.
+        Smallest penetration of a full contact: overclosure times lever arm.
     lever : float, mm
-        Largest lever of the driver.
+        Largest lever arm of the driver.
     """
 
     spec: MeshingSpec
@@ -82,7 +82,7 @@ class Setup:
 
     @property
     def noise(self) -> float:
-        """Depth of overlap that the chords alone may cause, mm."""
+        """Depth of overlap that chord errors alone may cause, mm."""
         return 1.5 * (self.turning.driver.chord_error + self.turning.driven.chord_error)
 
 
@@ -99,7 +99,7 @@ class Meshing:
     asked : int
         Number of phases asked for.
     blocks : list of Block
-        What was found, block by block.
+        Results, block by block.
     """
 
     setup: Setup
@@ -109,7 +109,7 @@ class Meshing:
 
     @property
     def sides(self) -> tuple[FlankPairs, FlankPairs]:
-        """The pairs of flanks that hold back and those that drive."""
+        """Pairs of flanks of the coast and driving side."""
         return self.setup.pairs[COAST], self.setup.pairs[DRIVE]
 
     @property
@@ -119,17 +119,17 @@ class Meshing:
 
     @cached_property
     def columns(self) -> dict[str, Any]:
-        """The rows of ``meshing.csv``: one a phase and pair of half-teeth that touch or should."""
+        """Rows of ``meshing.csv``: one per phase and pair of half-teeth that touch or should."""
         return columns_of(self.blocks, self.setup.turning, self.setup.side)
 
     @property
     def on_side(self) -> Mask:
-        """Which rows are of facing half-teeth of the side that is pressed together."""
+        """Mask of the rows of facing half-teeth of the side pressed together."""
         rows = self.columns
         return (rows["facing"].data > 0.0) & (rows["side"].data == self.setup.side)
 
     def every(self, name: str) -> Array:
-        """Return a field of all blocks, end to end, by its `name`."""
+        """Return the field `name` of all blocks, concatenated."""
         if not self.blocks:
             return np.empty(0)
         return np.concatenate([getattr(block, name) for block in self.blocks])
@@ -141,7 +141,7 @@ def study(
     progress: Progress | None = None,
     designed: tuple[FlankPairs, ...] = (),
 ) -> Meshing:
-    """Study a pair.
+    """Return the meshing study of a pair.
 
     Parameters
     ----------
@@ -152,17 +152,17 @@ def study(
     progress : callable, optional
         Called with ``"meshing"``, the phases done and their number.
     designed : tuple of FlankPairs
-        Both sides of the pair as designed, where they are known already.
+        Both sides of the pair as designed, if already computed.
 
     Returns
     -------
     Meshing
-        Of the phases done where it was interrupted.
+        The phases done, if interrupted.
 
     Raises
     ------
     InfeasibleError
-        If the wheels do not reach each other, or the overclosure is too small to be shown.
+        If the wheels do not reach each other, or the overclosure is too small to be resolved.
     """
     return run(mount(gears, spec, designed), progress)
 
@@ -185,7 +185,7 @@ def run(setup: Setup, progress: Progress | None = None) -> Meshing:
 def mount(
     gears: tuple[Gear, Gear], spec: MeshingSpec, designed: tuple[FlankPairs, ...] = ()
 ) -> Setup:
-    """Put a pair on its shafts, with outlines as fine as the overclosure asks for.
+    """Return a mounted pair, with outlines as fine as the overclosure needs.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def mount(
     spec : MeshingSpec
         Settings.
     designed : tuple of FlankPairs
-        Both sides of the pair as designed, where they are known already.
+        Both sides of the pair as designed, if already computed.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def mount(
     Raises
     ------
     InfeasibleError
-        If the wheels do not reach each other, or the overclosure is too small to be shown.
+        If the wheels do not reach each other, or the overclosure is too small to be resolved.
     """
     pair = gears[0].pair
     distance = _distance(pair, spec)
@@ -219,10 +219,10 @@ def mount(
     for gear, wheel in zip(gears, both, strict=True):
         if not wheel.sound:
             raise InfeasibleError(
-                "the teeth are too few and too deep to be told apart",
+                "the teeth are too few and too deep to be divided into half-teeth",
                 where=f"wheel {gear.wheel}",
                 value=float(gear.toothing.teeth),
-                nearest="more teeth or a smaller x; build and check look at such wheels",
+                nearest="use more teeth or a smaller x; build and check do accept such wheels",
             )
     turning = Turning(
         rolling=pair.rolling,
@@ -245,7 +245,7 @@ def mount(
 def _outlines(
     gears: tuple[Gear, Gear], spec: MeshingSpec, penetration: float
 ) -> tuple[Outline, Outline]:
-    """Return the outlines that show a penetration, mm; refuse an overclosure too small for that."""
+    """Return outlines that resolve a penetration, mm; refuse an overclosure too small for that."""
     pair = gears[0].pair
     tolerance = min(SHARE * penetration, pair.chord_tolerance(None))
     one, two = (replace(gear.profile, tolerance=tolerance, most=_MOST) for gear in gears)
@@ -258,11 +258,11 @@ def _outlines(
     reason = (
         "the overlap would be lost in rounding"
         if lost > many
-        else f"outlines that show the overlap would take {shown(chords, 2)} chords"
+        else f"outlines that resolve the overlap would need {shown(chords, 2)} chords"
     )
     least = float(np.degrees(spec.overclosure)) * max(lost, many)
     raise InfeasibleError(
-        f"the overclosure is so small that {reason}",
+        f"the overclosure is too small: {reason}",
         where="meshing.overclosure_deg",
         value=float(np.degrees(spec.overclosure)),
         limit=least,
@@ -272,34 +272,34 @@ def _outlines(
 
 
 def _distance(pair: GearPair, spec: MeshingSpec) -> float:
-    """Place of wheel 2's frame as mounted, mm along x (see `Guide`)."""
+    """Position of wheel 2's frame as mounted, mm along x (see `Guide`)."""
     if spec.center_distance is None:
         return pair.shift
     if pair.on_rack:
         raise InfeasibleError(
-            "a rack has no shaft",
+            "a rack has no shaft, and so no centre distance",
             where="meshing.center_distance_mm",
             value=spec.center_distance,
             unit="mm",
-            nearest="leave it out: the rack stands as designed",
+            nearest="leave it out: the rack is in its design position",
         )
     depth = 2.0 * pair.rack.addendum * pair.module
     least, most = max(0.0, pair.center_distance - depth), pair.center_distance + depth
     if not least < spec.center_distance < most:
         raise InfeasibleError(
-            "the wheels are mounted so far from their designed distance that their teeth do not "
+            "the mounted centre distance is so far from the design distance that the teeth do not "
             "mesh",
             where="meshing.center_distance_mm",
             value=spec.center_distance,
             limit=least if spec.center_distance <= least else most,
             unit="mm",
-            nearest=f"between {shown(least)} and {shown(most)} mm",
+            nearest=f"use a distance between {shown(least)} and {shown(most)} mm",
         )
     return math.copysign(spec.center_distance, pair.shift)
 
 
 def _block(setup: Setup, phi1: Array, first: int) -> Block:
-    """Study some phases; `first` is the number of the first of them."""
+    """Return the results of some phases; `first` is the number of the first of them."""
     spec, turning, side = setup.spec, setup.turning, setup.side
     touching = {s: contacts(setup.pairs[s], phi1) for s in (DRIVE, COAST)}
     first_touches = {s: first_touch(setup.pairs[s], phi1, found) for s, found in touching.items()}
@@ -309,7 +309,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     held = turning.flank_distance(side, phi1, -spec.overclosure, lead)
     along = to_pitch_line(setup.pairs[side], phi1)
     backlash = (first_touches[COAST][0] - first_touches[DRIVE][0]) * along
-    # too little room for both sides is hidden from the outlines by the overclosure
+    # the overclosure would hide negative backlash from the outlines
     interferes = backlash < -setup.noise
     interferes[ahead.step[ahead.depth > explained(setup, ahead)]] = True
     return Block(
@@ -329,7 +329,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
 
 
 def explained(setup: Setup, found: Overlaps) -> Array:
-    """Return up to which depth overlaps are explained by the overclosure and by chords.
+    """Return the depth of overlaps that overclosure and chord errors explain.
 
     Parameters
     ----------
